@@ -1,0 +1,3 @@
+//! The drive.
+mod outcome;
+pub use outcome::*;

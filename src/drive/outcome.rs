@@ -1,0 +1,163 @@
+//! What a run found: everything that is written to disk is a function of an [`Outcome`].
+
+use crate::path::Path;
+
+/// A finished run.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// The band met its tolerance.
+    pub converged: bool,
+    /// Saddles and ends were proven to be what they are said to be.
+    pub certified: bool,
+    /// Why the run stopped, in words.
+    pub stop_reason: String,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+    /// The barrier, where there is one to report.
+    pub barrier: Option<Barrier>,
+    /// The saddles (energy maxima) along the path, in path order.
+    pub saddles: Vec<SaddlePoint>,
+    /// The initial state as relaxed.
+    pub initial: EndPoint,
+    /// The final state as relaxed.
+    pub final_state: EndPoint,
+    /// Minima between the ends.
+    pub intermediate_minima: Vec<IntermediateMinimum>,
+    /// Other paths that were tried.
+    pub rejected_paths: Vec<RejectedPath>,
+    /// The spins.
+    pub path: Path,
+    /// One row an image.
+    pub images: ImageTable,
+    /// The interpolated energy path.
+    pub profile: Vec<ProfilePoint>,
+    /// One row a band iteration.
+    pub history: Vec<HistoryRow>,
+    /// Sum over saddles, ends, all: what it cost.
+    pub work: Work,
+    /// Largest |F⊥| component of any image (meV).
+    pub max_perpendicular_torque_mev: f64,
+    /// Largest rotation that the relaxation still predicted (rad).
+    pub largest_predicted_rotation_rad: f64,
+}
+
+/// Energy to climb from the initial state (forward) and from the final state (backward), meV.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Barrier {
+    /// From the initial state.
+    pub forward_mev: f64,
+    /// From the final state.
+    pub backward_mev: f64,
+}
+
+/// A saddle on the path.
+#[derive(Clone, Debug)]
+pub struct SaddlePoint {
+    /// Total energy (meV).
+    pub energy_mev: f64,
+    /// Energy above the initial state, from differences of densities (meV).
+    pub above_initial_mev: f64,
+    /// Where on the path (rad).
+    pub reaction_coordinate_rad: f64,
+    /// Nearest image.
+    pub image: usize,
+    /// Largest component of the gradient on the spheres (meV); `None` if the saddle was only interpolated.
+    pub max_torque_mev: Option<f64>,
+    /// Negative eigenvalues, where counted.
+    pub negative_modes: Option<usize>,
+    /// Zero modes, where counted.
+    pub zero_modes: Option<usize>,
+    /// Lowest eigenvalues of the Riemannian Hessian (meV), where computed.
+    pub lowest_eigenvalues_mev: Vec<f64>,
+}
+
+/// An end of the path.
+#[derive(Clone, Debug)]
+pub struct EndPoint {
+    /// Total energy (meV).
+    pub energy_mev: f64,
+    /// Largest component of the gradient on the spheres (meV).
+    pub max_torque_mev: f64,
+    /// Negative eigenvalues, where counted.
+    pub negative_modes: Option<usize>,
+    /// Zero modes, where counted.
+    pub zero_modes: Option<usize>,
+}
+
+/// A minimum between the ends.
+#[derive(Clone, Debug)]
+pub struct IntermediateMinimum {
+    /// The image nearest to it.
+    pub image: usize,
+    /// Where on the path (rad).
+    pub reaction_coordinate_rad: f64,
+    /// Its state.
+    pub state: EndPoint,
+}
+
+/// A path that was tried and not chosen.
+#[derive(Clone, Debug)]
+pub struct RejectedPath {
+    /// The first guess it came from.
+    pub guess: String,
+    /// Its barrier as far as it was followed (meV).
+    pub barrier_mev: Option<f64>,
+    /// Negative modes at its top, where counted.
+    pub negative_modes: Option<usize>,
+    /// Why it was left.
+    pub reason: String,
+}
+
+/// One row an image.
+#[derive(Clone, Debug, Default)]
+pub struct ImageTable {
+    /// Geodesic length from the initial state (rad).
+    pub reaction_coordinate_rad: Vec<f64>,
+    /// Total energy (meV).
+    pub energy_mev: Vec<f64>,
+    /// Energy above the initial image, computed from differences of densities (meV).
+    pub above_initial_mev: Vec<f64>,
+    /// Energy by named term, in the order of the Hamiltonian (meV).
+    pub terms_mev: Vec<(String, Vec<f64>)>,
+    /// Largest component of the force perpendicular to the path (meV); zero at the ends.
+    pub max_perpendicular_torque_mev: Vec<f64>,
+}
+
+/// A point of the interpolated energy path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProfilePoint {
+    /// Geodesic length from the initial state (rad).
+    pub reaction_coordinate_rad: f64,
+    /// Energy above the initial image (meV).
+    pub above_initial_mev: f64,
+}
+
+/// One row a band iteration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HistoryRow {
+    /// Counted from 1.
+    pub iteration: usize,
+    /// Images of the band at that time, both ends counted.
+    pub images: usize,
+    /// Largest |F⊥| component (meV).
+    pub max_perpendicular_torque_mev: f64,
+    /// Largest predicted rotation (rad).
+    pub largest_predicted_rotation_rad: f64,
+    /// Highest image above the initial state (meV).
+    pub highest_image_mev: f64,
+    /// Path length (rad).
+    pub length_rad: f64,
+}
+
+/// What a run cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Work {
+    /// Band iterations of the reported path.
+    pub iterations: usize,
+    /// Gradients of one image, everything counted.
+    pub force_evaluations: usize,
+    /// Wall time (s).
+    pub seconds: f64,
+    /// Threads used.
+    pub threads: usize,
+}

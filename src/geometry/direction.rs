@@ -1,0 +1,42 @@
+//! A direction in space: a unit vector that was checked when it was made.
+
+use super::vector::{Vector, unit};
+use crate::error::{Error, Result};
+use serde::{Deserialize, Deserializer, Serialize};
+
+/// A unit vector. Any vector of non-zero length serves to make one; it is normalised.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Direction(Vector);
+
+impl Direction {
+    /// +x.
+    pub const X: Direction = Direction([1.0, 0.0, 0.0]);
+    /// +y.
+    pub const Y: Direction = Direction([0.0, 1.0, 0.0]);
+    /// +z.
+    pub const Z: Direction = Direction([0.0, 0.0, 1.0]);
+
+    /// The direction of `v`; an error where `v` has none (zero or not finite).
+    pub fn new(v: Vector) -> Result<Direction> {
+        unit(v)
+            .map(Direction)
+            .ok_or_else(|| Error::invalid("", format!("{v:?} has no direction: give three numbers, not all zero")))
+    }
+
+    /// The opposite direction.
+    pub fn reversed(self) -> Direction {
+        Direction([-self.0[0], -self.0[1], -self.0[2]])
+    }
+
+    /// The unit vector.
+    pub fn vector(self) -> Vector {
+        self.0
+    }
+}
+
+impl<'de> Deserialize<'de> for Direction {
+    fn deserialize<D: Deserializer<'de>>(d: D) -> std::result::Result<Self, D::Error> {
+        let v = <[f64; 3]>::deserialize(d)?;
+        Direction::new(v).map_err(serde::de::Error::custom)
+    }
+}

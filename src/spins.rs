@@ -1,0 +1,69 @@
+//! A spin configuration: one unit vector a site.
+//!
+//! Inside, the components are contiguous, (xyz, site): x of every site, then y, then z, so that loops over
+//! sites vectorise. At the border the usual (site, xyz) is spoken.
+
+use crate::error::{Error, Result};
+use crate::geometry::Direction;
+use crate::geometry::vector::{Vector, unit};
+use ndarray::{Array2, ArrayView2};
+
+/// Unit vectors, one a site. Nothing here makes a vector that is not of unit length to rounding.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spins {
+    m: Array2<f64>,
+}
+
+impl Spins {
+    /// All sites along one direction.
+    pub fn uniform(sites: usize, direction: Direction) -> Spins {
+        let d = direction.vector();
+        Spins { m: Array2::from_shape_fn((3, sites), |(c, _)| d[c]) }
+    }
+
+    /// From one vector a site; each is normalised. An error where one has no direction.
+    pub fn from_vectors(vectors: &[Vector]) -> Result<Spins> {
+        let mut m = Array2::zeros((3, vectors.len()));
+        for (i, &v) in vectors.iter().enumerate() {
+            let u = unit(v).ok_or_else(|| {
+                Error::invalid(format!("[{i}]"), format!("{v:?} has no direction: give three numbers, not all zero"))
+            })?;
+            for c in 0..3 {
+                m[[c, i]] = u[c];
+            }
+        }
+        Ok(Spins { m })
+    }
+
+    /// From component-major numbers x₀…, y₀…, z₀…; each vector is normalised.
+    pub fn from_components(xyz: &[f64]) -> Result<Spins> {
+        let n = xyz.len() / 3;
+        let vectors: Vec<Vector> = (0..n).map(|i| [xyz[i], xyz[n + i], xyz[2 * n + i]]).collect();
+        Spins::from_vectors(&vectors)
+    }
+
+    /// Number of sites.
+    pub fn sites(&self) -> usize {
+        self.m.ncols()
+    }
+
+    /// The vector on site `i`.
+    pub fn get(&self, i: usize) -> Vector {
+        [self.m[[0, i]], self.m[[1, i]], self.m[[2, i]]]
+    }
+
+    /// The vectors, site by site.
+    pub fn vectors(&self) -> Vec<Vector> {
+        (0..self.sites()).map(|i| self.get(i)).collect()
+    }
+
+    /// View of shape (xyz, site).
+    pub fn view(&self) -> ArrayView2<'_, f64> {
+        self.m.view()
+    }
+
+    /// Component-major numbers: x of all sites, then y, then z.
+    pub fn as_slice(&self) -> &[f64] {
+        self.m.as_slice().expect("standard layout")
+    }
+}
