@@ -1,1 +1,207 @@
-//! The chain.
+//! Where the spins are: an open or periodic chain, and its selections of sites and bonds.
+
+use crate::error::{Error, Result};
+use crate::geometry::Direction;
+use crate::units::Length;
+use serde::de::{MapAccess, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+
+/// The most sites a chain may have; a longer one is refused before anything is allocated.
+pub const MAX_SITES: usize = 100_000_000;
+
+/// `{"chain": {…}}`.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Lattice {
+    /// A row of equally spaced sites.
+    Chain(Chain),
+}
+
+/// A row of equally spaced sites, counted from 0. Bond i joins sites i and i + 1; a ring's last bond joins N − 1 and 0.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Chain {
+    /// Number of sites.
+    pub sites: usize,
+    /// Distance between neighbours.
+    #[serde(default)]
+    pub spacing: Option<Length>,
+    /// A ring: the last site is joined to the first.
+    #[serde(default)]
+    pub periodic: bool,
+    /// Width and thickness of a cell; with the spacing they give its volume.
+    #[serde(default)]
+    pub cross_section: Option<[Length; 2]>,
+    /// Where the chain points; +x if not given.
+    #[serde(default)]
+    pub direction: Option<Direction>,
+    /// Spins that never move.
+    #[serde(default)]
+    pub frozen: Vec<Frozen>,
+}
+
+/// Spins that never move.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Frozen {
+    /// Which ones.
+    pub sites: Selection,
+    /// Where they point; as in the initial state if not given.
+    #[serde(default)]
+    pub direction: Option<Direction>,
+}
+
+impl Chain {
+    /// A chain of `sites` sites, open, without a length scale.
+    pub fn open(sites: usize) -> Chain {
+        Chain { sites, spacing: None, periodic: false, cross_section: None, direction: None, frozen: Vec::new() }
+    }
+
+    /// A ring of `sites` sites, without a length scale.
+    pub fn ring(sites: usize) -> Chain {
+        Chain { periodic: true, ..Chain::open(sites) }
+    }
+
+    /// Number of bonds of shell `shell` (1: nearest neighbours).
+    pub fn bonds(&self, shell: usize) -> usize {
+        if self.periodic { self.sites } else { self.sites.saturating_sub(shell) }
+    }
+
+    /// Volume of a cell, nm³, where the lattice has one.
+    pub fn cell_volume_nm3(&self) -> Option<f64> {
+        Some(self.spacing?.0 * self.section_nm2()?)
+    }
+
+    /// Area of the cross-section, nm², where given.
+    pub fn section_nm2(&self) -> Option<f64> {
+        self.cross_section.map(|[w, t]| w.0 * t.0)
+    }
+
+    /// Sites, spacing and frozen sites that make sense.
+    pub fn validate(&self) -> Result<()> {
+        if self.sites == 0 || self.sites > MAX_SITES {
+            return Err(Error::invalid("sites", format!("found {}, but a chain has 1 to {MAX_SITES} sites", self.sites)));
+        }
+        if self.periodic && self.sites < 3 {
+            return Err(Error::invalid("periodic", format!("a ring needs at least 3 sites, found {}", self.sites)));
+        }
+        if let Some(a) = self.spacing {
+            positive(a, "spacing")?;
+        }
+        for (k, w) in self.cross_section.iter().flatten().enumerate() {
+            positive(*w, &format!("cross_section[{k}]"))?;
+        }
+        for (k, f) in self.frozen.iter().enumerate() {
+            f.sites.indices(self.sites, "site").map_err(|e| e.within(&format!("frozen[{k}].sites")))?;
+        }
+        Ok(())
+    }
+}
+
+fn positive(length: Length, place: &str) -> Result<()> {
+    if length.0 > 0.0 { Ok(()) } else { Err(Error::invalid(place, format!("found {} nm, but a length is greater than 0", length.0))) }
+}
+
+/// Some sites or bonds: a list, or a range with both ends.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Selection {
+    /// `[3, 4, 9]`.
+    List(Vec<usize>),
+    /// `{"from": 3, "to": 9}`, both included.
+    Range {
+        /// First.
+        from: usize,
+        /// Last.
+        to: usize,
+    },
+}
+
+impl Selection {
+    /// The chosen indices, each below `count`; `what` names them in the error.
+    pub fn indices(&self, count: usize, what: &str) -> Result<Vec<usize>> {
+        match self {
+            Selection::List(list) => {
+                let mut seen = vec![false; count];
+                for (k, &i) in list.iter().enumerate() {
+                    if i >= count {
+                        return Err(out_of_range(format!("[{k}]"), i, count, what));
+                    }
+                    if std::mem::replace(&mut seen[i], true) {
+                        return Err(Error::invalid(format!("[{k}]"), format!("{what} {i} is listed twice")));
+                    }
+                }
+                Ok(list.clone())
+            }
+            Selection::Range { from, to } => {
+                if *to >= count {
+                    return Err(out_of_range("to".into(), *to, count, what));
+                }
+                if from > to {
+                    return Err(Error::invalid("from", format!("the range from {from} to {to} is empty: exchange the two")));
+                }
+                Ok((*from..=*to).collect())
+            }
+        }
+    }
+}
+
+fn out_of_range(place: String, found: usize, count: usize, what: &str) -> Error {
+    let message = match count {
+        0 => format!("found {what} {found}, but there is no {what} here"),
+        _ => format!("found {what} {found}, but {what}s are counted from 0 to {}", count - 1),
+    };
+    Error::invalid(place, message)
+}
+
+impl<'de> Deserialize<'de> for Selection {
+    fn deserialize<D: Deserializer<'de>>(d: D) -> std::result::Result<Self, D::Error> {
+        struct Seen;
+        impl<'de> Visitor<'de> for Seen {
+            type Value = Selection;
+            fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+                f.write_str("a list of indices like [3, 4] or a range like {\"from\": 3, \"to\": 9}")
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut s: A) -> std::result::Result<Selection, A::Error> {
+                let mut list = Vec::new();
+                while let Some(i) = s.next_element()? {
+                    list.push(i);
+                }
+                Ok(Selection::List(list))
+            }
+            fn visit_map<A: MapAccess<'de>>(self, m: A) -> std::result::Result<Selection, A::Error> {
+                #[derive(Deserialize)]
+                #[serde(deny_unknown_fields)]
+                struct Ends {
+                    from: usize,
+                    to: usize,
+                }
+                let e = Ends::deserialize(serde::de::value::MapAccessDeserializer::new(m))?;
+                Ok(Selection::Range { from: e.from, to: e.to })
+            }
+        }
+        d.deserialize_any(Seen)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_open_chain_has_one_bond_less_than_sites_and_a_ring_as_many() {
+        assert_eq!(Chain::open(5).bonds(1), 4);
+        assert_eq!(Chain::open(5).bonds(2), 3);
+        assert_eq!(Chain::open(1).bonds(1), 0);
+        assert_eq!(Chain::ring(5).bonds(1), 5);
+    }
+
+    #[test]
+    fn a_selection_is_a_list_or_a_range_with_both_ends() {
+        let list: Selection = serde_json::from_str("[3, 1]").unwrap();
+        assert_eq!(list.indices(4, "site").unwrap(), [3, 1]);
+        let range: Selection = serde_json::from_str(r#"{"from": 1, "to": 3}"#).unwrap();
+        assert_eq!(range.indices(4, "site").unwrap(), [1, 2, 3]);
+        assert!(range.indices(3, "site").unwrap_err().to_string().contains("counted from 0 to 2"));
+        assert!(serde_json::from_str::<Selection>(r#"{"from": 1}"#).is_err());
+    }
+}

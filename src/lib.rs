@@ -1,8 +1,11 @@
 //! Minimum-energy paths and barriers of spin chains.
 pub mod drive;
+pub mod energy;
 pub mod error;
 pub mod geometry;
 pub mod lattice;
+pub mod linalg;
 pub mod path;
 pub mod spins;
+pub mod registry;
 pub mod units;

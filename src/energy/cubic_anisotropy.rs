@@ -1,0 +1,175 @@
+//! Cubic anisotropy.
+//!
+//! ```text
+//! E = Σ_i K (α₁²α₂² + α₂²α₃² + α₃²α₁²)        α_k = m·e_k;  K > 0: the cube edges are easy,  K < 0: its diagonals
+//! ```
+
+use super::EnergyTerm;
+use super::blocks::{Block, Blocks, multiply};
+use super::components::{Components, ComponentsMut};
+use super::spec::{Medium, TermBuilder};
+use crate::error::{Error, Result};
+use crate::geometry::{Direction, Vector, vector};
+use crate::lattice::Selection;
+use crate::registry::Described;
+use crate::units::SiteEnergy;
+use serde::Deserialize;
+use std::ops::Range;
+
+/// `{"K": "48 kJ/m^3", "axes": [[1, 0, 0], [0, 1, 0]]}`.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(non_snake_case)]
+pub struct CubicAnisotropySpec {
+    /// Energy per site or per volume.
+    pub K: SiteEnergy,
+    /// Two cube axes at right angles, the third follows; x and y if absent.
+    #[serde(default)]
+    pub axes: Option<[Direction; 2]>,
+    /// Only these sites; all if absent.
+    #[serde(default)]
+    pub sites: Option<Selection>,
+}
+
+impl Described for CubicAnisotropySpec {
+    const NAME: &'static str = "cubic_anisotropy";
+    const SUMMARY: &'static str = "cubic anisotropy K (α₁²α₂² + α₂²α₃² + α₃²α₁²)";
+    const EXAMPLE: &'static str = r#"{"cubic_anisotropy": {"K": "0.2 meV", "axes": [[1, 1, 0], [-1, 1, 0]]}}"#;
+}
+
+impl TermBuilder for CubicAnisotropySpec {
+    fn build(&self, medium: &Medium) -> Result<Box<dyn EnergyTerm>> {
+        let k = medium.site_energy_mev(self.K).map_err(|e| e.within("K"))?;
+        let [a, b] = self.axes.unwrap_or([Direction::X, Direction::Y]).map(|d| d.vector());
+        if vector::dot(a, b).abs() > 1e-6 {
+            return Err(Error::invalid("axes[1]", "the two cube axes must be at right angles"));
+        }
+        let third = vector::cross(a, b);
+        let mut term = CubicAnisotropy { axes: [a, vector::cross(third, a), third], k: vec![0.0; medium.chain.sites] };
+        for i in medium.sites(self.sites.as_ref())? {
+            term.k[i] = k;
+        }
+        Ok(Box::new(term))
+    }
+}
+
+/// Constants a site (meV) about three axes at right angles.
+#[derive(Clone, Debug)]
+pub struct CubicAnisotropy {
+    /// Unit vectors e₁, e₂, e₃.
+    pub axes: [Vector; 3],
+    /// K of each site.
+    pub k: Vec<f64>,
+}
+
+impl CubicAnisotropy {
+    fn cosines(&self, m: Vector) -> Vector {
+        self.axes.map(|e| vector::dot(m, e))
+    }
+
+    /// Σ α_i²α_j² over pairs, and for K < 0 counted from the diagonal's ⅓: ⅓ − Σ = ⅙ Σ (α_i² − α_j²)².
+    fn site(k: f64, a: Vector) -> f64 {
+        let [p, q, r] = a.map(|c| c * c);
+        if k >= 0.0 { k * (p * q + q * r + r * p) } else { -k / 6.0 * ((p - q).powi(2) + (q - r).powi(2) + (r - p).powi(2)) }
+    }
+
+    fn slope(&self, i: usize, m: Vector) -> Vector {
+        let a = self.cosines(m);
+        let [p, q, r] = a.map(|c| c * c);
+        let along = [a[0] * (q + r), a[1] * (r + p), a[2] * (p + q)];
+        (0..3).fold([0.0; 3], |g, e| vector::add(g, vector::scale(2.0 * self.k[i] * along[e], self.axes[e])))
+    }
+
+    fn curvature(&self, i: usize, m: Vector) -> Block {
+        let a = self.cosines(m);
+        let mut block = [[0.0; 3]; 3];
+        for e in 0..3 {
+            for f in 0..3 {
+                let others: f64 = (0..3).filter(|&o| o != e).map(|o| a[o] * a[o]).sum();
+                let h = if e == f { 2.0 * others } else { 4.0 * a[e] * a[f] };
+                for r in 0..3 {
+                    for c in 0..3 {
+                        block[r][c] += self.k[i] * h * self.axes[e][r] * self.axes[f][c];
+                    }
+                }
+            }
+        }
+        block
+    }
+}
+
+impl EnergyTerm for CubicAnisotropy {
+    fn name(&self) -> &'static str {
+        CubicAnisotropySpec::NAME
+    }
+
+    fn reference_mev(&self) -> f64 {
+        self.k.iter().map(|k| k.min(0.0) / 3.0).sum()
+    }
+
+    fn add_density(&self, m: Components, density: &mut [f64]) {
+        for i in 0..m.sites() {
+            density[i] += CubicAnisotropy::site(self.k[i], self.cosines(m.get(i)));
+        }
+    }
+
+    fn add_gradient(&self, m: Components, mut g: ComponentsMut, range: Range<usize>) -> f64 {
+        let mut energy = 0.0;
+        for i in range.clone() {
+            if self.k[i] != 0.0 {
+                g.add(i - range.start, self.slope(i, m.get(i)));
+                energy += CubicAnisotropy::site(self.k[i], self.cosines(m.get(i)));
+            }
+        }
+        energy
+    }
+
+    fn add_hessian_product(&self, m: Components, v: Components, mut out: ComponentsMut) {
+        for i in 0..m.sites() {
+            out.add(i, multiply(&self.curvature(i, m.get(i)), v.get(i)));
+        }
+    }
+
+    fn add_blocks(&self, m: Components, blocks: &mut Blocks) {
+        for i in 0..m.sites() {
+            let b = self.curvature(i, m.get(i));
+            for r in 0..3 {
+                blocks.site[i][r] = vector::add(blocks.site[i][r], b[r]);
+            }
+        }
+    }
+
+    fn reach(&self) -> usize {
+        0
+    }
+
+    fn is_quadratic(&self) -> bool {
+        self.k.iter().all(|k| *k == 0.0)
+    }
+
+    fn invariant_about(&self, _: Vector) -> bool {
+        self.k.iter().all(|k| *k == 0.0)
+    }
+
+    fn axes(&self) -> Vec<Vector> {
+        self.axes.to_vec()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_edge_costs_nothing_a_face_diagonal_a_quarter_and_a_body_diagonal_a_third() {
+        let term = |k| CubicAnisotropy { axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], k: vec![k] };
+        let (f, b) = (0.5f64.sqrt(), (1.0f64 / 3.0).sqrt());
+        for k in [2.0, -2.0] {
+            for (m, share) in [([0.0, 1.0, 0.0], 0.0), ([f, f, 0.0], 0.25), ([b, -b, b], 1.0 / 3.0)] {
+                let mut density = [0.0];
+                term(k).add_density(Components::new(&m), &mut density);
+                assert!((term(k).reference_mev() + density[0] - k * share).abs() < 1e-15);
+            }
+        }
+    }
+}

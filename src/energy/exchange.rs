@@ -1,0 +1,244 @@
+//! Heisenberg exchange with any number of neighbour shells.
+//!
+//! ```text
+//! E = − Σ_n Σ_i J_n m_i·m_{i+n}          every bond once; J > 0 ferromagnetic, J < 0 antiferromagnetic
+//!   = − Σ |J| + Σ ½|J| |m_i − sgn(J) m_{i+n}|²
+//! ∂E/∂m_i = |J| (m_i − sgn(J) m_j)       (a multiple of m_i apart, which spheres do not feel)
+//! ```
+//! From a continuum stiffness: J = 2 A S/a, with the cross-section S and the spacing a.
+
+use super::blocks::Blocks;
+use super::components::{Components, ComponentsMut};
+use super::spec::{Medium, TermBuilder};
+use super::{EnergyTerm, fold};
+use crate::error::{Error, Result};
+use crate::geometry::{Vector, vector};
+use crate::lattice::Selection;
+use crate::registry::Described;
+use crate::units::{Energy, ExchangeStiffness, joule_to_mev};
+use serde::Deserialize;
+use std::ops::Range;
+
+/// `{"J": ["10 meV", "-1 meV"]}` or `{"A": "13 pJ/m"}`.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(non_snake_case)]
+pub struct ExchangeSpec {
+    /// Bond energies of the nearest, next … neighbours.
+    #[serde(default)]
+    pub J: Option<Vec<Energy>>,
+    /// Exchange stiffness of a continuum.
+    #[serde(default)]
+    pub A: Option<ExchangeStiffness>,
+    /// Only these bonds (of every shell given); all if absent.
+    #[serde(default)]
+    pub bonds: Option<Selection>,
+}
+
+impl Described for ExchangeSpec {
+    const NAME: &'static str = "exchange";
+    const SUMMARY: &'static str = "Heisenberg exchange −J m_i·m_j of any neighbour shells, or a stiffness A";
+    const EXAMPLE: &'static str = r#"{"exchange": {"J": ["10 meV", "-1 meV"]}}"#;
+}
+
+impl TermBuilder for ExchangeSpec {
+    fn build(&self, medium: &Medium) -> Result<Box<dyn EnergyTerm>> {
+        let shells: Vec<f64> = match (&self.J, self.A) {
+            (Some(j), None) if !j.is_empty() => j.iter().map(|e| e.0).collect(),
+            (Some(_), None) => return Err(Error::invalid("J", "the list is empty: give one energy a neighbour shell, [\"10 meV\"]")),
+            (None, Some(a)) => vec![medium.bond_from_stiffness_mev(a).map_err(|e| e.within("A"))?],
+            (None, None) => return Err(Error::invalid("", "an exchange needs \"J\" (bond energies) or \"A\" (a stiffness)")),
+            (Some(_), Some(_)) => return Err(Error::invalid("A", "\"J\" and \"A\" are two ways to say the same: keep one")),
+        };
+        let mut term = Exchange { shells: Vec::new() };
+        for (k, j) in shells.iter().enumerate() {
+            let place = if self.A.is_some() { "A".to_string() } else { format!("J[{k}]") };
+            let bonds = medium.bonds(k + 1, self.bonds.as_ref(), &place)?;
+            let mut values = vec![0.0; medium.chain.sites];
+            for i in bonds {
+                values[i] = *j;
+            }
+            term.shells.push(values);
+        }
+        Ok(Box::new(term))
+    }
+}
+
+/// J of a bond from a stiffness: 2 A S/a in meV (A in J/m, S in nm², a in nm).
+pub(super) fn bond_energy_mev(stiffness: ExchangeStiffness, section_nm2: f64, spacing_nm: f64) -> f64 {
+    joule_to_mev(2.0 * stiffness.0 * (section_nm2 / spacing_nm) * 1e-9)
+}
+
+/// Exchange energies: `shells[n − 1][i]` (meV) joins sites i and i + n, 0 where there is no bond.
+#[derive(Clone, Debug)]
+pub struct Exchange {
+    /// One list a shell, one entry a site.
+    pub shells: Vec<Vec<f64>>,
+}
+
+/// One shell's coefficients and fields on the run of sites `i` whose partners `i − n` and `i + n` need no wrapping.
+struct Run<'a> {
+    n: usize,
+    j: &'a [f64],
+    m: Components<'a>,
+}
+
+impl Run<'_> {
+    /// Adds the gradient on sites lo … hi; returns the energy of the bonds that start there.
+    #[inline]
+    fn add(&self, lo: usize, hi: usize, gx: &mut [f64], gy: &mut [f64], gz: &mut [f64]) -> f64 {
+        let (n, m, len) = (self.n, self.m, hi - lo);
+        let (jp, jm) = (&self.j[lo..hi], &self.j[lo - n..hi - n]);
+        let (x0, xp, xm) = (&m.x[lo..hi], &m.x[lo + n..hi + n], &m.x[lo - n..hi - n]);
+        let (y0, yp, ym) = (&m.y[lo..hi], &m.y[lo + n..hi + n], &m.y[lo - n..hi - n]);
+        let (z0, zp, zm) = (&m.z[lo..hi], &m.z[lo + n..hi + n], &m.z[lo - n..hi - n]);
+        let (gx, gy, gz) = (&mut gx[..len], &mut gy[..len], &mut gz[..len]);
+        let mut lanes = [0.0; 8];
+        let mut at = |k: usize, lane: &mut f64| {
+            let (ap, am) = (jp[k].abs(), jm[k].abs());
+            let (sp, sm) = (1f64.copysign(jp[k]), 1f64.copysign(jm[k]));
+            let (dx, dy, dz) = (x0[k] - sp * xp[k], y0[k] - sp * yp[k], z0[k] - sp * zp[k]);
+            *lane += ap * (dx * dx + dy * dy + dz * dz);
+            gx[k] += ap * dx + am * (x0[k] - sm * xm[k]);
+            gy[k] += ap * dy + am * (y0[k] - sm * ym[k]);
+            gz[k] += ap * dz + am * (z0[k] - sm * zm[k]);
+        };
+        let whole = len - len % 8;
+        for k in (0..whole).step_by(8) {
+            for (l, lane) in lanes.iter_mut().enumerate() {
+                at(k + l, lane);
+            }
+        }
+        let mut rest = 0.0;
+        for k in whole..len {
+            at(k, &mut rest);
+        }
+        0.5 * (fold(lanes) + rest)
+    }
+}
+
+impl Exchange {
+    /// m_i − sgn(J) m_j.
+    fn deviation(m: &Components, j: f64, a: usize, b: usize) -> Vector {
+        let s = 1f64.copysign(j);
+        vector::sub(m.get(a), vector::scale(s, m.get(b)))
+    }
+
+    /// Gradient and energy of one site near an end, where partners wrap or are missing.
+    fn edge(j: &[f64], n: usize, m: &Components, i: usize) -> (Vector, f64) {
+        let sites = j.len();
+        let (next, previous) = ((i + n) % sites, (i + sites - n) % sites);
+        let (mut g, mut e) = ([0.0; 3], 0.0);
+        if j[i] != 0.0 {
+            let d = Exchange::deviation(m, j[i], i, next);
+            e = 0.5 * j[i].abs() * vector::dot(d, d);
+            g = vector::scale(j[i].abs(), d);
+        }
+        if j[previous] != 0.0 {
+            let d = Exchange::deviation(m, j[previous], i, previous);
+            g = vector::add(g, vector::scale(j[previous].abs(), d));
+        }
+        (g, e)
+    }
+}
+
+impl EnergyTerm for Exchange {
+    fn name(&self) -> &'static str {
+        ExchangeSpec::NAME
+    }
+
+    fn reference_mev(&self) -> f64 {
+        -self.shells.iter().flatten().map(|j| j.abs()).sum::<f64>()
+    }
+
+    fn add_density(&self, m: Components, density: &mut [f64]) {
+        for (k, j) in self.shells.iter().enumerate() {
+            let (n, sites) = (k + 1, j.len());
+            for i in 0..sites {
+                if j[i] != 0.0 {
+                    let d = Exchange::deviation(&m, j[i], i, (i + n) % sites);
+                    density[i] += 0.5 * j[i].abs() * vector::dot(d, d);
+                }
+            }
+        }
+    }
+
+    fn add_gradient(&self, m: Components, mut g: ComponentsMut, range: Range<usize>) -> f64 {
+        let (first, last) = (range.start, range.end);
+        let mut energy = 0.0;
+        for (k, j) in self.shells.iter().enumerate() {
+            let (n, sites) = (k + 1, j.len());
+            let lo = first.max(n).min(last);
+            let hi = last.min(sites.saturating_sub(n)).max(lo);
+            for i in (first..lo).chain(hi..last) {
+                let (v, e) = Exchange::edge(j, n, &m, i);
+                g.add(i - first, v);
+                energy += e;
+            }
+            if hi > lo {
+                let g = g.reborrow();
+                energy += Run { n, j, m }.add(lo, hi, &mut g.x[lo - first..], &mut g.y[lo - first..], &mut g.z[lo - first..]);
+            }
+        }
+        energy
+    }
+
+    fn add_hessian_product(&self, _: Components, v: Components, mut out: ComponentsMut) {
+        for (k, j) in self.shells.iter().enumerate() {
+            let (n, sites) = (k + 1, j.len());
+            for i in 0..sites {
+                if j[i] != 0.0 {
+                    let next = (i + n) % sites;
+                    let d = vector::scale(j[i].abs(), Exchange::deviation(&v, j[i], i, next));
+                    out.add(i, d);
+                    out.add(next, vector::scale(-1f64.copysign(j[i]), d));
+                }
+            }
+        }
+    }
+
+    fn add_blocks(&self, _: Components, blocks: &mut Blocks) {
+        for (k, j) in self.shells.iter().enumerate() {
+            let (n, sites) = (k + 1, j.len());
+            for i in 0..sites {
+                if j[i] != 0.0 {
+                    blocks.add_isotropic(i, j[i].abs());
+                    blocks.add_isotropic((i + n) % sites, j[i].abs());
+                    for c in 0..3 {
+                        blocks.bond[k][i][c][c] -= j[i];
+                    }
+                }
+            }
+        }
+    }
+
+    fn reach(&self) -> usize {
+        self.shells.len()
+    }
+
+    fn invariant_about(&self, _: Vector) -> bool {
+        true
+    }
+
+    fn axes(&self) -> Vec<Vector> {
+        Vec::new()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_spins_at_right_angles_cost_the_bond_energy_and_an_antiferromagnet_prefers_opposite_ones() {
+        let m = [1.0, 0.0, 0.0, 1.0, 0.0, 0.0];
+        let term = Exchange { shells: vec![vec![3.0, 0.0]] };
+        let mut density = [0.0; 2];
+        term.add_density(Components::new(&m), &mut density);
+        assert_eq!((term.reference_mev(), density), (-3.0, [3.0, 0.0]));
+        let opposite = [0.0, 0.0, 0.0, 0.0, 1.0, -1.0];
+        let mut density = [0.0; 2];
+        Exchange { shells: vec![vec![-3.0, 0.0]] }.add_density(Components::new(&opposite), &mut density);
+        assert_eq!(density, [0.0; 2]);
+    }
+}

@@ -1,0 +1,227 @@
+//! The sum of the terms, on a chain.
+
+use super::components::{Components, ComponentsMut, split};
+use super::{Blocks, EnergyTerm, pairwise_sum};
+use crate::error::Result;
+use crate::geometry::{Vector, vector};
+use crate::lattice::Chain;
+use rayon::prelude::*;
+
+/// Sites handled at a time: their spins, gradient and coefficients stay in the first cache.
+const TILE: usize = 512;
+/// From this many sites on, the tiles of one image are shared among threads.
+const LONG: usize = 32 * 1024;
+
+/// The energy of a chain: named terms, their sum, its derivatives and its symmetry.
+#[derive(Debug)]
+pub struct Hamiltonian {
+    sites: usize,
+    periodic: bool,
+    frozen: Vec<bool>,
+    terms: Vec<Box<dyn EnergyTerm>>,
+    blocks: Blocks,
+    reach: usize,
+    stiffness: f64,
+    axes: Vec<Vector>,
+}
+
+impl Hamiltonian {
+    /// The sum of `terms` on `chain`.
+    pub fn new(chain: &Chain, terms: Vec<Box<dyn EnergyTerm>>) -> Result<Hamiltonian> {
+        chain.validate()?;
+        let mut frozen = vec![false; chain.sites];
+        for f in &chain.frozen {
+            for i in f.sites.indices(chain.sites, "site")? {
+                frozen[i] = true;
+            }
+        }
+        let reach = terms.iter().map(|t| t.reach()).max().unwrap_or(0).min(chain.sites - 1);
+        let axes = symmetry_axes(&terms);
+        let mut h = Hamiltonian { sites: chain.sites, periodic: chain.periodic, frozen, terms, blocks: Blocks::zeros(0, 0), reach, stiffness: 0.0, axes };
+        h.blocks = h.blocks_of(|t| t.is_quadratic(), Components::new(&vec![0.0; 3 * h.sites]));
+        let diagonal = |b: &super::blocks::Block| b[0][0].abs() + b[1][1].abs() + b[2][2].abs();
+        h.stiffness = h.blocks.site.iter().map(diagonal).fold(f64::MIN_POSITIVE, f64::max);
+        Ok(h)
+    }
+
+    fn blocks_of(&self, wanted: impl Fn(&dyn EnergyTerm) -> bool, m: Components) -> Blocks {
+        let mut blocks = Blocks::zeros(self.sites, self.terms.iter().map(|t| t.reach()).max().unwrap_or(0));
+        for t in self.terms.iter().filter(|t| wanted(t.as_ref())) {
+            t.add_blocks(m, &mut blocks);
+        }
+        blocks.bond.truncate(self.reach);
+        blocks
+    }
+
+    /// Number of sites.
+    pub fn sites(&self) -> usize {
+        self.sites
+    }
+
+    /// A ring?
+    pub fn periodic(&self) -> bool {
+        self.periodic
+    }
+
+    /// How many sites away the furthest partner is.
+    pub fn reach(&self) -> usize {
+        self.reach
+    }
+
+    /// Whether site `i` never moves.
+    pub fn is_frozen(&self, i: usize) -> bool {
+        self.frozen[i]
+    }
+
+    /// Whether any site never moves.
+    pub fn has_frozen(&self) -> bool {
+        self.frozen.contains(&true)
+    }
+
+    /// The terms, in the order of the config.
+    pub fn terms(&self) -> &[Box<dyn EnergyTerm>] {
+        &self.terms
+    }
+
+    /// The largest diagonal of the Hessian (meV): the stiffness given to frozen sites.
+    pub fn stiffness_mev(&self) -> f64 {
+        self.stiffness
+    }
+
+    /// Unit vectors about which a rotation of all spins leaves every term as it is: none, one, or x, y and z.
+    pub fn symmetry_axes(&self) -> &[Vector] {
+        &self.axes
+    }
+
+    /// The symmetry axes that also leave the frozen spins of `m` as they are.
+    pub fn symmetry_axes_at(&self, m: &[f64]) -> Vec<Vector> {
+        let m = Components::new(m);
+        let frozen: Vec<Vector> = (0..self.sites).filter(|&i| self.frozen[i]).map(|i| m.get(i)).collect();
+        let fixed = |axis: &Vector| frozen.iter().all(|s| vector::norm(vector::cross(*axis, *s)) < 1e-12);
+        if self.axes.len() == 3 && !frozen.is_empty() {
+            return frozen.first().copied().filter(|s| fixed(s)).into_iter().collect();
+        }
+        self.axes.iter().copied().filter(fixed).collect()
+    }
+
+    /// Energy of the terms' reference states (meV): E = reference + energy above it.
+    pub fn reference_mev(&self) -> f64 {
+        self.terms.iter().map(|t| t.reference_mev()).sum()
+    }
+
+    /// Energy above the reference (meV), and the Euclidean gradient ∂E/∂m (meV) in `g`.
+    pub fn energy_gradient(&self, m: &[f64], g: &mut [f64]) -> f64 {
+        let m = Components::new(m);
+        let tile = |(first, mut g): (usize, ComponentsMut)| -> f64 {
+            let range = first..first + g.x.len();
+            g.x.fill(0.0);
+            g.y.fill(0.0);
+            g.z.fill(0.0);
+            self.terms.iter().map(|t| t.add_gradient(m, g.reborrow(), range.clone())).sum()
+        };
+        let tiles = split(g, TILE);
+        let sums: Vec<f64> =
+            if self.sites >= LONG { tiles.into_par_iter().map(tile).collect() } else { tiles.into_iter().map(tile).collect() };
+        pairwise_sum(&sums)
+    }
+
+    /// −∂E/∂m on the tangent planes (meV), zero on frozen sites, from the Euclidean gradient.
+    pub fn force(&self, m: &[f64], g: &[f64], force: &mut [f64]) {
+        for (f, g) in force.iter_mut().zip(g) {
+            *f = -g;
+        }
+        super::project(m, force);
+        self.hold_frozen(force);
+    }
+
+    /// Clears a vector field on the frozen sites.
+    pub fn hold_frozen(&self, v: &mut [f64]) {
+        if self.has_frozen() {
+            let mut v = ComponentsMut::new(v);
+            for i in (0..self.sites).filter(|&i| self.frozen[i]) {
+                v.set(i, [0.0; 3]);
+            }
+        }
+    }
+
+    /// Energy density of every site above the reference (meV).
+    pub fn density(&self, m: &[f64]) -> Vec<f64> {
+        let mut density = vec![0.0; self.sites];
+        for t in &self.terms {
+            t.add_density(Components::new(m), &mut density);
+        }
+        density
+    }
+
+    /// Total energy by name of term (meV); terms of one name are added up.
+    pub fn energies_mev(&self, m: &[f64]) -> Vec<(&'static str, f64)> {
+        let mut sums: Vec<(&'static str, f64)> = Vec::new();
+        for t in &self.terms {
+            let mut density = vec![0.0; self.sites];
+            t.add_density(Components::new(m), &mut density);
+            let e = t.reference_mev() + pairwise_sum(&density);
+            match sums.iter_mut().find(|(name, _)| *name == t.name()) {
+                Some((_, sum)) => *sum += e,
+                None => sums.push((t.name(), e)),
+            }
+        }
+        sums
+    }
+
+    /// Total energy (meV).
+    pub fn energy_mev(&self, m: &[f64]) -> f64 {
+        self.reference_mev() + pairwise_sum(&self.density(m))
+    }
+
+    /// E(a) − E(b) (meV), summed from differences of densities.
+    pub fn difference_mev(&self, a: &[f64], b: &[f64]) -> f64 {
+        let mut d = self.density(a);
+        for (d, e) in d.iter_mut().zip(self.density(b)) {
+            *d -= e;
+        }
+        pairwise_sum(&d)
+    }
+
+    /// H v of the Riemannian Hessian (meV) for a tangent field v: P (A v) − (m·g) v.
+    pub fn hessian_product(&self, m: &[f64], g: &[f64], v: &[f64], out: &mut [f64]) {
+        out.fill(0.0);
+        let (mc, gc, vc) = (Components::new(m), Components::new(g), Components::new(v));
+        for t in &self.terms {
+            t.add_hessian_product(mc, vc, ComponentsMut::new(out));
+        }
+        let mut o = ComponentsMut::new(out);
+        for i in 0..self.sites {
+            o.add(i, vector::scale(-vector::dot(mc.get(i), gc.get(i)), vc.get(i)));
+        }
+        super::project(m, out);
+        self.hold_frozen(out);
+    }
+
+    /// Hessian blocks that do not depend on the configuration (all of them, if every term is quadratic).
+    pub fn constant_blocks(&self) -> &Blocks {
+        &self.blocks
+    }
+
+    /// All Hessian blocks at `m`, or `None` where they are the constant ones.
+    pub fn varying_blocks(&self, m: Components) -> Option<Blocks> {
+        if self.terms.iter().all(|t| t.is_quadratic()) {
+            return None;
+        }
+        let mut blocks = self.blocks.clone();
+        for t in self.terms.iter().filter(|t| !t.is_quadratic()) {
+            t.add_blocks(m, &mut blocks);
+        }
+        Some(blocks)
+    }
+}
+
+/// Axes of global rotations under which all terms are invariant.
+fn symmetry_axes(terms: &[Box<dyn EnergyTerm>]) -> Vec<Vector> {
+    let invariant = |axis: &Vector| terms.iter().all(|t| t.invariant_about(*axis));
+    let cartesian = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let tilted = [0.6, 0.0, 0.8];
+    if cartesian.iter().all(invariant) && invariant(&tilted) {
+        return cartesian.to_vec();
+    }
+    terms.iter().flat_map(|t| t.axes()).find(|axis| invariant(axis)).into_iter().collect()
+}

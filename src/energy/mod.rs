@@ -1,0 +1,96 @@
+//! What a configuration costs: energy terms, their gradients and Hessians, and the sum of them.
+//!
+//! ```text
+//! E = − Σ J_ij m_i·m_j + Σ D d̂·(m_i × m_j) − Σ K (m_i·e)² − Σ K₂ (m_i·e)⁴ + Σ K_c (α₁²α₂² + …) − Σ μ_i m_i·B
+//! ```
+//! Every bond is counted once; energies are in meV, moments in μ_B, fields in T. One file a term; to add a term, write
+//! its file and name it in [`TermSpec`].
+
+mod anisotropy;
+mod blocks;
+mod components;
+mod cubic_anisotropy;
+mod dmi;
+mod exchange;
+mod hamiltonian;
+mod hessian;
+mod spec;
+mod zeeman;
+
+pub use anisotropy::{Anisotropy, AnisotropySpec};
+pub use blocks::Blocks;
+pub use components::{Components, ComponentsMut, project, split};
+pub use cubic_anisotropy::{CubicAnisotropy, CubicAnisotropySpec};
+pub use dmi::{Dmi, DmiSpec};
+pub use exchange::{Exchange, ExchangeSpec};
+pub use hamiltonian::Hamiltonian;
+pub use hessian::{TangentBasis, assemble};
+pub use spec::{Medium, TermBuilder, TermSpec};
+pub use zeeman::{Zeeman, ZeemanSpec};
+
+use crate::geometry::Vector;
+use std::fmt::Debug;
+use std::ops::Range;
+
+/// One contribution to the energy of a chain of N classical unit spins.
+///
+/// A term counts its energy from a reference state of its own: E = [`reference_mev`](Self::reference_mev) + Σ density.
+/// Densities are written as squares of deviations (½J|m_i − m_j|² for −J m_i·m_j), so that small energies of long chains are
+/// not differences of large ones.
+pub trait EnergyTerm: Debug + Send + Sync {
+    /// The name it has in configs and results.
+    fn name(&self) -> &'static str;
+
+    /// Energy of the reference state (meV), a constant.
+    fn reference_mev(&self) -> f64;
+
+    /// Adds each site's share of the energy above the reference (meV); a bond's energy belongs to its lower site.
+    fn add_density(&self, m: Components, density: &mut [f64]);
+
+    /// Adds ∂E/∂m (meV) on the sites of `range` to `g` (which covers just them), as if the components were free.
+    /// Returns the energy density summed over `range`.
+    fn add_gradient(&self, m: Components, g: ComponentsMut, range: Range<usize>) -> f64;
+
+    /// Adds (∂²E/∂m∂m) v (meV) to `out`.
+    fn add_hessian_product(&self, m: Components, v: Components, out: ComponentsMut);
+
+    /// Adds the 3 × 3 blocks of ∂²E/∂m∂m (meV).
+    fn add_blocks(&self, m: Components, blocks: &mut Blocks);
+
+    /// How many sites away the furthest partner is (0: on-site).
+    fn reach(&self) -> usize;
+
+    /// Whether ∂²E/∂m∂m does not depend on m.
+    fn is_quadratic(&self) -> bool {
+        true
+    }
+
+    /// Whether a rotation of all spins about `axis` leaves the energy as it is.
+    fn invariant_about(&self, axis: Vector) -> bool;
+
+    /// Axes that the term itself singles out: candidates for a symmetry axis.
+    fn axes(&self) -> Vec<Vector>;
+}
+
+/// Sum with few rounding errors, the same on every machine: eight lanes, halves of halves.
+pub(crate) fn pairwise_sum(values: &[f64]) -> f64 {
+    if values.len() > 256 {
+        let half = (values.len() / 2).next_multiple_of(8);
+        return pairwise_sum(&values[..half]) + pairwise_sum(&values[half..]);
+    }
+    let mut lanes = [0.0; 8];
+    let chunks = values.chunks_exact(8);
+    let rest: f64 = chunks.remainder().iter().sum();
+    for c in chunks {
+        for l in 0..8 {
+            lanes[l] += c[l];
+        }
+    }
+    fold(lanes) + rest
+}
+
+/// The sum of eight lanes, in a fixed order.
+#[inline]
+pub(crate) fn fold(a: [f64; 8]) -> f64 {
+    ((a[0] + a[4]) + (a[1] + a[5])) + ((a[2] + a[6]) + (a[3] + a[7]))
+}

@@ -1,0 +1,130 @@
+//! Moments in a field.
+//!
+//! ```text
+//! E = − Σ_i μ_i m_i·B  =  − Σ μ|B| + Σ ½ μ|B| |m_i − B̂|²
+//! ```
+
+use super::EnergyTerm;
+use super::blocks::Blocks;
+use super::components::{Components, ComponentsMut};
+use super::spec::{Medium, TermBuilder};
+use crate::error::Result;
+use crate::geometry::{Vector, vector};
+use crate::lattice::Selection;
+use crate::registry::Described;
+use crate::units::{FluxDensity, MU_B_MEV_PER_T};
+use serde::Deserialize;
+use std::ops::Range;
+
+/// `{"B": ["0 T", "0 T", "-0.1 T"]}`.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(non_snake_case)]
+pub struct ZeemanSpec {
+    /// The field's components.
+    pub B: [FluxDensity; 3],
+    /// Only these sites; all if absent.
+    #[serde(default)]
+    pub sites: Option<Selection>,
+}
+
+impl Described for ZeemanSpec {
+    const NAME: &'static str = "zeeman";
+    const SUMMARY: &'static str = "energy −μ m·B of the moments in a field";
+    const EXAMPLE: &'static str = r#"{"zeeman": {"B": ["0 T", "0 T", "-50 mT"]}}"#;
+}
+
+impl TermBuilder for ZeemanSpec {
+    fn build(&self, medium: &Medium) -> Result<Box<dyn EnergyTerm>> {
+        let field = self.B.map(|b| b.0);
+        let strength = vector::norm(field);
+        let direction = vector::unit(field).unwrap_or([0.0, 0.0, 1.0]);
+        let moment = medium.moment_mu_b()?;
+        let mut term = Zeeman { direction, b: vec![0.0; medium.chain.sites] };
+        for i in medium.sites(self.sites.as_ref())? {
+            term.b[i] = moment * MU_B_MEV_PER_T * strength;
+        }
+        Ok(Box::new(term))
+    }
+}
+
+/// Field energies μ|B| a site (meV) along one direction.
+#[derive(Clone, Debug)]
+pub struct Zeeman {
+    /// Unit vector B̂.
+    pub direction: Vector,
+    /// μ|B| of each site, not negative.
+    pub b: Vec<f64>,
+}
+
+impl EnergyTerm for Zeeman {
+    fn name(&self) -> &'static str {
+        ZeemanSpec::NAME
+    }
+
+    fn reference_mev(&self) -> f64 {
+        -self.b.iter().sum::<f64>()
+    }
+
+    fn add_density(&self, m: Components, density: &mut [f64]) {
+        for i in 0..m.sites() {
+            let d = vector::sub(m.get(i), self.direction);
+            density[i] += 0.5 * self.b[i] * vector::dot(d, d);
+        }
+    }
+
+    fn add_gradient(&self, m: Components, g: ComponentsMut, range: Range<usize>) -> f64 {
+        let [ex, ey, ez] = self.direction;
+        let (lo, hi, len) = (range.start, range.end, range.len());
+        let (x, y, z, b) = (&m.x[lo..hi], &m.y[lo..hi], &m.z[lo..hi], &self.b[lo..hi]);
+        let (gx, gy, gz) = (&mut g.x[..len], &mut g.y[..len], &mut g.z[..len]);
+        let mut lanes = [0.0; 8];
+        let mut at = |i: usize, lane: &mut f64| {
+            let (dx, dy, dz) = (x[i] - ex, y[i] - ey, z[i] - ez);
+            *lane += b[i] * (dx * dx + dy * dy + dz * dz);
+            gx[i] -= b[i] * ex;
+            gy[i] -= b[i] * ey;
+            gz[i] -= b[i] * ez;
+        };
+        let whole = len - len % 8;
+        for i in (0..whole).step_by(8) {
+            for (l, lane) in lanes.iter_mut().enumerate() {
+                at(i + l, lane);
+            }
+        }
+        let mut rest = 0.0;
+        for i in whole..len {
+            at(i, &mut rest);
+        }
+        0.5 * (super::fold(lanes) + rest)
+    }
+
+    fn add_hessian_product(&self, _: Components, _: Components, _: ComponentsMut) {}
+
+    fn add_blocks(&self, _: Components, _: &mut Blocks) {}
+
+    fn reach(&self) -> usize {
+        0
+    }
+
+    fn invariant_about(&self, axis: Vector) -> bool {
+        self.b.iter().all(|b| *b == 0.0) || vector::norm(vector::cross(axis, self.direction)) < 1e-14
+    }
+
+    fn axes(&self) -> Vec<Vector> {
+        vec![self.direction]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_moment_along_the_field_is_the_reference_and_against_it_costs_twice_mu_b() {
+        let term = Zeeman { direction: [0.0, 0.0, 1.0], b: vec![3.0, 3.0] };
+        let mut density = [0.0; 2];
+        term.add_density(Components::new(&[0.0, 0.0, 0.0, 0.0, 1.0, -1.0]), &mut density);
+        assert_eq!((term.reference_mev(), density), (-6.0, [0.0, 6.0]));
+    }
+}
