@@ -6,3 +6,4 @@ pub mod lattice;
 pub mod path;
 pub mod spins;
 pub mod units;
+pub mod words;
