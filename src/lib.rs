@@ -9,3 +9,4 @@ pub mod path;
 pub mod spins;
 pub mod registry;
 pub mod units;
+pub mod words;
