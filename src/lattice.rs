@@ -80,7 +80,10 @@ impl Chain {
     /// Sites, spacing and frozen sites that make sense.
     pub fn validate(&self) -> Result<()> {
         if self.sites == 0 || self.sites > MAX_SITES {
-            return Err(Error::invalid("sites", format!("found {}, but a chain has 1 to {MAX_SITES} sites", self.sites)));
+            return Err(Error::invalid(
+                "sites",
+                format!("found {}, but a chain has 1 to {MAX_SITES} sites", self.sites),
+            ));
         }
         if self.periodic && self.sites < 3 {
             return Err(Error::invalid("periodic", format!("a ring needs at least 3 sites, found {}", self.sites)));
@@ -99,7 +102,11 @@ impl Chain {
 }
 
 fn positive(length: Length, place: &str) -> Result<()> {
-    if length.0 > 0.0 { Ok(()) } else { Err(Error::invalid(place, format!("found {} nm, but a length is greater than 0", length.0))) }
+    if length.0 > 0.0 {
+        Ok(())
+    } else {
+        Err(Error::invalid(place, format!("found {} nm, but a length is greater than 0", length.0)))
+    }
 }
 
 /// Some sites or bonds: a list, or a range with both ends.
@@ -137,7 +144,10 @@ impl Selection {
                     return Err(out_of_range("to".into(), *to, count, what));
                 }
                 if from > to {
-                    return Err(Error::invalid("from", format!("the range from {from} to {to} is empty: exchange the two")));
+                    return Err(Error::invalid(
+                        "from",
+                        format!("the range from {from} to {to} is empty: exchange the two"),
+                    ));
                 }
                 Ok((*from..=*to).collect())
             }

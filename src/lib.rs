@@ -6,7 +6,7 @@ pub mod geometry;
 pub mod lattice;
 pub mod linalg;
 pub mod path;
-pub mod spins;
 pub mod registry;
+pub mod spins;
 pub mod units;
 pub mod words;

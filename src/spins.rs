@@ -42,6 +42,12 @@ impl Spins {
         Spins::from_vectors(&vectors)
     }
 
+    /// From component-major numbers that are unit vectors already.
+    pub(crate) fn from_unit_components(xyz: &[f64]) -> Spins {
+        let n = xyz.len() / 3;
+        Spins { m: Array2::from_shape_fn((3, n), |(c, i)| xyz[c * n + i]) }
+    }
+
     /// Number of sites.
     pub fn sites(&self) -> usize {
         self.m.ncols()

@@ -44,7 +44,11 @@ impl TermBuilder for AnisotropySpec {
     fn build(&self, medium: &Medium) -> Result<Box<dyn EnergyTerm>> {
         let k = medium.site_energy_mev(self.K).map_err(|e| e.within("K"))?;
         let k2 = self.K2.map_or(Ok(0.0), |k2| medium.site_energy_mev(k2)).map_err(|e| e.within("K2"))?;
-        let mut term = Anisotropy { axis: self.axis.vector(), k: vec![0.0; medium.chain.sites], k2: vec![0.0; medium.chain.sites] };
+        let mut term = Anisotropy {
+            axis: self.axis.vector(),
+            k: vec![0.0; medium.chain.sites],
+            k2: vec![0.0; medium.chain.sites],
+        };
         for i in medium.sites(self.sites.as_ref())? {
             (term.k[i], term.k2[i]) = (k, k2);
         }
@@ -160,7 +164,12 @@ mod tests {
     fn an_easy_axis_costs_k_sine_squared_and_a_hard_axis_k_cosine_squared() {
         let (s, c) = libm::sincos(0.3);
         let m = [s, 0.0, c];
-        for (k, k2, expected) in [(2.0, 0.0, 2.0 * s * s), (-2.0, 0.0, 2.0 * c * c), (0.0, 3.0, 3.0 * (1.0 - c.powi(4))), (0.0, -3.0, 3.0 * c.powi(4))] {
+        for (k, k2, expected) in [
+            (2.0, 0.0, 2.0 * s * s),
+            (-2.0, 0.0, 2.0 * c * c),
+            (0.0, 3.0, 3.0 * (1.0 - c.powi(4))),
+            (0.0, -3.0, 3.0 * c.powi(4)),
+        ] {
             let term = Anisotropy { axis: [0.0, 0.0, 1.0], k: vec![k], k2: vec![k2] };
             let mut density = [0.0];
             term.add_density(Components::new(&m), &mut density);

@@ -43,12 +43,6 @@ pub fn multiply(a: &Block, v: Vector) -> Vector {
     [0, 1, 2].map(|r| a[r][0] * v[0] + a[r][1] * v[1] + a[r][2] * v[2])
 }
 
-/// Aᵀ v.
-#[inline]
-pub fn multiply_transposed(a: &Block, v: Vector) -> Vector {
-    [0, 1, 2].map(|c| a[0][c] * v[0] + a[1][c] * v[1] + a[2][c] * v[2])
-}
-
 /// The matrix [d]× with vᵀ M w = d·(v × w).
 #[inline]
 pub fn cross_block(d: Vector) -> Block {

@@ -70,7 +70,11 @@ impl CubicAnisotropy {
     /// Σ α_i²α_j² over pairs, and for K < 0 counted from the diagonal's ⅓: ⅓ − Σ = ⅙ Σ (α_i² − α_j²)².
     fn site(k: f64, a: Vector) -> f64 {
         let [p, q, r] = a.map(|c| c * c);
-        if k >= 0.0 { k * (p * q + q * r + r * p) } else { -k / 6.0 * ((p - q).powi(2) + (q - r).powi(2) + (r - p).powi(2)) }
+        if k >= 0.0 {
+            k * (p * q + q * r + r * p)
+        } else {
+            -k / 6.0 * ((p - q).powi(2) + (q - r).powi(2) + (r - p).powi(2))
+        }
     }
 
     fn slope(&self, i: usize, m: Vector) -> Vector {

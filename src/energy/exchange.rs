@@ -15,7 +15,7 @@ use crate::error::{Error, Result};
 use crate::geometry::{Vector, vector};
 use crate::lattice::Selection;
 use crate::registry::Described;
-use crate::units::{Energy, ExchangeStiffness, joule_to_mev};
+use crate::units::{Energy, ExchangeStiffness};
 use serde::Deserialize;
 use std::ops::Range;
 
@@ -45,10 +45,16 @@ impl TermBuilder for ExchangeSpec {
     fn build(&self, medium: &Medium) -> Result<Box<dyn EnergyTerm>> {
         let shells: Vec<f64> = match (&self.J, self.A) {
             (Some(j), None) if !j.is_empty() => j.iter().map(|e| e.0).collect(),
-            (Some(_), None) => return Err(Error::invalid("J", "the list is empty: give one energy a neighbour shell, [\"10 meV\"]")),
+            (Some(_), None) => {
+                return Err(Error::invalid("J", "the list is empty: give one energy a neighbour shell, [\"10 meV\"]"));
+            }
             (None, Some(a)) => vec![medium.bond_from_stiffness_mev(a).map_err(|e| e.within("A"))?],
-            (None, None) => return Err(Error::invalid("", "an exchange needs \"J\" (bond energies) or \"A\" (a stiffness)")),
-            (Some(_), Some(_)) => return Err(Error::invalid("A", "\"J\" and \"A\" are two ways to say the same: keep one")),
+            (None, None) => {
+                return Err(Error::invalid("", "an exchange needs \"J\" (bond energies) or \"A\" (a stiffness)"));
+            }
+            (Some(_), Some(_)) => {
+                return Err(Error::invalid("A", "\"J\" and \"A\" are two ways to say the same: keep one"));
+            }
         };
         let mut term = Exchange { shells: Vec::new() };
         for (k, j) in shells.iter().enumerate() {
@@ -62,11 +68,6 @@ impl TermBuilder for ExchangeSpec {
         }
         Ok(Box::new(term))
     }
-}
-
-/// J of a bond from a stiffness: 2 A S/a in meV (A in J/m, S in nm², a in nm).
-pub(super) fn bond_energy_mev(stiffness: ExchangeStiffness, section_nm2: f64, spacing_nm: f64) -> f64 {
-    joule_to_mev(2.0 * stiffness.0 * (section_nm2 / spacing_nm) * 1e-9)
 }
 
 /// Exchange energies: `shells[n − 1][i]` (meV) joins sites i and i + n, 0 where there is no bond.
@@ -177,7 +178,8 @@ impl EnergyTerm for Exchange {
             }
             if hi > lo {
                 let g = g.reborrow();
-                energy += Run { n, j, m }.add(lo, hi, &mut g.x[lo - first..], &mut g.y[lo - first..], &mut g.z[lo - first..]);
+                energy +=
+                    Run { n, j, m }.add(lo, hi, &mut g.x[lo - first..], &mut g.y[lo - first..], &mut g.z[lo - first..]);
             }
         }
         energy

@@ -37,7 +37,16 @@ impl Hamiltonian {
         }
         let reach = terms.iter().map(|t| t.reach()).max().unwrap_or(0).min(chain.sites - 1);
         let axes = symmetry_axes(&terms);
-        let mut h = Hamiltonian { sites: chain.sites, periodic: chain.periodic, frozen, terms, blocks: Blocks::zeros(0, 0), reach, stiffness: 0.0, axes };
+        let mut h = Hamiltonian {
+            sites: chain.sites,
+            periodic: chain.periodic,
+            frozen,
+            terms,
+            blocks: Blocks::zeros(0, 0),
+            reach,
+            stiffness: 0.0,
+            axes,
+        };
         h.blocks = h.blocks_of(|t| t.is_quadratic(), Components::new(&vec![0.0; 3 * h.sites]));
         let diagonal = |b: &super::blocks::Block| b[0][0].abs() + b[1][1].abs() + b[2][2].abs();
         h.stiffness = h.blocks.site.iter().map(diagonal).fold(f64::MIN_POSITIVE, f64::max);
@@ -120,8 +129,11 @@ impl Hamiltonian {
             self.terms.iter().map(|t| t.add_gradient(m, g.reborrow(), range.clone())).sum()
         };
         let tiles = split(g, TILE);
-        let sums: Vec<f64> =
-            if self.sites >= LONG { tiles.into_par_iter().map(tile).collect() } else { tiles.into_iter().map(tile).collect() };
+        let sums: Vec<f64> = if self.sites >= LONG {
+            tiles.into_par_iter().map(tile).collect()
+        } else {
+            tiles.into_iter().map(tile).collect()
+        };
         pairwise_sum(&sums)
     }
 

@@ -6,9 +6,9 @@
 //! (Absil, Mahony, Trumpf, LNCS 8085, 361 (2013), doi:10.1007/978-3-642-40020-9_39.) Unknown 2i + a is the component of site i
 //! along its basis vector a; shells 1 … r give the half-bandwidth 2r + 1, and the last r sites of a ring are the rim.
 
+use super::Hamiltonian;
 use super::blocks::{Blocks, multiply};
 use super::components::{Components, ComponentsMut};
-use super::Hamiltonian;
 use crate::geometry::{Vector, tangent_basis, vector};
 use crate::linalg::Banded;
 

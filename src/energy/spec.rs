@@ -5,7 +5,6 @@ use crate::error::{Error, Result};
 use crate::lattice::{Chain, Selection};
 use crate::registry::family;
 use crate::units::{BondEnergy, ExchangeStiffness, Magnetisation, Moment, SiteEnergy};
-use crate::units::{density_to_mev, joule_to_mev, magnetisation_to_mu_b};
 
 family! {
     /// An energy term as written in a config: `{"exchange": {…}}`.
@@ -40,10 +39,11 @@ impl Medium<'_> {
     pub fn moment_mu_b(&self) -> Result<f64> {
         match (self.moment, self.saturation) {
             (Some(m), _) => Ok(m.0),
-            (None, Some(ms)) => Ok(magnetisation_to_mu_b(ms, self.volume_nm3()?)),
-            (None, None) => {
-                Err(Error::invalid("", "a field acts on moments: give the material a \"moment\" (\"2 mu_B\") or \"Ms\" (\"800 kA/m\")"))
-            }
+            (None, Some(ms)) => Ok(ms.in_volume(self.volume_nm3()?).0),
+            (None, None) => Err(Error::invalid(
+                "",
+                "a field acts on moments: give the material a \"moment\" (\"2 mu_B\") or \"Ms\" (\"800 kA/m\")",
+            )),
         }
     }
 
@@ -51,7 +51,7 @@ impl Medium<'_> {
     pub fn site_energy_mev(&self, k: SiteEnergy) -> Result<f64> {
         match k {
             SiteEnergy::PerSite(e) => Ok(e.0),
-            SiteEnergy::PerVolume(density) => Ok(density_to_mev(density, self.volume_nm3()?)),
+            SiteEnergy::PerVolume(density) => Ok(density.in_volume(self.volume_nm3()?).0),
         }
     }
 
@@ -59,14 +59,13 @@ impl Medium<'_> {
     pub fn bond_energy_mev(&self, d: BondEnergy) -> Result<f64> {
         match d {
             BondEnergy::PerBond(e) => Ok(e.0),
-            BondEnergy::PerArea(d) => Ok(joule_to_mev(d.0 * self.section_nm2()? * 1e-18)),
+            BondEnergy::PerArea(d) => Ok(d.over_area(self.section_nm2()?).0),
         }
     }
 
     /// Exchange energy a bond (meV) of a stiffness.
     pub fn bond_from_stiffness_mev(&self, a: ExchangeStiffness) -> Result<f64> {
-        let section = self.section_nm2()?;
-        Ok(super::exchange::bond_energy_mev(a, section, self.spacing_nm()?))
+        Ok(2.0 * a.over_length(self.section_nm2()? / self.spacing_nm()?).0)
     }
 
     /// The chosen sites; all if there is no choice.
@@ -82,7 +81,10 @@ impl Medium<'_> {
         let (n, count) = (self.chain.sites, self.chain.bonds(shell));
         if self.chain.periodic && 2 * shell >= n {
             let most = (n - 1) / 2;
-            return Err(Error::invalid(place, format!("shell {shell} wraps onto itself in a ring of {n} sites: at most {most} shells fit")));
+            return Err(Error::invalid(
+                place,
+                format!("shell {shell} wraps onto itself in a ring of {n} sites: at most {most} shells fit"),
+            ));
         }
         match selection {
             None => Ok((0..count).collect()),
@@ -96,7 +98,8 @@ impl Medium<'_> {
     }
 
     fn section_nm2(&self) -> Result<f64> {
-        let missing = || Error::invalid("", "a continuum quantity needs the lattice's \"cross_section\" ([\"20 nm\", \"5 nm\"])");
+        let missing =
+            || Error::invalid("", "a continuum quantity needs the lattice's \"cross_section\" ([\"20 nm\", \"5 nm\"])");
         self.chain.section_nm2().ok_or_else(missing)
     }
 

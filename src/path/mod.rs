@@ -1,7 +1,17 @@
-//! A path: a row of spin configurations from an initial to a final state, (image, site, xyz).
+//! A path: a row of spin configurations from an initial to a final state.
+//!
+//! Distances are geodesic in the product of spheres, L(a, b) = √Σ_i θ_i² (Bessarab, Uzdin, Jónsson, Comput. Phys.
+//! Commun. 196, 335 (2015), doi:10.1016/j.cpc.2015.07.001); the reaction coordinate is their running sum, in rad.
 
+mod resample;
+
+pub use resample::blend;
+
+use crate::energy::Components;
+use crate::geometry::angle;
 use crate::spins::Spins;
 use ndarray::Array3;
+use rayon::prelude::*;
 
 /// Images along a path. Inside (image, xyz, site), so that an image is one contiguous slab of 3N numbers.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,14 +40,68 @@ impl Path {
         self.m.dim().2
     }
 
+    /// All numbers, image after image.
+    pub fn as_slice(&self) -> &[f64] {
+        self.m.as_slice().expect("made in standard layout")
+    }
+
+    /// All numbers, image after image, to be moved. The caller keeps the vectors at unit length.
+    pub(crate) fn as_mut_slice(&mut self) -> &mut [f64] {
+        self.m.as_slice_mut().expect("made in standard layout")
+    }
+
     /// Image `k`, component-major.
     pub fn image(&self, k: usize) -> &[f64] {
         let n = 3 * self.sites();
-        &self.m.as_slice().expect("standard layout")[k * n..(k + 1) * n]
+        &self.as_slice()[k * n..(k + 1) * n]
+    }
+
+    /// Image `k` as a configuration.
+    pub fn spins(&self, k: usize) -> Spins {
+        Spins::from_unit_components(self.image(k))
     }
 
     /// The spins as (image, site, xyz).
     pub fn to_image_site_xyz(&self) -> Array3<f64> {
-        self.m.clone().permuted_axes([0, 2, 1]).as_standard_layout().to_owned()
+        self.m.clone().permuted_axes([0, 2, 1]).as_standard_layout().into_owned()
     }
+
+    /// Distances between neighbouring images (rad), one fewer than images.
+    pub fn spacings(&self) -> Vec<f64> {
+        (1..self.images()).into_par_iter().map(|k| distance(self.image(k - 1), self.image(k))).collect()
+    }
+
+    /// The largest rotation of any spin between neighbouring images (rad).
+    pub fn largest_rotation(&self) -> f64 {
+        let rotations: Vec<f64> =
+            (1..self.images()).into_par_iter().map(|k| largest_angle(self.image(k - 1), self.image(k))).collect();
+        rotations.into_iter().fold(0.0, f64::max)
+    }
+
+    /// Total length (rad).
+    pub fn length(&self) -> f64 {
+        self.spacings().iter().sum()
+    }
+
+    /// Running length at each image (rad), from 0.
+    pub fn reaction_coordinate(&self) -> Vec<f64> {
+        let mut s = vec![0.0];
+        for l in self.spacings() {
+            s.push(s[s.len() - 1] + l);
+        }
+        s
+    }
+}
+
+/// Geodesic distance √Σθ² of two configurations (rad).
+pub fn distance(a: &[f64], b: &[f64]) -> f64 {
+    let (a, b) = (Components::new(a), Components::new(b));
+    let squares: Vec<f64> = (0..a.sites()).map(|i| angle(a.get(i), b.get(i)).powi(2)).collect();
+    crate::energy::pairwise_sum(&squares).sqrt()
+}
+
+/// The largest angle between spins of the same site (rad).
+pub fn largest_angle(a: &[f64], b: &[f64]) -> f64 {
+    let (a, b) = (Components::new(a), Components::new(b));
+    (0..a.sites()).map(|i| angle(a.get(i), b.get(i))).fold(0.0, f64::max)
 }

@@ -1,0 +1,56 @@
+//! More, fewer or other images on the same curve: neighbours are joined by each spin's great circle.
+
+use super::Path;
+use crate::energy::{Components, ComponentsMut};
+use crate::geometry::{Direction, slerp};
+use ndarray::Array3;
+use rayon::prelude::*;
+
+impl Path {
+    /// `images` images at equal distances along the curve; the ends stay.
+    pub fn resampled(&self, images: usize) -> Path {
+        let s = self.reaction_coordinate();
+        let length = s[s.len() - 1];
+        let places: Vec<f64> = (0..images).map(|k| length * k as f64 / (images - 1) as f64).collect();
+        self.at_places(&s, &places)
+    }
+
+    /// A new image in the middle of every interval.
+    pub fn doubled(&self) -> Path {
+        let count = 2 * self.images() - 1;
+        self.build(count, |k, out| match k % 2 {
+            0 => out.copy_from_slice(self.image(k / 2)),
+            _ => blend(self.image(k / 2), self.image(k / 2 + 1), 0.5, out),
+        })
+    }
+
+    /// Images at the given places of the running length `s`.
+    pub fn at_places(&self, s: &[f64], places: &[f64]) -> Path {
+        let last = self.images() - 1;
+        self.build(places.len(), |k, out| {
+            if k == 0 || k + 1 == places.len() {
+                let end = if k == 0 { 0 } else { last };
+                return out.copy_from_slice(self.image(end));
+            }
+            let i = s.partition_point(|x| *x <= places[k]).clamp(1, last) - 1;
+            let width = s[i + 1] - s[i];
+            let t = if width > 0.0 { ((places[k] - s[i]) / width).clamp(0.0, 1.0) } else { 0.0 };
+            blend(self.image(i), self.image(i + 1), t, out);
+        })
+    }
+
+    fn build(&self, images: usize, fill: impl Fn(usize, &mut [f64]) + Sync) -> Path {
+        let mut path = Path { m: Array3::zeros((images, 3, self.sites())) };
+        path.as_mut_slice().par_chunks_mut(3 * self.sites()).enumerate().for_each(|(k, out)| fill(k, out));
+        path
+    }
+}
+
+/// Every spin at fraction t of the great circle from a to b.
+pub fn blend(a: &[f64], b: &[f64], t: f64, out: &mut [f64]) {
+    let (a, b) = (Components::new(a), Components::new(b));
+    let mut out = ComponentsMut::new(out);
+    for i in 0..a.sites() {
+        out.set(i, slerp(a.get(i), b.get(i), t, Direction::X));
+    }
+}

@@ -1,0 +1,206 @@
+//! Every registered energy term keeps its contract: energy, gradient and Hessian are derivatives of one another.
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use spinneb::energy::{Components, ComponentsMut, EnergyTerm, Hamiltonian, Medium, TangentBasis, TermSpec, assemble};
+use spinneb::geometry::{Direction, exp, rotate, tangent_basis, vector};
+use spinneb::lattice::{Chain, Frozen, Selection};
+use spinneb::spins::Spins;
+use spinneb::units::{Length, Moment};
+
+fn chain(sites: usize, periodic: bool) -> Chain {
+    let cross_section = Some([Length(2.0), Length(3.0)]);
+    Chain { periodic, spacing: Some(Length(1.5)), cross_section, ..Chain::open(sites) }
+}
+
+fn build(text: &str, chain: &Chain) -> Box<dyn EnergyTerm> {
+    let spec: TermSpec = serde_json::from_str(text).expect(text);
+    spec.member().build(&Medium { chain, moment: Some(Moment(2.0)), saturation: None }).expect(text)
+}
+
+fn random_spins(sites: usize, seed: u64) -> Vec<f64> {
+    let mut r = ChaCha8Rng::seed_from_u64(seed);
+    let vectors: Vec<_> = (0..sites).map(|_| [0; 3].map(|_| r.random_range(-1.0..1.0))).collect();
+    Spins::from_vectors(&vectors).unwrap().as_slice().to_vec()
+}
+
+fn random_tangent(m: &[f64], seed: u64) -> Vec<f64> {
+    let mut r = ChaCha8Rng::seed_from_u64(seed);
+    let mut v: Vec<f64> = m.iter().map(|_| r.random_range(-1.0..1.0)).collect();
+    spinneb::energy::project(m, &mut v);
+    v
+}
+
+/// m turned along the tangent field v by the exponential map.
+fn moved(m: &[f64], v: &[f64], t: f64) -> Vec<f64> {
+    let mut out = vec![0.0; m.len()];
+    let (mc, vc) = (Components::new(m), Components::new(v));
+    for i in 0..mc.sites() {
+        ComponentsMut::new(&mut out).set(i, exp(mc.get(i), vector::scale(t, vc.get(i))));
+    }
+    out
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+/// Every example of the registry, and variants that the examples do not show.
+fn fragments() -> Vec<String> {
+    let more = [
+        r#"{"exchange": {"J": ["-4 meV", "1 meV", "-0.3 meV"]}}"#,
+        r#"{"exchange": {"A": "13 pJ/m", "bonds": [1, 3]}}"#,
+        r#"{"anisotropy": {"K": "-20 kJ/m^3", "axis": [1, 2, -1], "sites": {"from": 1, "to": 3}}}"#,
+        r#"{"anisotropy": {"K": "0 meV", "axis": [0, 1, 1], "K2": "-0.4 meV"}}"#,
+        r#"{"cubic_anisotropy": {"K": "-0.3 meV", "sites": [0, 2]}}"#,
+        r#"{"dmi": {"D": "1.2 mJ/m^2", "direction": [0.3, -1, 0.2], "bonds": [0, 2]}}"#,
+        r#"{"zeeman": {"B": ["10 mT", "1 kOe", "-0.2 T"], "sites": [0, 4]}}"#,
+    ];
+    TermSpec::ENTRIES.iter().map(|e| e.example.to_string()).chain(more.map(String::from)).collect()
+}
+
+#[test]
+fn every_entry_parses_into_the_member_of_its_name() {
+    for entry in TermSpec::ENTRIES {
+        let spec: TermSpec = serde_json::from_str(entry.example).expect(entry.example);
+        assert_eq!(spec.name(), entry.name);
+        assert_eq!(build(entry.example, &chain(8, false)).name(), entry.name);
+    }
+}
+
+#[test]
+fn the_gradient_is_the_slope_of_the_energy_and_the_hessian_the_slope_of_the_gradient() {
+    for text in fragments() {
+        for (sites, periodic) in [(1, false), (2, false), (8, false), (9, true)] {
+            if sites < 8 && (text.contains("bonds") || text.contains("sites")) {
+                continue;
+            }
+            let chain = chain(sites, periodic);
+            let h = Hamiltonian::new(&chain, vec![build(&text, &chain)]).unwrap();
+            let m = random_spins(sites, 3);
+            let v = random_tangent(&m, 4);
+            let w = random_tangent(&m, 5);
+            let mut g = vec![0.0; 3 * sites];
+            let above = h.energy_gradient(&m, &mut g);
+            let total = h.energy_mev(&m);
+            let scale = h.stiffness_mev().max(g.iter().fold(0.0, |s, x| x.abs().max(s))) + 1e-12;
+            assert!(
+                (h.reference_mev() + above - total).abs() < 1e-14 * scale * sites as f64,
+                "{text}: kernels and densities differ"
+            );
+
+            let t = 1e-4;
+            let energy = |s: f64| h.energy_mev(&moved(&m, &v, s));
+            let slope = (8.0 * (energy(t) - energy(-t)) - (energy(2.0 * t) - energy(-2.0 * t))) / (12.0 * t);
+            assert!(
+                (slope - dot(&g, &v)).abs() < 1e-9 * scale,
+                "{text} on {sites}: slope {slope}, gradient {}",
+                dot(&g, &v)
+            );
+
+            let mut hv = vec![0.0; 3 * sites];
+            let mut hw = vec![0.0; 3 * sites];
+            h.hessian_product(&m, &g, &v, &mut hv);
+            h.hessian_product(&m, &g, &w, &mut hw);
+            assert!((dot(&hv, &w) - dot(&hw, &v)).abs() < 1e-12 * scale, "{text}: the Hessian is not symmetric");
+            let t = 1e-3;
+            let energy = |s: f64| h.energy_mev(&moved(&m, &v, s));
+            let second = (-energy(2.0 * t) - energy(-2.0 * t) + 16.0 * (energy(t) + energy(-t)) - 30.0 * energy(0.0))
+                / (12.0 * t * t);
+            assert!(
+                (second - dot(&hv, &v)).abs() < 1e-6 * scale,
+                "{text}: curvature {second}, Hessian {}",
+                dot(&hv, &v)
+            );
+        }
+    }
+}
+
+#[test]
+fn the_banded_hessian_in_tangent_coordinates_is_the_hessian_product() {
+    for text in fragments() {
+        for (sites, periodic) in [(8, false), (9, true)] {
+            let mut chain = chain(sites, periodic);
+            chain.frozen = vec![Frozen { sites: Selection::List(vec![3]), direction: Some(Direction::Z) }];
+            let h = Hamiltonian::new(&chain, vec![build(&text, &chain)]).unwrap();
+            let m = random_spins(sites, 6);
+            let mut v = random_tangent(&m, 7);
+            h.hold_frozen(&mut v);
+            let mut g = vec![0.0; 3 * sites];
+            h.energy_gradient(&m, &mut g);
+            let mut expected = vec![0.0; 3 * sites];
+            h.hessian_product(&m, &g, &v, &mut expected);
+            let basis = TangentBasis::at(&m);
+            let matrix = assemble(&h, &m, &g, &basis);
+            let mut y = vec![0.0; 2 * sites];
+            matrix.multiply(&basis.coordinates(&v), &mut y);
+            let mut found = vec![0.0; 3 * sites];
+            basis.field(&y, &mut found);
+            for (a, b) in found.iter().zip(&expected) {
+                assert!((a - b).abs() < 1e-13 * h.stiffness_mev().max(1.0), "{text}: {a} {b}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_long_chain_in_tiles_has_the_gradient_of_its_sites_one_by_one() {
+    let sites = 1500;
+    let chain = chain(sites, true);
+    let terms = || fragments().iter().map(|f| build(f, &chain)).collect::<Vec<_>>();
+    let h = Hamiltonian::new(&chain, terms()).unwrap();
+    let m = random_spins(sites, 8);
+    let mut g = vec![0.0; 3 * sites];
+    let above = h.energy_gradient(&m, &mut g);
+    let mut direct = vec![0.0; 3 * sites];
+    let mut energy = 0.0;
+    for i in 0..sites {
+        for t in h.terms() {
+            let mut one = [0.0; 3];
+            energy += t.add_gradient(Components::new(&m), ComponentsMut::new(&mut one), i..i + 1);
+            ComponentsMut::new(&mut direct).add(i, one);
+        }
+    }
+    assert!((above - energy).abs() < 1e-11 * energy.abs());
+    for (a, b) in g.iter().zip(&direct) {
+        assert!((a - b).abs() < 1e-12 * h.stiffness_mev());
+    }
+}
+
+#[test]
+fn a_declared_symmetry_axis_leaves_the_energy_as_it_is_and_an_undeclared_one_does_not() {
+    for text in fragments() {
+        let chain = chain(9, true);
+        let term = build(&text, &chain);
+        let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.6, 0.0, 0.8]].into_iter().chain(term.axes());
+        let declared: Vec<_> = axes.map(|a| (a, term.invariant_about(a))).collect();
+        let h = Hamiltonian::new(&chain, vec![term]).unwrap();
+        let m = random_spins(9, 9);
+        for (axis, invariant) in declared {
+            let turned: Vec<_> =
+                (0..9).map(|i| rotate(Components::new(&m).get(i), Direction::new(axis).unwrap(), 0.7)).collect();
+            let change = h.difference_mev(Spins::from_vectors(&turned).unwrap().as_slice(), &m);
+            assert_eq!(change.abs() < 1e-12 * h.stiffness_mev().max(1.0), invariant, "{text} about {axis:?}: {change}");
+        }
+    }
+}
+
+#[test]
+fn tangent_bases_are_the_columns_of_coordinates() {
+    let m = random_spins(5, 10);
+    let basis = TangentBasis::at(&m);
+    let v = random_tangent(&m, 11);
+    let t = basis.coordinates(&v);
+    for i in 0..5 {
+        let (e, f) = tangent_basis(Components::new(&m).get(i));
+        assert_eq!(
+            [t[2 * i], t[2 * i + 1]],
+            [vector::dot(e, Components::new(&v).get(i)), vector::dot(f, Components::new(&v).get(i))]
+        );
+    }
+    let mut back = vec![0.0; 15];
+    basis.field(&t, &mut back);
+    for (a, b) in back.iter().zip(&v) {
+        assert!((a - b).abs() < 1e-15);
+    }
+}
