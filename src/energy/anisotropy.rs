@@ -8,7 +8,8 @@
 use super::blocks::Blocks;
 use super::components::{Components, ComponentsMut};
 use super::spec::{Medium, TermBuilder};
-use super::{EnergyTerm, fold};
+use super::EnergyTerm;
+use crate::linalg::slab::fold;
 use crate::error::Result;
 use crate::geometry::{Direction, Vector, vector};
 use crate::lattice::Selection;

@@ -10,7 +10,8 @@
 use super::blocks::Blocks;
 use super::components::{Components, ComponentsMut};
 use super::spec::{Medium, TermBuilder};
-use super::{EnergyTerm, fold};
+use super::EnergyTerm;
+use crate::linalg::slab::fold;
 use crate::error::{Error, Result};
 use crate::geometry::{Vector, vector};
 use crate::lattice::Selection;

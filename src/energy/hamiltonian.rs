@@ -1,7 +1,8 @@
 //! The sum of the terms, on a chain.
 
 use super::components::{Components, ComponentsMut, split};
-use super::{Blocks, EnergyTerm, pairwise_sum};
+use super::{Blocks, EnergyTerm};
+use crate::linalg::slab;
 use crate::error::Result;
 use crate::geometry::{Vector, vector};
 use crate::lattice::Chain;
@@ -134,7 +135,7 @@ impl Hamiltonian {
         } else {
             tiles.into_iter().map(tile).collect()
         };
-        pairwise_sum(&sums)
+        slab::sum(&sums)
     }
 
     /// −∂E/∂m on the tangent planes (meV), zero on frozen sites, from the Euclidean gradient.
@@ -171,7 +172,7 @@ impl Hamiltonian {
         for t in &self.terms {
             let mut density = vec![0.0; self.sites];
             t.add_density(Components::new(m), &mut density);
-            let e = t.reference_mev() + pairwise_sum(&density);
+            let e = t.reference_mev() + slab::sum(&density);
             match sums.iter_mut().find(|(name, _)| *name == t.name()) {
                 Some((_, sum)) => *sum += e,
                 None => sums.push((t.name(), e)),
@@ -182,7 +183,7 @@ impl Hamiltonian {
 
     /// Total energy (meV).
     pub fn energy_mev(&self, m: &[f64]) -> f64 {
-        self.reference_mev() + pairwise_sum(&self.density(m))
+        self.reference_mev() + slab::sum(&self.density(m))
     }
 
     /// E(a) − E(b) (meV), summed from differences of densities.
@@ -191,7 +192,7 @@ impl Hamiltonian {
         for (d, e) in d.iter_mut().zip(self.density(b)) {
             *d -= e;
         }
-        pairwise_sum(&d)
+        slab::sum(&d)
     }
 
     /// H v of the Riemannian Hessian (meV) for a tangent field v: P (A v) − (m·g) v.

@@ -71,26 +71,3 @@ pub trait EnergyTerm: Debug + Send + Sync {
     /// Axes that the term itself singles out: candidates for a symmetry axis.
     fn axes(&self) -> Vec<Vector>;
 }
-
-/// Sum with few rounding errors, the same on every machine: eight lanes, halves of halves.
-pub(crate) fn pairwise_sum(values: &[f64]) -> f64 {
-    if values.len() > 256 {
-        let half = (values.len() / 2).next_multiple_of(8);
-        return pairwise_sum(&values[..half]) + pairwise_sum(&values[half..]);
-    }
-    let mut lanes = [0.0; 8];
-    let chunks = values.chunks_exact(8);
-    let rest: f64 = chunks.remainder().iter().sum();
-    for c in chunks {
-        for l in 0..8 {
-            lanes[l] += c[l];
-        }
-    }
-    fold(lanes) + rest
-}
-
-/// The sum of eight lanes, in a fixed order.
-#[inline]
-pub(crate) fn fold(a: [f64; 8]) -> f64 {
-    ((a[0] + a[4]) + (a[1] + a[5])) + ((a[2] + a[6]) + (a[3] + a[7]))
-}

@@ -96,7 +96,7 @@ impl EnergyTerm for Zeeman {
         for i in whole..len {
             at(i, &mut rest);
         }
-        0.5 * (super::fold(lanes) + rest)
+        0.5 * (crate::linalg::slab::fold(lanes) + rest)
     }
 
     fn add_hessian_product(&self, _: Components, _: Components, _: ComponentsMut) {}

@@ -102,7 +102,8 @@ mod tests {
         let (clean, _) = noisy(0.0);
         for strength in [0.2, 0.5, 0.8] {
             for (p, q) in low_pass(&clean, strength).into_iter().zip(clean.iter().copied()) {
-                assert!(angle(p, q) < 1e-8 * libm::exp10(100.0 * libm::log10(strength)) + 100.0 * EPS, "{strength}");
+                let transient = 0.1 * libm::pow(strength, 99.0); // of the first point, of 0.1 rad, a hundred steps away
+                assert!(angle(p, q) < transient + 100.0 * EPS, "{strength}");
             }
         }
     }
@@ -111,10 +112,10 @@ mod tests {
     fn alternating_noise_is_damped_by_the_square_of_the_known_factor() {
         // of each pass, (1 − s)/(1 + s) remains at the highest frequency
         let (clean, rough) = noisy(1e-6);
-        for strength in [0.3, 0.6, 0.9] {
+        for strength in [0.3, 0.6, 0.8] {
             let left = angle(low_pass(&rough, strength)[50], low_pass(&clean, strength)[50]) / 1e-6;
             let factor: f64 = (1.0 - strength) / (1.0 + strength);
-            assert!((left / (factor * factor) - 1.0).abs() < 0.02, "{strength}: {left}");
+            assert!((left / (factor * factor) - 1.0).abs() < 0.01, "{strength}: {left}");
         }
     }
 

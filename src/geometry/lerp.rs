@@ -58,7 +58,7 @@ mod tests {
     use super::super::angle::angle;
     use super::super::slerp::slerp;
     use super::super::test_vectors::{axes, pairs};
-    use super::super::vector::{norm, sub};
+    use super::super::vector::norm;
     use super::*;
 
     const EPS: f64 = f64::EPSILON;

@@ -2,6 +2,7 @@
 
 mod banded;
 mod small;
+pub mod slab;
 
 pub use banded::{Banded, Ldl};
 pub use small::{eigenvalues_symmetric, solve_dense};

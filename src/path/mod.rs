@@ -97,7 +97,7 @@ impl Path {
 pub fn distance(a: &[f64], b: &[f64]) -> f64 {
     let (a, b) = (Components::new(a), Components::new(b));
     let squares: Vec<f64> = (0..a.sites()).map(|i| angle(a.get(i), b.get(i)).powi(2)).collect();
-    crate::energy::pairwise_sum(&squares).sqrt()
+    crate::linalg::slab::sum(&squares).sqrt()
 }
 
 /// The largest angle between spins of the same site (rad).

@@ -1,0 +1,194 @@
+//! The force on a path: the geodesic nudged elastic band.
+//!
+//! ```text
+//!      F∥ = spacing along τ            τ  improved tangent, in the product of tangent planes, |τ| = 1
+//!   ●───────●───────●───────●          g  Euclidean gradient;  F = −P g  force on the spheres
+//!   fixed   │F⊥     │F⊥     fixed      F⊥ = F − (F·τ) τ,  zero on a minimum-energy path
+//!           ▼       ▼
+//! ```
+//! Bessarab, Uzdin, Jónsson, Comput. Phys. Commun. 196, 335 (2015), doi:10.1016/j.cpc.2015.07.001 (distances and
+//! projections on spheres); Henkelman, Jónsson, J. Chem. Phys. 113, 9978 (2000), doi:10.1063/1.1323224 (tangent);
+//! Henkelman, Uberuaga, Jónsson, J. Chem. Phys. 113, 9901 (2000), doi:10.1063/1.1329672 (climbing image).
+
+mod gauge;
+mod laplacian;
+mod moves;
+mod profile;
+mod springs;
+mod sweep;
+mod tangent;
+
+pub use gauge::align_rotations;
+pub use laplacian::Laplacian;
+pub use moves::{move_points, rotation_of};
+pub use profile::{Extremum, Profile};
+pub use sweep::{Sweep, SweepStep};
+
+use crate::energy::Hamiltonian;
+use crate::linalg::slab;
+use crate::path::Path;
+use rayon::prelude::*;
+
+/// A path with the energies, forces and tangents of its images. The two ends never move.
+#[derive(Debug)]
+pub struct Band<'h> {
+    hamiltonian: &'h Hamiltonian,
+    path: Path,
+    energy: Vec<f64>,
+    gradient: Vec<f64>,
+    tangent: Vec<f64>,
+    perpendicular: Vec<f64>,
+    along: Vec<f64>,
+    uphill: Vec<Option<usize>>,
+    spacing: Vec<f64>,
+    evaluations: usize,
+}
+
+impl<'h> Band<'h> {
+    /// The band of a path; the two ends are evaluated, the images between them not yet.
+    pub fn new(hamiltonian: &'h Hamiltonian, path: Path) -> Band<'h> {
+        let (images, slab) = (path.images(), 3 * path.sites());
+        let mut band = Band {
+            hamiltonian,
+            energy: vec![0.0; images],
+            gradient: vec![0.0; images * slab],
+            tangent: vec![0.0; images * slab],
+            perpendicular: vec![0.0; images * slab],
+            along: vec![0.0; images],
+            uphill: vec![None; images],
+            spacing: vec![0.0; images - 1],
+            evaluations: 0,
+            path,
+        };
+        for end in [0, images - 1] {
+            band.energy[end] = hamiltonian.energy_gradient(band.path.image(end), &mut band.gradient[end * slab..(end + 1) * slab]);
+        }
+        band
+    }
+
+    /// One evaluation of the whole band where its images now are.
+    pub fn evaluate(&mut self) {
+        let (slab, last) = (3 * self.path.sites(), self.path.images() - 1);
+        let (h, path) = (self.hamiltonian, &self.path);
+        let energies: Vec<f64> = self.gradient[slab..last * slab]
+            .par_chunks_mut(slab)
+            .enumerate()
+            .map(|(k, g)| h.energy_gradient(path.image(k + 1), g))
+            .collect();
+        self.energy[1..last].copy_from_slice(&energies);
+        self.spacing = self.path.spacings();
+        self.tangents();
+        self.evaluations += 1;
+    }
+
+    /// Tangents, and the force split along and across them.
+    fn tangents(&mut self) {
+        let (slab, images) = (3 * self.path.sites(), self.path.images());
+        let (h, path, energy, gradient) = (self.hamiltonian, &self.path, &self.energy, &self.gradient);
+        let inner = slab..(images - 1) * slab;
+        let tangent = self.tangent[inner.clone()].par_chunks_mut(slab);
+        let across = self.perpendicular[inner].par_chunks_mut(slab);
+        let along: Vec<f64> = tangent
+            .zip(across)
+            .enumerate()
+            .map(|(k, (t, f))| {
+                let k = k + 1;
+                tangent::improved(path, energy, k, t);
+                h.hold_frozen(t);
+                h.force(path.image(k), &gradient[k * slab..(k + 1) * slab], f);
+                let along = slab::dot(f, t);
+                slab::add_scaled(f, -along, t);
+                along
+            })
+            .collect();
+        self.along[1..images - 1].copy_from_slice(&along);
+        self.uphill = tangent::uphill_neighbours(&self.energy);
+    }
+
+    /// What the energies come from.
+    pub fn hamiltonian(&self) -> &'h Hamiltonian {
+        self.hamiltonian
+    }
+
+    /// The images.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The images, given back.
+    pub fn into_path(self) -> Path {
+        self.path
+    }
+
+    /// The images between the ends, all numbers of them, to be moved by an optimiser.
+    pub fn inner_mut(&mut self) -> &mut [f64] {
+        let (slab, last) = (3 * self.path.sites(), self.path.images() - 1);
+        &mut self.path.as_mut_slice()[slab..last * slab]
+    }
+
+    /// Number of images, both ends counted.
+    pub fn images(&self) -> usize {
+        self.path.images()
+    }
+
+    /// Energy of every image above the Hamiltonian's reference (meV).
+    pub fn energies_mev(&self) -> &[f64] {
+        &self.energy
+    }
+
+    /// Euclidean gradient of image k (meV).
+    pub fn gradient(&self, k: usize) -> &[f64] {
+        self.slab(&self.gradient, k)
+    }
+
+    /// Tangent of image k, of unit length over all 3N components.
+    pub fn tangent(&self, k: usize) -> &[f64] {
+        self.slab(&self.tangent, k)
+    }
+
+    /// Force across the path at image k (meV).
+    pub fn perpendicular(&self, k: usize) -> &[f64] {
+        self.slab(&self.perpendicular, k)
+    }
+
+    /// Force along the tangent at image k (meV/rad).
+    pub fn along(&self, k: usize) -> f64 {
+        self.along[k]
+    }
+
+    /// The neighbour uphill of image k on a monotone slope; none at an extremum.
+    pub fn uphill(&self, k: usize) -> Option<usize> {
+        self.uphill[k]
+    }
+
+    /// Distances between neighbours (rad).
+    pub fn spacings(&self) -> &[f64] {
+        &self.spacing
+    }
+
+    /// Evaluations of the whole band so far.
+    pub fn evaluations(&self) -> usize {
+        self.evaluations
+    }
+
+    /// Largest component of the force across the path (meV).
+    pub fn max_perpendicular_mev(&self) -> f64 {
+        slab::max_abs(&self.perpendicular)
+    }
+
+    /// The highest image between the ends.
+    pub fn highest(&self) -> usize {
+        let inner = 1..self.images() - 1;
+        inner.fold(1, |top, k| if self.energy[k] > self.energy[top] { k } else { top })
+    }
+
+    /// The energy between images, by cubic Hermite pieces with the slopes −F·τ.
+    pub fn profile(&self) -> Profile {
+        Profile::of(self)
+    }
+
+    fn slab<'a>(&self, data: &'a [f64], k: usize) -> &'a [f64] {
+        let n = 3 * self.path.sites();
+        &data[k * n..(k + 1) * n]
+    }
+}
