@@ -1,12 +1,16 @@
 //! Minimum-energy paths and barriers of spin chains.
+pub mod band;
 pub mod drive;
 pub mod energy;
 pub mod error;
+pub mod field;
 pub mod geometry;
 pub mod lattice;
 pub mod linalg;
+pub mod optimise;
 pub mod path;
 pub mod registry;
+pub mod sphere;
 pub mod spins;
 pub mod units;
 pub mod words;

@@ -2,7 +2,8 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use spinneb::energy::{Components, ComponentsMut, EnergyTerm, Hamiltonian, Medium, TangentBasis, TermSpec, assemble};
+use spinneb::energy::{EnergyTerm, Hamiltonian, Medium, TangentBasis, TermSpec, assemble};
+use spinneb::field::{Components, ComponentsMut, project};
 use spinneb::geometry::{Direction, exp, rotate, tangent_basis, vector};
 use spinneb::lattice::{Chain, Frozen, Selection};
 use spinneb::spins::Spins;
@@ -27,7 +28,7 @@ fn random_spins(sites: usize, seed: u64) -> Vec<f64> {
 fn random_tangent(m: &[f64], seed: u64) -> Vec<f64> {
     let mut r = ChaCha8Rng::seed_from_u64(seed);
     let mut v: Vec<f64> = m.iter().map(|_| r.random_range(-1.0..1.0)).collect();
-    spinneb::energy::project(m, &mut v);
+    project(m, &mut v);
     v
 }
 

@@ -5,7 +5,7 @@
 //! Without it a start with azimuthal noise does not relax, at any length. Where the energy has no axis at all (full rotation
 //! symmetry) the three axes are treated in turn, a few times.
 
-use crate::energy::{Components, ComponentsMut};
+use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, Vector, rotate, vector};
 use crate::path::Path;
 

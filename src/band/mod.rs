@@ -12,7 +12,6 @@
 
 mod gauge;
 mod laplacian;
-mod moves;
 mod profile;
 mod springs;
 mod sweep;
@@ -20,7 +19,6 @@ mod tangent;
 
 pub use gauge::align_rotations;
 pub use laplacian::Laplacian;
-pub use moves::{move_points, rotation_of};
 pub use profile::{Extremum, Profile};
 pub use sweep::{Sweep, SweepStep};
 
@@ -61,7 +59,8 @@ impl<'h> Band<'h> {
             path,
         };
         for end in [0, images - 1] {
-            band.energy[end] = hamiltonian.energy_gradient(band.path.image(end), &mut band.gradient[end * slab..(end + 1) * slab]);
+            band.energy[end] =
+                hamiltonian.energy_gradient(band.path.image(end), &mut band.gradient[end * slab..(end + 1) * slab]);
         }
         band
     }
@@ -113,6 +112,11 @@ impl<'h> Band<'h> {
     /// The images.
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// The images, to be turned as wholes.
+    pub(crate) fn path_mut(&mut self) -> &mut Path {
+        &mut self.path
     }
 
     /// The images, given back.

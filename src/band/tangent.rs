@@ -8,7 +8,7 @@
 //! ```
 //! Henkelman, Jónsson, J. Chem. Phys. 113, 9978 (2000), doi:10.1063/1.1323224, eqs. 8–11.
 
-use crate::energy::project;
+use crate::field::project;
 use crate::linalg::slab;
 use crate::path::Path;
 

@@ -5,14 +5,14 @@
 //! ```
 //! For the form K₁ sin²θ + K₂' sin⁴θ use K = K₁ + 2 K₂', K₂ = − K₂'.
 
-use super::blocks::Blocks;
-use super::components::{Components, ComponentsMut};
-use super::spec::{Medium, TermBuilder};
 use super::EnergyTerm;
-use crate::linalg::slab::fold;
+use super::blocks::Blocks;
+use super::spec::{Medium, TermBuilder};
 use crate::error::Result;
+use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, Vector, vector};
 use crate::lattice::Selection;
+use crate::linalg::slab::fold;
 use crate::registry::Described;
 use crate::units::SiteEnergy;
 use serde::Deserialize;

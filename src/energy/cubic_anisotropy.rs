@@ -6,9 +6,9 @@
 
 use super::EnergyTerm;
 use super::blocks::{Block, Blocks, multiply};
-use super::components::{Components, ComponentsMut};
 use super::spec::{Medium, TermBuilder};
 use crate::error::{Error, Result};
+use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, Vector, vector};
 use crate::lattice::Selection;
 use crate::registry::Described;

@@ -8,9 +8,9 @@
 
 use super::EnergyTerm;
 use super::blocks::{Blocks, cross_block};
-use super::components::{Components, ComponentsMut};
 use super::spec::{Medium, TermBuilder};
 use crate::error::Result;
+use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, Vector, vector};
 use crate::lattice::Selection;
 use crate::registry::Described;

@@ -7,14 +7,14 @@
 //! ```
 //! From a continuum stiffness: J = 2 A S/a, with the cross-section S and the spacing a.
 
-use super::blocks::Blocks;
-use super::components::{Components, ComponentsMut};
-use super::spec::{Medium, TermBuilder};
 use super::EnergyTerm;
-use crate::linalg::slab::fold;
+use super::blocks::Blocks;
+use super::spec::{Medium, TermBuilder};
 use crate::error::{Error, Result};
+use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Vector, vector};
 use crate::lattice::Selection;
+use crate::linalg::slab::fold;
 use crate::registry::Described;
 use crate::units::{Energy, ExchangeStiffness};
 use serde::Deserialize;

@@ -1,12 +1,14 @@
 //! The sum of the terms, on a chain.
 
-use super::components::{Components, ComponentsMut, split};
 use super::{Blocks, EnergyTerm};
-use crate::linalg::slab;
 use crate::error::Result;
-use crate::geometry::{Vector, vector};
+use crate::field::{Components, ComponentsMut, split};
+use crate::geometry::{Direction, Vector, vector};
 use crate::lattice::Chain;
+use crate::linalg::slab;
+use crate::spins::Spins;
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Sites handled at a time: their spins, gradient and coefficients stay in the first cache.
 const TILE: usize = 512;
@@ -24,6 +26,7 @@ pub struct Hamiltonian {
     reach: usize,
     stiffness: f64,
     axes: Vec<Vector>,
+    evaluations: AtomicUsize,
 }
 
 impl Hamiltonian {
@@ -47,10 +50,17 @@ impl Hamiltonian {
             reach,
             stiffness: 0.0,
             axes,
+            evaluations: AtomicUsize::new(0),
         };
         h.blocks = h.blocks_of(|t| t.is_quadratic(), Components::new(&vec![0.0; 3 * h.sites]));
         let diagonal = |b: &super::blocks::Block| b[0][0].abs() + b[1][1].abs() + b[2][2].abs();
-        h.stiffness = h.blocks.site.iter().map(diagonal).fold(f64::MIN_POSITIVE, f64::max);
+        h.stiffness = h.blocks.site.iter().map(diagonal).fold(1e-280, f64::max);
+        for axis in [Direction::X, Direction::Y, Direction::Z] {
+            let mut g = vec![0.0; 3 * h.sites];
+            h.energy_gradient(Spins::uniform(h.sites, axis).as_slice(), &mut g);
+            h.stiffness = h.stiffness.max(slab::max_abs(&g));
+        }
+        h.evaluations = AtomicUsize::new(0);
         Ok(h)
     }
 
@@ -93,7 +103,7 @@ impl Hamiltonian {
         &self.terms
     }
 
-    /// The largest diagonal of the Hessian (meV): the stiffness given to frozen sites.
+    /// The largest stiffness or torque that a site can feel (meV), roughly; also the stiffness given to frozen sites.
     pub fn stiffness_mev(&self) -> f64 {
         self.stiffness
     }
@@ -114,6 +124,19 @@ impl Hamiltonian {
         self.axes.iter().copied().filter(fixed).collect()
     }
 
+    /// The fields axis × m (3N numbers each): directions in which the energy does not change.
+    pub fn rotation_modes(&self, m: &[f64], axes: &[Vector]) -> Vec<Vec<f64>> {
+        let m = Components::new(m);
+        let field = |axis: &Vector| {
+            let mut z = vec![0.0; 3 * self.sites];
+            for i in 0..self.sites {
+                ComponentsMut::new(&mut z).set(i, vector::cross(*axis, m.get(i)));
+            }
+            z
+        };
+        axes.iter().map(field).collect()
+    }
+
     /// Energy of the terms' reference states (meV): E = reference + energy above it.
     pub fn reference_mev(&self) -> f64 {
         self.terms.iter().map(|t| t.reference_mev()).sum()
@@ -121,6 +144,7 @@ impl Hamiltonian {
 
     /// Energy above the reference (meV), and the Euclidean gradient ∂E/∂m (meV) in `g`.
     pub fn energy_gradient(&self, m: &[f64], g: &mut [f64]) -> f64 {
+        self.evaluations.fetch_add(1, Ordering::Relaxed);
         let m = Components::new(m);
         let tile = |(first, mut g): (usize, ComponentsMut)| -> f64 {
             let range = first..first + g.x.len();
@@ -138,12 +162,17 @@ impl Hamiltonian {
         slab::sum(&sums)
     }
 
+    /// Gradients computed so far.
+    pub fn evaluations(&self) -> usize {
+        self.evaluations.load(Ordering::Relaxed)
+    }
+
     /// −∂E/∂m on the tangent planes (meV), zero on frozen sites, from the Euclidean gradient.
     pub fn force(&self, m: &[f64], g: &[f64], force: &mut [f64]) {
         for (f, g) in force.iter_mut().zip(g) {
             *f = -g;
         }
-        super::project(m, force);
+        crate::field::project(m, force);
         self.hold_frozen(force);
     }
 
@@ -206,7 +235,7 @@ impl Hamiltonian {
         for i in 0..self.sites {
             o.add(i, vector::scale(-vector::dot(mc.get(i), gc.get(i)), vc.get(i)));
         }
-        super::project(m, out);
+        crate::field::project(m, out);
         self.hold_frozen(out);
     }
 

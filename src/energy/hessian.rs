@@ -8,7 +8,7 @@
 
 use super::Hamiltonian;
 use super::blocks::{Blocks, multiply};
-use super::components::{Components, ComponentsMut};
+use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Vector, tangent_basis, vector};
 use crate::linalg::Banded;
 

@@ -8,7 +8,6 @@
 
 mod anisotropy;
 mod blocks;
-mod components;
 mod cubic_anisotropy;
 mod dmi;
 mod exchange;
@@ -19,7 +18,6 @@ mod zeeman;
 
 pub use anisotropy::{Anisotropy, AnisotropySpec};
 pub use blocks::Blocks;
-pub use components::{Components, ComponentsMut, project, split};
 pub use cubic_anisotropy::{CubicAnisotropy, CubicAnisotropySpec};
 pub use dmi::{Dmi, DmiSpec};
 pub use exchange::{Exchange, ExchangeSpec};
@@ -28,6 +26,7 @@ pub use hessian::{TangentBasis, assemble};
 pub use spec::{Medium, TermBuilder, TermSpec};
 pub use zeeman::{Zeeman, ZeemanSpec};
 
+use crate::field::{Components, ComponentsMut};
 use crate::geometry::Vector;
 use std::fmt::Debug;
 use std::ops::Range;

@@ -6,9 +6,9 @@
 
 use super::EnergyTerm;
 use super::blocks::Blocks;
-use super::components::{Components, ComponentsMut};
 use super::spec::{Medium, TermBuilder};
 use crate::error::Result;
+use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Vector, vector};
 use crate::lattice::Selection;
 use crate::registry::Described;

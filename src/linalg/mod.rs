@@ -1,8 +1,10 @@
 //! Linear algebra of short-ranged chains: banded symmetric matrices, their LDLᵀ, and the small dense matrices beside them.
 
 mod banded;
-mod small;
+mod lowest;
 pub mod slab;
+mod small;
 
 pub use banded::{Banded, Ldl};
-pub use small::{eigenvalues_symmetric, solve_dense};
+pub use lowest::{Mode, lowest_modes};
+pub use small::{eigen_symmetric, eigenvalues_symmetric, solve_dense};

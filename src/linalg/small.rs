@@ -2,7 +2,13 @@
 
 /// Eigenvalues of a symmetric n × n matrix (row by row), ascending, by cyclic Jacobi rotations.
 pub fn eigenvalues_symmetric(matrix: &[f64], n: usize) -> Vec<f64> {
+    eigen_symmetric(matrix, n).0
+}
+
+/// Eigenvalues (ascending) and orthonormal eigenvectors of a symmetric n × n matrix (row by row); vector k is `.1[k]`.
+pub fn eigen_symmetric(matrix: &[f64], n: usize) -> (Vec<f64>, Vec<Vec<f64>>) {
     let mut a = matrix.to_vec();
+    let mut v: Vec<f64> = (0..n * n).map(|k| if k / n == k % n { 1.0 } else { 0.0 }).collect();
     let scale: f64 = a.iter().map(|v| v * v).sum();
     for _ in 0..60 {
         let off: f64 = (0..n).flat_map(|i| (0..i).map(move |j| (i, j))).map(|(i, j)| a[i * n + j] * a[i * n + j]).sum();
@@ -11,17 +17,19 @@ pub fn eigenvalues_symmetric(matrix: &[f64], n: usize) -> Vec<f64> {
         }
         for p in 0..n {
             for q in p + 1..n {
-                rotate(&mut a, n, p, q);
+                rotate(&mut a, &mut v, n, p, q);
             }
         }
     }
-    let mut values: Vec<f64> = (0..n).map(|i| a[i * n + i]).collect();
-    values.sort_by(f64::total_cmp);
-    values
+    let mut order: Vec<usize> = (0..n).collect();
+    order.sort_by(|&i, &j| a[i * n + i].total_cmp(&a[j * n + j]));
+    let values = order.iter().map(|&i| a[i * n + i]).collect();
+    let vectors = order.iter().map(|&i| (0..n).map(|k| v[k * n + i]).collect()).collect();
+    (values, vectors)
 }
 
-/// One Jacobi rotation that clears the entry (p, q).
-fn rotate(a: &mut [f64], n: usize, p: usize, q: usize) {
+/// One Jacobi rotation that clears the entry (p, q); the same rotation is applied to the columns of `v`.
+fn rotate(a: &mut [f64], v: &mut [f64], n: usize, p: usize, q: usize) {
     let apq = a[p * n + q];
     if apq == 0.0 {
         return;
@@ -30,15 +38,13 @@ fn rotate(a: &mut [f64], n: usize, p: usize, q: usize) {
     let t = if theta >= 0.0 { 1.0 } else { -1.0 } / (theta.abs() + (theta * theta + 1.0).sqrt());
     let c = 1.0 / (t * t + 1.0).sqrt();
     let s = t * c;
+    let turn = |m: &mut [f64], i: usize, j: usize| (m[i], m[j]) = (c * m[i] - s * m[j], s * m[i] + c * m[j]);
     for k in 0..n {
-        let (akp, akq) = (a[k * n + p], a[k * n + q]);
-        a[k * n + p] = c * akp - s * akq;
-        a[k * n + q] = s * akp + c * akq;
+        turn(a, k * n + p, k * n + q);
+        turn(v, k * n + p, k * n + q);
     }
     for k in 0..n {
-        let (apk, aqk) = (a[p * n + k], a[q * n + k]);
-        a[p * n + k] = c * apk - s * aqk;
-        a[q * n + k] = s * apk + c * aqk;
+        turn(a, p * n + k, q * n + k);
     }
 }
 

@@ -7,7 +7,7 @@ mod resample;
 
 pub use resample::blend;
 
-use crate::energy::Components;
+use crate::field::Components;
 use crate::geometry::angle;
 use crate::spins::Spins;
 use ndarray::Array3;

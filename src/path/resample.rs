@@ -1,7 +1,7 @@
 //! More, fewer or other images on the same curve: neighbours are joined by each spin's great circle.
 
 use super::Path;
-use crate::energy::{Components, ComponentsMut};
+use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, slerp};
 use ndarray::Array3;
 use rayon::prelude::*;

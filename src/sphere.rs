@@ -1,6 +1,6 @@
-//! Moving the points of a band along tangent vectors, by the exponential map.
+//! Products of spheres: moving many unit vectors along tangent vectors, by the exponential map.
 
-use crate::energy::{Components, ComponentsMut};
+use crate::field::{Components, ComponentsMut};
 use crate::geometry::{exp, vector};
 use rayon::prelude::*;
 

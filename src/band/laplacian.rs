@@ -1,0 +1,82 @@
+//! The exchange Laplacian as a stand-in for the Hessian, where that has no band, and for measuring forces in radians.
+//!
+//! ```text
+//! M_ij = −J_ij,   M_ii = Σ_j |J_ij| + c + spread      c: stiffness scale; spread: the on-site terms' largest curvature
+//! predicted rotation y = Q M⁻¹ Q F,  Q = 1 − ττᵀ
+//! ```
+//! A tolerance on |y| means the same for every number of sites and every unit; one on |F| does not. Preconditioning with
+//! the exchange operator follows Packwood et al., J. Chem. Phys. 144, 164109 (2016), doi:10.1063/1.4947024.
+
+use super::Band;
+use crate::energy::Hamiltonian;
+use crate::linalg::{Banded, Ldl, eigenvalues_symmetric, slab};
+use rayon::prelude::*;
+
+/// The factorised operator, one for all images.
+#[derive(Debug)]
+pub struct Laplacian {
+    factors: Ldl,
+    sites: usize,
+}
+
+impl Laplacian {
+    /// For a Hamiltonian with the stiffness scale `c` (meV).
+    pub fn new(h: &Hamiltonian, c: f64) -> Laplacian {
+        let blocks = h.constant_blocks();
+        let (sites, reach) = (h.sites(), h.reach());
+        let rim = if h.periodic() { reach } else { 0 };
+        let mut m = Banded::zeros(sites - rim, reach, rim);
+        let spread = blocks.site.iter().map(|b| spread(b)).fold(0.0, f64::max);
+        m.shift(c.max(spread));
+        for (k, bonds) in blocks.bond.iter().enumerate() {
+            let n = k + 1;
+            for i in 0..if h.periodic() { sites } else { sites.saturating_sub(n) } {
+                let j = -(bonds[i][0][0] + bonds[i][1][1] + bonds[i][2][2]) / 3.0;
+                if j != 0.0 && !h.is_frozen(i) && !h.is_frozen((i + n) % sites) {
+                    m.add((i + n) % sites, i, -j);
+                }
+                if j != 0.0 {
+                    m.add(i, i, j.abs());
+                    m.add((i + n) % sites, (i + n) % sites, j.abs());
+                }
+            }
+        }
+        Laplacian { factors: m.factor(), sites }
+    }
+
+    /// M⁻¹ v for a slab of 3N numbers.
+    pub fn solve(&self, v: &[f64], out: &mut [f64]) {
+        let n = self.sites;
+        let mut x = vec![0.0; 3 * n];
+        for i in 0..n {
+            for c in 0..3 {
+                x[3 * i + c] = v[c * n + i];
+            }
+        }
+        self.factors.solve(&mut x, 3);
+        for i in 0..n {
+            for c in 0..3 {
+                out[c * n + i] = x[3 * i + c];
+            }
+        }
+    }
+
+    /// The rotations Q M⁻¹ F⊥ (rad) that the images between the ends still seem to need.
+    pub fn rotations(&self, band: &Band, y: &mut [f64]) {
+        let slab = 3 * self.sites;
+        y.par_chunks_mut(slab).enumerate().for_each(|(k, y)| {
+            let t = band.tangent(k + 1);
+            self.solve(band.perpendicular(k + 1), y);
+            crate::field::project(band.path().image(k + 1), y);
+            let along = slab::dot(y, t);
+            slab::add_scaled(y, -along, t);
+            band.hamiltonian().hold_frozen(y);
+        });
+    }
+}
+
+/// Largest minus smallest on-site curvature of a block, its isotropic part apart.
+fn spread(b: &[[f64; 3]; 3]) -> f64 {
+    let e = eigenvalues_symmetric(&b.concat(), 3);
+    e[2] - e[0]
+}

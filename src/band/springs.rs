@@ -1,0 +1,35 @@
+//! What keeps images apart along the path: springs, targets of equal distance, or the mildest local shift.
+
+use super::Band;
+
+impl Band<'_> {
+    /// Shift of image k along τ (rad) that mends a spacing uneven by more than a factor two, else 0.
+    pub fn local_shift(&self, k: usize) -> f64 {
+        let (before, after) = (self.spacing[k - 1], self.spacing[k]);
+        if after > 2.0 * before || before > 2.0 * after { 0.5 * (after - before) } else { 0.0 }
+    }
+
+    /// L⁺ − L⁻ of image k (rad): a geodesic spring's pull along τ, times its stiffness.
+    pub fn spring_pull(&self, k: usize) -> f64 {
+        self.spacing[k] - self.spacing[k - 1]
+    }
+
+    /// Shifts along τ (rad) to equal distances on both sides of `knot`, a fixed image (the climbing one), if there is one.
+    pub fn equal_shifts(&self, knot: Option<usize>) -> Vec<f64> {
+        let last = self.images() - 1;
+        let mut s = vec![0.0];
+        for l in &self.spacing {
+            s.push(s[s.len() - 1] + l);
+        }
+        let stops = [Some(0), knot, Some(last)];
+        let stops: Vec<usize> = stops.into_iter().flatten().collect();
+        let mut shift = vec![0.0; last + 1];
+        for pair in stops.windows(2) {
+            let (a, b) = (pair[0], pair[1]);
+            for k in a + 1..b {
+                shift[k] = s[a] + (s[b] - s[a]) * (k - a) as f64 / (b - a) as f64 - s[k];
+            }
+        }
+        shift
+    }
+}

@@ -1,0 +1,188 @@
+//! The loop that relaxes a band: evaluate, judge, move; it counts and says why it stopped.
+
+use super::outcome::HistoryRow;
+use super::{NebSettings, Observer, Scales, Stop};
+use crate::band::{Band, Laplacian, Sweep, align_rotations};
+use crate::geometry::Vector;
+use crate::linalg::slab;
+use crate::optimise::{Follows, OptimiserSpec};
+use crate::path::Path;
+use crate::sphere::rotation_of;
+
+/// |F⊥|∞/c that is enough to double the images or to read off which path is lowest.
+pub const LOOSE: f64 = 5e-3;
+/// A climbing image is there when its valley offers less than this part of the path's height.
+const CLIMBED: f64 = 1e-11;
+/// A maximum climbs if it stands out by more than this part of the path's height.
+const PROMINENT: f64 = 1e-3;
+
+/// How far to go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Goal {
+    /// |F⊥|∞ < 5e-3 c.
+    Loose,
+    /// The predicted rotation below the tolerance (rad), maxima climbed if asked for.
+    Tight,
+}
+
+/// What a relaxation works with.
+pub struct Relaxation<'a> {
+    /// Settings of the run.
+    pub settings: &'a NebSettings,
+    /// Scales of the problem.
+    pub scales: Scales,
+    /// Symmetry axes, for the rotation gauge.
+    pub axes: &'a [Vector],
+    /// The preconditioner, for methods that follow no sweep.
+    pub laplacian: Option<&'a Laplacian>,
+    /// One row an evaluation is appended.
+    pub history: Vec<HistoryRow>,
+    /// Who watches.
+    pub observer: &'a mut dyn Observer,
+}
+
+/// What the optimiser follows, and how far the band still has to go.
+struct Look {
+    direction: Vec<f64>,
+    rotation: f64,
+    gain: f64,
+}
+
+impl Relaxation<'_> {
+    /// Relaxes the band of `path` with at most `limit` evaluations.
+    pub fn run<'h>(&mut self, band: &mut Band<'h>, goal: Goal, limit: usize) -> Stop {
+        let h = band.hamiltonian();
+        let slab = 3 * h.sites();
+        let method = self.settings.optimiser.member();
+        let mut optimiser = method.start(h.stiffness_mev());
+        let mut sweep = Sweep::new(self.scales.stiffness_mev);
+        let tolerance = self.settings.tolerance;
+        loop {
+            self.align(band);
+            band.evaluate();
+            let force = band.max_perpendicular_mev();
+            if goal == Goal::Loose && force < LOOSE * self.scales.stiffness_mev {
+                let rotation = force / self.scales.stiffness_mev;
+                self.record(band, rotation);
+                return Stop::Converged { rotation, tolerance: LOOSE };
+            }
+            let climbing = self.climbing(band, goal);
+            let look = self.look(band, &mut sweep, method.follows(), &climbing);
+            self.record(band, look.rotation);
+            if !look.rotation.is_finite() || !force.is_finite() {
+                return Stop::NotFinite;
+            }
+            if goal == Goal::Tight && look.rotation <= tolerance && look.gain <= CLIMBED * height(band) {
+                return Stop::Converged { rotation: look.rotation, tolerance };
+            }
+            if band.evaluations() >= limit {
+                return Stop::MaxEvaluations { evaluations: band.evaluations(), rotation: look.rotation, tolerance };
+            }
+            optimiser.advance(band.inner_mut(), slab, &look.direction);
+        }
+    }
+
+    fn align(&self, band: &mut Band) {
+        align_rotations(band.path_mut(), self.axes);
+    }
+
+    fn look(&self, band: &Band, sweep: &mut Sweep, follows: Follows, climbing: &[usize]) -> Look {
+        if follows == Follows::Sweep {
+            let step = sweep.step(band, self.axes, climbing);
+            return Look { direction: step.moves, rotation: step.rotation, gain: step.climb_gain_mev };
+        }
+        let slab = 3 * band.path().sites();
+        let mut y = vec![0.0; (band.images() - 2) * slab];
+        let Some(laplacian) = self.laplacian else { return Look { direction: y, rotation: f64::NAN, gain: 0.0 } };
+        laplacian.rotations(band, &mut y);
+        let rotation = y.chunks(slab).map(rotation_of).fold(0.0, f64::max);
+        let c = self.scales.stiffness_mev;
+        let gain = climbing.iter().map(|&k| 0.5 * band.along(k).powi(2) / c).fold(0.0, f64::max);
+        if follows == Follows::Preconditioned {
+            let shifts = band.equal_shifts(climbing.first().copied());
+            for k in 1..band.images() - 1 {
+                let along = if climbing.contains(&k) { -band.along(k) / c } else { shifts[k] };
+                slab::add_scaled(&mut y[(k - 1) * slab..k * slab], along, band.tangent(k));
+            }
+            return Look { direction: y, rotation, gain };
+        }
+        for k in 1..band.images() - 1 {
+            let f = &mut y[(k - 1) * slab..k * slab];
+            f.copy_from_slice(band.perpendicular(k));
+            let along = if climbing.contains(&k) { -band.along(k) } else { c * band.spring_pull(k) };
+            slab::add_scaled(f, along, band.tangent(k));
+        }
+        Look { direction: y, rotation, gain }
+    }
+
+    /// The images that climb: every prominent maximum, once the band is loosely relaxed.
+    fn climbing(&self, band: &Band, goal: Goal) -> Vec<usize> {
+        if goal == Goal::Loose || !self.settings.climb {
+            return Vec::new();
+        }
+        if band.max_perpendicular_mev() > 4.0 * LOOSE * self.scales.stiffness_mev {
+            return Vec::new();
+        }
+        prominent_maxima(band.energies_mev(), PROMINENT * height(band))
+    }
+
+    fn record(&mut self, band: &Band, rotation: f64) {
+        let e = band.energies_mev();
+        let row = HistoryRow {
+            iteration: self.history.len() + 1,
+            images: band.images(),
+            max_perpendicular_torque_mev: band.max_perpendicular_mev(),
+            largest_predicted_rotation_rad: rotation,
+            highest_image_mev: e[band.highest()] - e[0],
+            length_rad: band.spacings().iter().sum(),
+        };
+        self.history.push(row);
+        self.observer.iteration(&row);
+    }
+}
+
+/// Whether an optimiser needs the preconditioner.
+pub fn needs_laplacian(optimiser: &OptimiserSpec) -> bool {
+    optimiser.member().follows() != Follows::Sweep
+}
+
+/// Highest minus lowest energy of a band (meV).
+pub fn height(band: &Band) -> f64 {
+    let e = band.energies_mev();
+    let (low, high) = e.iter().fold((f64::MAX, f64::MIN), |(l, h), x| (l.min(*x), h.max(*x)));
+    high - low
+}
+
+/// Interior images higher than both neighbours that stand out from the valleys beside them by more than `prominence`.
+pub fn prominent_maxima(e: &[f64], prominence: f64) -> Vec<usize> {
+    let last = e.len() - 1;
+    let is_maximum = |k: usize| e[k] > e[k - 1] && e[k] >= e[k + 1];
+    let stands_out = |k: usize| {
+        let mut valleys = [e[k]; 2];
+        for j in (0..k).rev().take_while(|&j| e[j] <= e[k]) {
+            valleys[0] = valleys[0].min(e[j]);
+        }
+        for j in (k + 1..=last).take_while(|&j| e[j] <= e[k]) {
+            valleys[1] = valleys[1].min(e[j]);
+        }
+        e[k] - valleys[0].max(valleys[1]) > prominence
+    };
+    (1..last).filter(|&k| is_maximum(k) && stands_out(k)).collect()
+}
+
+/// The images to start from: fewer than `images`, halved as long as neighbours stay within 2 rad a spin; coarsest first.
+pub fn image_levels(images: usize, fits: impl Fn(usize) -> bool) -> Vec<usize> {
+    let mut levels = vec![images];
+    loop {
+        let coarser = levels[0].div_ceil(2);
+        if coarser < 9 || !fits(coarser) {
+            return levels;
+        }
+        levels.insert(0, coarser.max(levels[0] / 2 + 1));
+    }
+}
+
+/// The same curve with `images` images: midpoints where that doubles the intervals, equal distances else.
+pub fn refined(path: &Path, images: usize) -> Path {
+    if images == 2 * path.images() - 1 { path.doubled() } else { path.resampled(images) }
+}

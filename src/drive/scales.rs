@@ -1,0 +1,110 @@
+//! The scales of a problem: how stiff its softest mode is, how wide its walls are.
+
+use crate::energy::{Hamiltonian, TangentBasis, assemble};
+use crate::field::Components;
+use crate::linalg::{eigenvalues_symmetric, lowest_modes, slab};
+
+/// Scales from which tolerances, shifts and image counts follow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scales {
+    /// Stiffness c (meV): the softest mode of a stable end, 2K for an easy axis.
+    pub stiffness_mev: f64,
+    /// Exchange a bond, Σ_n n² J_n (meV), without sign.
+    pub exchange_mev: f64,
+    /// Domain-wall width δ = √(J/c) in sites.
+    pub wall_width_sites: f64,
+}
+
+impl Scales {
+    /// From the on-site terms alone, before any state is known.
+    pub fn of_terms(h: &Hamiltonian) -> Scales {
+        Scales::new(h, on_site_gap(h))
+    }
+
+    /// From two relaxed ends.
+    pub fn of_ends(h: &Hamiltonian, a: &[f64], b: &[f64]) -> Scales {
+        let softest = softest_mode(h, a).max(softest_mode(h, b));
+        Scales::new(h, if softest > 1e-9 * h.stiffness_mev() { softest } else { on_site_gap(h) })
+    }
+
+    fn new(h: &Hamiltonian, c: f64) -> Scales {
+        let exchange = exchange_stiffness(h);
+        let floor = 1e-9 * h.stiffness_mev();
+        let c = c.max(floor);
+        let width = (exchange / c).sqrt().clamp(0.25, h.sites().max(1) as f64);
+        Scales { stiffness_mev: c, exchange_mev: exchange, wall_width_sites: width }
+    }
+
+    /// Images between the ends that resolve a wall sweeping through `sites` sites: 2 rad a spin between neighbours.
+    pub fn images_between(&self, sites: usize) -> usize {
+        let n = sites as f64;
+        let w = self.sweep_width(sites);
+        ((std::f64::consts::PI * (n + w) / (2.0 * w)).ceil() as usize).max(15)
+    }
+
+    /// Width of a wall that enters: 4δ, at least two sites, at most the chain.
+    pub fn sweep_width(&self, sites: usize) -> f64 {
+        (4.0 * self.wall_width_sites).clamp(2.0, (sites as f64).max(2.0))
+    }
+}
+
+/// Lowest eigenvalue of the Riemannian Hessian (meV), rotations about symmetry axes apart.
+fn softest_mode(h: &Hamiltonian, m: &[f64]) -> f64 {
+    let mut g = vec![0.0; m.len()];
+    h.energy_gradient(m, &mut g);
+    let basis = TangentBasis::at(m);
+    let matrix = assemble(h, m, &g, &basis);
+    let known = orthonormal(h.rotation_modes(m, &h.symmetry_axes_at(m)).iter().map(|z| basis.coordinates(z)).collect());
+    lowest_modes(&matrix, 1, &known).first().map_or(0.0, |mode| mode.value)
+}
+
+/// Gram–Schmidt; vectors that are (nearly) zero or dependent are left out.
+pub(super) fn orthonormal(vectors: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    let mut done: Vec<Vec<f64>> = Vec::new();
+    for mut v in vectors {
+        for b in &done {
+            let overlap = slab::dot(b, &v);
+            slab::add_scaled(&mut v, -overlap, b);
+        }
+        let size = slab::norm(&v);
+        if size > 1e-6 {
+            slab::scale(&mut v, 1.0 / size);
+            done.push(v);
+        }
+    }
+    done
+}
+
+/// Median over sites of the gap between the two lowest on-site curvatures: 2K of an easy axis.
+fn on_site_gap(h: &Hamiltonian) -> f64 {
+    let zero = vec![0.0; 3 * h.sites()];
+    let own = h.varying_blocks(Components::new(&zero));
+    let blocks = own.as_ref().unwrap_or(h.constant_blocks());
+    let mut gaps: Vec<f64> = blocks
+        .site
+        .iter()
+        .map(|b| {
+            let e = eigenvalues_symmetric(&b.concat(), 3);
+            e[1] - e[0]
+        })
+        .collect();
+    gaps.sort_by(f64::total_cmp);
+    gaps[gaps.len() / 2]
+}
+
+/// Median over bonds of |Σ_n n² J_n sⁿ|, s the sign of the nearest-neighbour exchange.
+fn exchange_stiffness(h: &Hamiltonian) -> f64 {
+    let shells: Vec<f64> = h
+        .constant_blocks()
+        .bond
+        .iter()
+        .map(|bonds| {
+            let mut j: Vec<f64> = bonds.iter().map(|b| -(b[0][0] + b[1][1] + b[2][2]) / 3.0).filter(|j| *j != 0.0).collect();
+            j.sort_by(f64::total_cmp);
+            j.get(j.len() / 2).copied().unwrap_or(0.0)
+        })
+        .collect();
+    let sign = shells.first().map_or(1.0, |j| 1f64.copysign(*j));
+    let sum: f64 = shells.iter().enumerate().map(|(k, j)| ((k + 1) * (k + 1)) as f64 * j * sign.powi(k as i32 + 1)).sum();
+    sum.abs()
+}

@@ -1,0 +1,48 @@
+//! Why a relaxation stopped.
+
+use std::fmt;
+
+/// The end of a band's relaxation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stop {
+    /// The goal was met.
+    Converged {
+        /// Largest predicted rotation (rad).
+        rotation: f64,
+        /// The goal (rad).
+        tolerance: f64,
+    },
+    /// The evaluations allowed were used up.
+    MaxEvaluations {
+        /// How many.
+        evaluations: usize,
+        /// Largest predicted rotation (rad).
+        rotation: f64,
+        /// The goal (rad).
+        tolerance: f64,
+    },
+    /// Numbers that are not finite appeared.
+    NotFinite,
+}
+
+impl Stop {
+    /// Whether the goal was met.
+    pub fn is_converged(&self) -> bool {
+        matches!(self, Stop::Converged { .. })
+    }
+}
+
+impl fmt::Display for Stop {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Stop::Converged { rotation, tolerance } => {
+                write!(f, "converged: no spin is predicted to turn by more than {rotation:.1e} rad (tolerance {tolerance:.1e} rad)")
+            }
+            Stop::MaxEvaluations { evaluations, rotation, tolerance } => write!(
+                f,
+                "not converged: all {evaluations} band evaluations were used; a spin is still predicted to turn by {rotation:.1e} rad (tolerance {tolerance:.1e} rad)"
+            ),
+            Stop::NotFinite => f.write_str("not converged: the forces are no longer finite numbers"),
+        }
+    }
+}
