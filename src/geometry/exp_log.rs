@@ -152,6 +152,18 @@ mod tests {
     }
 
     #[test]
+    fn exp_undoes_log_where_the_sine_is_of_the_size_of_rounding() {
+        for i in 0..100_000 {
+            let (x, y) = (libm::sin(f64::from(i)), libm::cos(1.7 * f64::from(i)));
+            let a = unit_or([x, y, 0.3], [0.0, 0.0, 1.0]);
+            let off = scale(f64::from(i % 100) * 1e-16, quarter_turn(a, Direction::X));
+            let b = unit_or(sub(off, a), a);
+            let gap = norm(sub(exp(a, log(a, b)), b));
+            assert!(gap <= 2.0 * OPPOSITE + 3.0 * EPS, "{a:?} {b:?}: {gap}");
+        }
+    }
+
+    #[test]
     fn log_undoes_exp_for_tangent_vectors_shorter_than_pi() {
         for a in directions() {
             let along = quarter_turn(a, Direction::Y);
