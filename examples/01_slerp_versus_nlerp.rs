@@ -13,7 +13,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 const ANGLES_DEG: [f64; 4] = [30.0, 90.0, 150.0, 179.0];
-const STEPS: usize = 2000;
+const STEPS: usize = 1000;
 const FOLDER: &str = "results/gallery/01_slerp_versus_nlerp";
 
 /// One way from one spin to the other.
@@ -67,12 +67,13 @@ fn curve(method: &'static str, angle_deg: f64, at: impl Fn(f64) -> Vector) -> Cu
 }
 
 fn table(curves: &[Curve]) -> String {
-    let mut text = String::from("angle   method   ω/mean at t = 0        at t = ½    max/min − 1   shortest vector\n");
+    let mut text =
+        String::from("angle   method   ω/mean, first step   in the middle    max/min − 1   shortest vector\n");
     for c in curves {
         let (end, middle) = (c.relative_velocity[0], c.relative_velocity[STEPS / 2]);
         let _ = writeln!(
             text,
-            "{:4.0}°   {:6} {end:17.6} {middle:15.6} {:14.2e} {:17.6}",
+            "{:4.0}°   {:6} {end:20.6} {middle:15.6} {:14.2e} {:17.6}",
             c.angle_deg,
             c.method,
             c.unevenness - 1.0,
@@ -91,7 +92,7 @@ fn csv(curves: &[Curve]) -> String {
     for k in 0..STEPS {
         let _ = write!(text, "\n{}", (k as f64 + 0.5) / STEPS as f64);
         for c in curves {
-            let _ = write!(text, ",{:.9}", c.relative_velocity[k]);
+            let _ = write!(text, ",{:.6}", c.relative_velocity[k]);
         }
     }
     text.push('\n');

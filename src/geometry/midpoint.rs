@@ -41,9 +41,9 @@ pub fn midpoint(a: Vector, b: Vector, axis: Direction) -> Vector {
     unit_or(normal_part(m, line), m)
 }
 
-/// Whether a + b is so short (ends within 0.1 rad of opposite) that rounding in the lengths of a and b shows in it.
+/// Whether a + b is so short (ends more than 120° apart) that rounding in the lengths of a and b shows in it.
 pub(super) fn is_short(sum: Vector) -> bool {
-    dot(sum, sum) < 0.01
+    dot(sum, sum) < 1.0
 }
 
 /// The unit vector a quarter of a turn from a, about the part of the axis normal to a.

@@ -10,7 +10,7 @@
 
 use super::direction::Direction;
 use super::midpoint::{is_short, midpoint};
-use super::vector::{Vector, add, cross, dot, norm, scale};
+use super::vector::{Vector, add, cross, dot, norm, scale, with_length_of};
 
 /// A unit quaternion w + x i + y j + z k.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,7 +49,7 @@ impl Quaternion {
         if !is_short(add(a, b)) {
             return Quaternion::twice(a, m);
         }
-        // in two quarters, so that b is met also where the middle is blended
+        // in two halves, so that b is met also where the middle is blended
         Quaternion::twice(m, midpoint(m, b, axis)).mul(Quaternion::twice(a, midpoint(a, m, axis)))
     }
 
@@ -93,10 +93,10 @@ impl Quaternion {
         self.w * other.w + dot(self.u, other.u)
     }
 
-    /// v rotated.
+    /// v, of any length, rotated; the length is restored to rounding.
     pub fn rotate(self, v: Vector) -> Vector {
         let sideways = scale(2.0, cross(self.u, v));
-        add(v, add(scale(self.w, sideways), cross(self.u, sideways)))
+        with_length_of(add(v, add(scale(self.w, sideways), cross(self.u, sideways))), v)
     }
 
     /// The angle of the rotation, 0 … π rad.

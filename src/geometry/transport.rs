@@ -5,8 +5,8 @@
 //! ```
 //!
 //! The second form holds because a·v = 0 and |a + b|² = 2(1 + a·b): transport is the reflection in the plane normal to
-//! the middle m. It keeps lengths by construction and has no cancellation in 1 + a·b. Near opposite ends it is done in
-//! two quarters, a → m → b, with the m of [`midpoint()`].
+//! the middle m. It keeps lengths by construction and has no cancellation in 1 + a·b. Beyond 120° it is done in
+//! two halves, a → m → b, with the m of [`midpoint()`].
 //! N. Boumal, "An Introduction to Optimization on Smooth Manifolds", Cambridge 2023, §10.3, DOI 10.1017/9781009166164.
 
 use super::direction::Direction;

@@ -64,6 +64,13 @@ pub fn unit_or(a: Vector, otherwise: Vector) -> Vector {
     if length > 0.0 && length.is_finite() { [a[0] / length, a[1] / length, a[2] / length] } else { otherwise }
 }
 
+/// a, near enough in length to `model`, given exactly that length (to rounding).
+#[inline]
+pub fn with_length_of(a: Vector, model: Vector) -> Vector {
+    let (wanted, found) = (dot(model, model), dot(a, a));
+    if found > 0.0 && wanted.is_finite() { scale((wanted / found).sqrt(), a) } else { a }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
