@@ -65,6 +65,11 @@ impl<'h> Band<'h> {
         band
     }
 
+    /// The band of a path that continues a relaxation of `evaluations` evaluations.
+    pub fn continued(hamiltonian: &'h Hamiltonian, path: Path, evaluations: usize) -> Band<'h> {
+        Band { evaluations, ..Band::new(hamiltonian, path) }
+    }
+
     /// One evaluation of the whole band where its images now are.
     pub fn evaluate(&mut self) {
         let (slab, last) = (3 * self.path.sites(), self.path.images() - 1);

@@ -1,0 +1,68 @@
+//! What a run is given.
+
+use crate::energy::Hamiltonian;
+use crate::lattice::Chain;
+use crate::optimise::{Implicit, OptimiserSpec};
+use crate::path::guess::{GuessSpec, NoiseSpec};
+use crate::spins::Spins;
+
+/// Two states of a chain, and how to look for the path between them.
+#[derive(Debug)]
+pub struct Problem {
+    /// The chain.
+    pub chain: Chain,
+    /// Its energy.
+    pub hamiltonian: Hamiltonian,
+    /// Where the path starts.
+    pub initial: Spins,
+    /// Where it ends.
+    pub final_state: Spins,
+    /// Relax both ends to minima first.
+    pub relax_ends: bool,
+    /// How many images.
+    pub images: Images,
+    /// The first path; all natural ones are tried if absent.
+    pub guess: Option<GuessSpec>,
+    /// Noise on an explicit guess.
+    pub noise: Option<NoiseSpec>,
+    /// Smoothing of an explicit guess, 0 to 1.
+    pub smooth: Option<f64>,
+    /// How the band is relaxed.
+    pub neb: NebSettings,
+}
+
+impl Problem {
+    /// With everything but the physics at its default.
+    pub fn new(chain: Chain, hamiltonian: Hamiltonian, initial: Spins, final_state: Spins) -> Problem {
+        let neb = NebSettings::default();
+        Problem { chain, hamiltonian, initial, final_state, relax_ends: true, images: Images::Auto, guess: None, noise: None, smooth: None, neb }
+    }
+}
+
+/// Number of images of a path, both ends counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Images {
+    /// As many as the path needs: neighbours at most 1 rad a spin apart.
+    Auto,
+    /// Just so many.
+    Count(usize),
+}
+
+/// How a band is relaxed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NebSettings {
+    /// Let the maxima climb.
+    pub climb: bool,
+    /// Largest predicted remaining rotation of any spin (rad).
+    pub tolerance: f64,
+    /// Most evaluations of the whole band.
+    pub max_evaluations: usize,
+    /// The method.
+    pub optimiser: OptimiserSpec,
+}
+
+impl Default for NebSettings {
+    fn default() -> Self {
+        NebSettings { climb: true, tolerance: 1e-6, max_evaluations: 20_000, optimiser: OptimiserSpec::Implicit(Implicit {}) }
+    }
+}
