@@ -158,8 +158,6 @@ fn bad_quantities_are_refused_with_what_would_do() {
         "3 mj/m^2" => r#"unknown unit "mj" in "3 mj/m^2": did you mean "mJ"? (J, eV, Ry or erg for a bond, J/m^2 or erg/cm^2 for an area, with SI prefixes)"#,
     }
     refuses! { Moment:
-    }
-    refuses! { Moment:
         2 => r#"found the number 2, but a magnetic moment needs its unit: write "2 mu_B" (mu_B or A m^2, with SI prefixes)"#,
         "2 mu_b" => r#"unknown unit "mu_b" in "2 mu_b": did you mean "mu_B"? (mu_B or A m^2, with SI prefixes)"#,
         "2 MU_B" => r#"unknown unit "MU_B" in "2 MU_B": did you mean "mu_B"? (mu_B or A m^2, with SI prefixes)"#,
