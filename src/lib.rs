@@ -1,4 +1,5 @@
 //! Minimum-energy paths and barriers of spin chains.
+pub mod config;
 pub mod drive;
 pub mod error;
 pub mod geometry;
