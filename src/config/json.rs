@@ -160,16 +160,17 @@ impl Scanner<'_> {
         if self.peek().is_none() {
             return Err((0, "the file is empty: a JSON object {…} is expected".into()));
         }
-        loop {
-            if let Some(value) = self.value()? {
-                if let Some(node) = self.close(value)? {
-                    self.space()?;
-                    return match self.peek() {
-                        None => Ok(node),
-                        Some(_) => Err((self.at, format!("found {} after the end of the JSON value", self.found()))),
-                    };
-                }
+        let document = loop {
+            if let Some(value) = self.value()?
+                && let Some(document) = self.close(value)?
+            {
+                break document;
             }
+        };
+        self.space()?;
+        match self.peek() {
+            None => Ok(document),
+            Some(_) => Err((self.at, format!("found {} after the end of the JSON value", self.found()))),
         }
     }
 

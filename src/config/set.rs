@@ -1,6 +1,6 @@
 //! `--set KEY.PATH=JSON`: values of a config changed on the command line.
 
-use super::json::{Holds, Node, Step, scan, steps};
+use super::json::{Holds, Node, Step, position, scan, steps};
 use super::text::tree;
 use crate::error::{Error, Result};
 use crate::words::quoted;
@@ -8,8 +8,8 @@ use crate::words::quoted;
 /// The text with each assignment (`path.images=21`, `energy[0].anisotropy.K="1 meV"`, `energy.0.…`) carried out in
 /// turn; `file` is the name that messages about the text begin with.
 ///
-/// Only the value itself is replaced, so comments on lines and columns, the order of keys and the layout stay true to
-/// the user's file. Keys that are missing are added, with the objects on the way; an array grows by its next index.
+/// Only the value itself is replaced, so the order of keys, the layout and the lines of everything else stay those of the
+/// user's file. Keys that are missing are added, with the objects on the way; an array grows by its next index.
 pub fn apply_set(file: &str, text: &str, assignments: &[String]) -> Result<String> {
     let mut text = text.to_string();
     for assignment in assignments {
@@ -38,16 +38,20 @@ fn split(assignment: &str) -> Result<(&str, &str)> {
         return Err(Error::invalid("--set", message));
     };
     let (path, value) = (path.trim(), value.trim());
+    let place = format!("--set {path}");
+    if value.is_empty() {
+        return Err(Error::invalid(place, "no value after \"=\": write KEY.PATH=JSON, such as path.images=21"));
+    }
     match scan(value) {
         Ok(_) => Ok((path, value)),
-        Err(fault) if value.is_empty() || value.starts_with(['{', '[', '"']) => {
-            let what = if value.is_empty() { "no value after \"=\"".into() } else { fault.message };
-            Err(Error::invalid(format!("--set {path}"), format!("{} is not JSON: {what}", quoted(value))))
-        }
+        Err(fault) if value.starts_with(['{', '[', '"']) => Err(Error::invalid(
+            place,
+            format!("the value is not JSON: column {}: {}", position(value, fault.at).1, fault.message),
+        )),
         Err(_) => {
             let string = serde_json::Value::from(value).to_string().replace('\'', r"'\''");
             let message = format!("{} is not JSON; a string is written --set '{path}={string}'", quoted(value));
-            Err(Error::invalid(format!("--set {path}"), message))
+            Err(Error::invalid(place, message))
         }
     }
 }
@@ -86,7 +90,8 @@ fn edit(root: &Node, steps: &[Step], value: &str) -> std::result::Result<(usize,
                     Some(last) => (last.end, last.end, format!(", {new}")),
                     None => (node.start, node.end, format!("[{new}]")),
                 }),
-                Some(i) => Err(format!("{here} has {} values, counted from 0: there is no [{i}]", values.len())),
+                Some(i) if values.is_empty() => Err(format!("{here} is empty: there is no [{i}]")),
+                Some(i) => Err(format!("{here} ends with [{}]: there is no [{i}]", values.len() - 1)),
                 None => Err(format!("{here} is an array: an index is expected, such as [0]")),
             }
         }
