@@ -3,7 +3,8 @@
 //! Inside are meV, μ_B, T, nm, K, ps and rad; what is given as a density stays in SI (J/m, J/m², J/m³, A/m) until a
 //! lattice says how large a cell is. Constants are CODATA 2022.
 //!
-//! A quantity is read from a string only, `"13 pJ/m"`. Powers of ten are applied in decimal and equal constants cancel, so `"10 meV"` is exactly 10 and what was written is what is computed with.
+//! A quantity is read from a string only, `"13 pJ/m"`. Powers of ten are applied in decimal and equal constants cancel,
+//! so `"10 meV"` is exactly 10 and what was written is what is computed with.
 
 mod parse;
 
