@@ -1,5 +1,7 @@
 //! Minimum-energy paths and barriers of spin chains.
+
 pub mod band;
+pub mod config;
 pub mod drive;
 pub mod energy;
 pub mod error;

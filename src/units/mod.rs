@@ -3,8 +3,8 @@
 //! Inside are meV, μ_B, T, nm, K, ps and rad; what is given as a density stays in SI (J/m, J/m², J/m³, A/m) until a
 //! lattice says how large a cell is. Constants are CODATA 2022.
 //!
-//! A quantity is read from a string only, `"13 pJ/m"`; [`parse`](self) multiplies by powers of ten in decimal and lets
-//! equal constants cancel, so `"10 meV"` is exactly 10 and what was written is what is computed with.
+//! A quantity is read from a string only, `"13 pJ/m"`. Powers of ten are applied in decimal and equal constants cancel,
+//! so `"10 meV"` is exactly 10 and what was written is what is computed with.
 
 mod parse;
 
@@ -29,7 +29,7 @@ pub const RYDBERG: f64 = 13605.693122990;
 /// Boltzmann constant in meV/K.
 pub const K_B: f64 = 8.617333262e-2;
 
-/// 1 meV in zJ (1e-21 J) times ten: the digits of e.
+/// The digits of the elementary charge: 1 meV is E_DIGITS · 1e-22 J.
 const E_DIGITS: f64 = 1.602176634;
 
 /// A newtype over one number, read from and written as a string with a unit.

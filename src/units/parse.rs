@@ -315,26 +315,27 @@ impl Wanted {
         }
     }
 
-    /// The unit that was probably meant: the same letters in another case, a word for it, or the nearest spelling.
+    /// The unit that was probably meant: the same letters in another case, a word for it, or the nearest that fits.
     fn guess(&self, name: &str) -> Option<String> {
         let name = ascii(name);
-        let same = |other: &str| other.eq_ignore_ascii_case(&name);
-        let mine = |symbol: &Symbol| self.kinds.iter().any(|kind| kind.unit.contains(symbol.names[0]));
-        let listed = |symbol: &Symbol| self.units.split([' ', ',', '/', '^']).any(|word| word == symbol.names[0]);
-        let mut candidates = Vec::new();
-        for fits in [&mine as &dyn Fn(&Symbol) -> bool, &|s| listed(s) && !mine(s), &|s| !listed(s) && !mine(s)] {
-            for symbol in SYMBOLS.iter().filter(|symbol| fits(symbol)) {
-                candidates.push(symbol.names[0].to_string());
-                candidates.extend(symbol.prefixes.chars().map(|prefix| format!("{prefix}{}", symbol.names[0])));
-            }
+        let inside = |symbol: &&Symbol| self.kinds.iter().any(|kind| kind.unit.contains(symbol.names[0]));
+        let listed = |symbol: &&Symbol| self.units.split([' ', ',', '/', '^']).any(|word| word == symbol.names[0]);
+        let spellings = |symbol: &Symbol| -> Vec<String> {
+            let prefixed = symbol.prefixes.chars().map(|prefix| format!("{prefix}{}", symbol.names[0]));
+            std::iter::once(symbol.names[0].to_string()).chain(prefixed).collect()
+        };
+        let mut fitting: Vec<String> = SYMBOLS.iter().filter(inside).flat_map(spellings).collect();
+        fitting.extend(SYMBOLS.iter().filter(listed).flat_map(spellings));
+        let others = SYMBOLS.iter().flat_map(spellings);
+        if let Some(same) = fitting.iter().cloned().chain(others).find(|other| other.eq_ignore_ascii_case(&name)) {
+            return Some(same);
         }
-        let word = || WORDS.iter().find(|(word, _)| same(word)).map(|(_, symbol)| symbol.to_string());
-        candidates
-            .iter()
-            .find(|candidate| same(candidate))
-            .cloned()
-            .or_else(word)
-            .or_else(|| nearest(&name, candidates.iter().map(String::as_str)).map(str::to_string))
+        if let Some((_, symbol)) = WORDS.iter().find(|(word, _)| word.eq_ignore_ascii_case(&name)) {
+            return Some(symbol.to_string());
+        }
+        // One letter of two is too much to guess.
+        let long = name.chars().count() > 2;
+        long.then(|| nearest(&name, fitting.iter().map(String::as_str)).map(str::to_string)).flatten()
     }
 }
 

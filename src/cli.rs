@@ -1,0 +1,170 @@
+//! The command line: what can be said, and the help about it.
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+/// Minimum-energy paths, barriers and saddles of spin chains
+#[derive(Debug, Parser)]
+#[command(name = "spinneb", version, arg_required_else_help = true, after_help = EXAMPLES)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  spinneb check configs/wall.json       what would run, and whether the config is right
+  spinneb run configs/wall.json         find the path; results in results/wall/
+  spinneb list terms                    what can be written in a config
+
+Exit codes:
+  0    converged and certified
+  3    finished without that: results are written and say why
+  2    the command line or a config is wrong
+  130  interrupted (143 terminated)
+  1    anything else, such as a disk that is full";
+
+/// The subcommands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Find the minimum-energy path of each config and write its results
+    Run(Run),
+    /// Validate configs and print what would run: sites, energy scales, wall width, images, memory
+    Check(Check),
+    /// List what a config can ask for, with a line about each
+    List(List),
+}
+
+/// The arguments of `run`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  spinneb run wall.json
+  spinneb run wall.json --set path.images=41 --set 'energy[0].anisotropy.K=\"-0.3 meV\"' --out results/strong
+  spinneb run configs/*.json --json --quiet > summaries.jsonl
+  spinneb run long.json --resume")]
+pub struct Run {
+    /// Configs to run, one after the other
+    #[arg(required = true, value_name = "CONFIG")]
+    pub configs: Vec<PathBuf>,
+
+    /// Folder for the results; with several configs, each gets a folder of its name in it [default: results/<name>]
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+
+    /// Number of threads; results do not depend on it [default: all cores]
+    #[arg(short, long, value_name = "N")]
+    pub threads: Option<NonZeroUsize>,
+
+    /// Change a value of the config; may be given several times
+    ///
+    /// The path is written as in messages (energy[0].anisotropy.K, or energy.0.anisotropy.K). The value is JSON, so a
+    /// string needs its double quotes: --set 'energy[0].anisotropy.K="1 meV"'. Missing keys are added.
+    #[arg(long, value_name = "KEY.PATH=JSON")]
+    pub set: Vec<String>,
+
+    /// Replace results that are in the folder
+    #[arg(long)]
+    pub force: bool,
+
+    /// No progress and no messages, only errors
+    #[arg(short, long)]
+    pub quiet: bool,
+
+    /// Print one line of JSON for each result on stdout
+    #[arg(long)]
+    pub json: bool,
+
+    /// Go on from the last checkpoint in the folder; without one, start anew
+    #[arg(long)]
+    pub resume: bool,
+}
+
+/// The arguments of `check`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  spinneb check wall.json
+  spinneb check configs/*.json
+  spinneb check wall.json --set lattice.chain.sites=500")]
+pub struct Check {
+    /// Configs to check
+    #[arg(required = true, value_name = "CONFIG")]
+    pub configs: Vec<PathBuf>,
+
+    /// Change a value of the config first, as in `run`; may be given several times
+    #[arg(long, value_name = "KEY.PATH=JSON")]
+    pub set: Vec<String>,
+}
+
+/// The arguments of `list`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  spinneb list
+  spinneb list optimisers")]
+pub struct List {
+    /// What to list; everything if left out
+    #[arg(value_enum)]
+    pub what: Option<What>,
+}
+
+/// What can be listed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum What {
+    /// Energy terms: exchange, anisotropy, fields
+    Terms,
+    /// States for the ends of a path
+    States,
+    /// First guesses of a path
+    Guesses,
+    /// Methods that move a path to its minimum
+    Optimisers,
+    /// Files that a run can write
+    Formats,
+    /// Materials that come with the program
+    Materials,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn everything_that_can_be_said_is_understood() {
+        let line = "spinneb run a.json b.json --out d --threads 2 --set a.b=1 --set c=2 --force --quiet --json";
+        let Command::Run(run) = Cli::try_parse_from(line.split(' ')).unwrap().command else { panic!("not run") };
+        assert_eq!(run.configs, [PathBuf::from("a.json"), PathBuf::from("b.json")]);
+        assert_eq!(run.out, Some(PathBuf::from("d")));
+        assert_eq!(run.threads.map(NonZeroUsize::get), Some(2));
+        assert_eq!(run.set, ["a.b=1", "c=2"]);
+        assert!(run.force && run.quiet && run.json && !run.resume);
+        for line in
+            ["spinneb check a.json --set a=1", "spinneb list", "spinneb list terms", "spinneb run a.json --resume"]
+        {
+            assert!(Cli::try_parse_from(line.split(' ')).is_ok(), "{line}");
+        }
+    }
+
+    #[test]
+    fn a_wrong_command_line_exits_with_2() {
+        for line in [
+            "spinneb",
+            "spinneb run",
+            "spinneb check",
+            "spinneb list nothing",
+            "spinneb run a.json --threads 0",
+            "spinneb walk a.json",
+        ] {
+            assert_eq!(Cli::try_parse_from(line.split(' ')).unwrap_err().exit_code(), 2, "{line}");
+        }
+    }
+}
