@@ -3,6 +3,7 @@ pub mod drive;
 pub mod error;
 pub mod geometry;
 pub mod lattice;
+pub mod output;
 pub mod path;
 pub mod spins;
 pub mod units;
