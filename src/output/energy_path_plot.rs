@@ -7,7 +7,7 @@ use super::canvas::{
 };
 use super::{Format, Picture, RunReport};
 use crate::drive::{Barrier, Outcome};
-use crate::error::Result;
+use crate::error::{Error, Result};
 
 /// The energy path as a figure.
 #[derive(Clone, Copy, Debug)]
@@ -117,7 +117,7 @@ fn plot(paths: &[EnergyPath], unit: EnergyUnit) -> LinePlot {
     plot.y = AxisLabel { label: format!("E − E_{{initial}} ({})", unit.name), ..AxisLabel::default() };
     for (k, path) in paths.iter().enumerate() {
         let colour = if paths.len() == 1 { BLUE } else { SERIES[k % SERIES.len()] };
-        let marker = if path.images.len() > 60 { None } else { Some(Marker::Disc) };
+        let marker = image_marker(path.images.len());
         let mut curve = Series::line(unit.scaled(path.curve())).colour(colour);
         if paths.len() > 1 {
             curve = curve.label(legend(path, unit));
@@ -129,9 +129,18 @@ fn plot(paths: &[EnergyPath], unit: EnergyUnit) -> LinePlot {
     }
     plot.y.range = Some(energy_range(paths, unit));
     if plot.series.iter().flat_map(|s| &s.points).all(|p| p.0 == 0.0) {
-        plot.x.range = Some((-1.0, 1.0));
+        plot.x.range = Some((-1.2, 1.2));
     }
     plot
+}
+
+/// Smaller where there are many, none where they would run into a band.
+fn image_marker(images: usize) -> Option<Marker> {
+    match images {
+        0..=45 => Some(Marker::Disc),
+        46..=120 => Some(Marker::Dot),
+        _ => None,
+    }
 }
 
 fn legend(path: &EnergyPath, unit: EnergyUnit) -> String {
@@ -144,56 +153,83 @@ fn legend(path: &EnergyPath, unit: EnergyUnit) -> String {
 /// All energies, with room above for the highest mark.
 fn energy_range(paths: &[EnergyPath], unit: EnergyUnit) -> (f64, f64) {
     if unit.span == 0.0 {
-        return (-1.0, 1.0);
+        return (-1.2, 1.2);
     }
     let energies = || paths.iter().flat_map(EnergyPath::energies).map(|e| e * unit.per_mev);
     let (lo, hi) = (energies().fold(0.0, f64::min), energies().fold(0.0, f64::max));
     (lo - 0.07 * unit.span, hi + 0.10 * unit.span)
 }
 
-/// A double arrow between two levels, with what it means.
+/// A double arrow between two levels (pt).
 struct Arrow {
     x: f64,
     from: f64,
     to: f64,
-    text: String,
 }
 
-/// Everything that explains a barrier: levels and arrows, in points.
+/// Everything that explains a barrier: levels and arrows, in points, and what they mean, a line each.
 #[derive(Default)]
 struct Guides {
     levels: Vec<[Point; 2]>,
     arrows: Vec<Arrow>,
+    lines: Vec<String>,
 }
+
+/// Room that the saddle's mark takes (pt).
+const MARK: f64 = 4.0;
 
 /// The barrier from the initial state, and from the final one where it differs.
 fn guides(path: &EnergyPath, unit: EnergyUnit, frame: &Frame) -> Guides {
     let mut guides = Guides::default();
     let highest = path.saddles.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1));
-    let (Some(barrier), Some(saddle), Some(&first), Some(&last)) =
+    let (Some(barrier), Some(saddle), Some(first), Some(last)) =
         (path.barrier, highest, path.images.first(), path.images.last())
     else {
         return guides;
     };
-    let place = |x: f64, e: f64| frame.place((x, e * unit.per_mev));
-    let both = (barrier.forward_mev - barrier.backward_mev).abs() > 1e-3 * barrier.forward_mev.abs();
-    let text = |symbol: &str, mev: f64| format!("{symbol} = {} {}", significant(mev * unit.per_mev, 4), unit.name);
-    let ends =
-        [(first, barrier.forward_mev, if both { "ΔE_{→}" } else { "ΔE" }), (last, barrier.backward_mev, "ΔE_{←}")];
-    for (k, ((x_end, _), height, symbol)) in ends.into_iter().take(if both { 2 } else { 1 }).enumerate() {
-        let (Some(top), Some(foot), Some(end)) =
-            (place(saddle.0, saddle.1), place(saddle.0, saddle.1 - height), place(x_end, saddle.1 - height))
-        else {
-            continue;
-        };
-        let shift = if both { [-3.0, 3.0][k] } else { 0.0 };
-        guides.levels.push([(end.0, foot.1), (foot.0 + shift, foot.1)]);
-        guides.arrows.push(Arrow { x: top.0 + shift, from: foot.1, to: top.1, text: text(symbol, height) });
+    if (barrier.forward_mev - barrier.backward_mev).abs() <= 1e-3 * barrier.forward_mev.abs() {
+        guides.add(frame, unit, Height { saddle, end: first.0, mev: barrier.forward_mev, shift: 0.0, symbol: "ΔE" });
+    } else {
+        guides.add(
+            frame,
+            unit,
+            Height { saddle, end: first.0, mev: barrier.forward_mev, shift: -3.0, symbol: "ΔE_{→}" },
+        );
+        guides.add(
+            frame,
+            unit,
+            Height { saddle, end: last.0, mev: barrier.backward_mev, shift: 3.0, symbol: "ΔE_{←}" },
+        );
     }
     guides
 }
 
+/// A saddle above one end of the path.
+struct Height {
+    saddle: (f64, f64),
+    end: f64,
+    mev: f64,
+    shift: f64,
+    symbol: &'static str,
+}
+
 impl Guides {
+    fn add(&mut self, frame: &Frame, unit: EnergyUnit, h: Height) {
+        let place = |x: f64, e: f64| frame.place((x, e * unit.per_mev));
+        let level = h.saddle.1 - h.mev;
+        let (Some(top), Some(foot), Some(end)) =
+            (place(h.saddle.0, h.saddle.1), place(h.saddle.0, level), place(h.end, level))
+        else {
+            return;
+        };
+        let x = foot.0 + h.shift;
+        self.levels.push([end, (x, foot.1)]);
+        if foot.1 - top.1 > 2.0 * MARK {
+            self.arrows.push(Arrow { x, from: foot.1, to: top.1 + MARK });
+        }
+        self.lines.push(format!("{} = {} {}", h.symbol, significant(h.mev * unit.per_mev, 4), unit.name));
+    }
+
     /// Beneath the curve: levels and arrows.
     fn draw_lines(&self, canvas: &mut Canvas) {
         for level in &self.levels {
@@ -210,39 +246,59 @@ impl Guides {
             obstacles.add_line(&[(arrow.x, arrow.from), (arrow.x, arrow.to)]);
         }
         self.levels.iter().for_each(|level| obstacles.add_line(level));
-        for (k, arrow) in self.arrows.iter().enumerate() {
-            let text = Text::new(&arrow.text, SMALL_PT);
-            let prefer_left = self.arrows.len() == 2 && k == 0;
-            let places = label_places(arrow, &frame.rect, text.width()?, prefer_left);
-            let Some((best, hits)) = obstacles.freest(&frame.rect, &places) else { continue };
-            let r = places[best];
-            if hits > 0 {
-                canvas.fill(r, WHITE);
-            }
-            obstacles.add_box(r);
-            canvas.text((r.x0 + 1.0, r.y1 - 2.2), text)?;
+        let texts: Vec<Text> = self.lines.iter().map(|line| Text::new(line, SMALL_PT)).collect();
+        let width = texts.iter().try_fold(0.0, |w: f64, t| Ok::<_, Error>(w.max(t.width()?)))?;
+        let places = self.label_places(&frame.rect, width, LINE * texts.len() as f64);
+        let Some((best, hits)) = obstacles.freest(&frame.rect, &places) else { return Ok(()) };
+        let r = places[best];
+        if hits > 0 {
+            canvas.fill(r, WHITE);
+        }
+        for (k, text) in texts.into_iter().enumerate() {
+            canvas.text((r.x0 + PADDING, r.y0 + PADDING + LINE * k as f64 + 0.8 * SMALL_PT), text)?;
         }
         Ok(())
     }
+
+    /// Beside the arrows at many heights, the middle ones first; then anywhere in the frame, the nearest first.
+    fn label_places(&self, frame: &Rect, width: f64, height: f64) -> Vec<Rect> {
+        let Some(longest) = self.arrows.iter().max_by(|a, b| a.length().total_cmp(&b.length())) else {
+            return grid(frame, width, height);
+        };
+        let (left, right) = self.arrows.iter().fold((longest.x, longest.x), |(l, r), a| (l.min(a.x), r.max(a.x)));
+        let heights = [0.45, 0.4, 0.35, 0.3, 0.25, 0.2, 0.5, 0.55, 0.6, 0.65, 0.15, 0.7, 0.75, 0.8, 0.85, 0.9];
+        let sides = [right + width / 2.0 + PADDING + 1.5, left - width / 2.0 - PADDING - 1.5];
+        let beside = sides.into_iter().flat_map(|x| {
+            heights.into_iter().map(move |t| around((x, longest.from + t * (longest.to - longest.from)), width, height))
+        });
+        let mut elsewhere = grid(frame, width, height);
+        let distance = |r: &Rect| ((r.x0 + r.x1) / 2.0 - longest.x).hypot((r.y0 + r.y1) / 2.0 - longest.to);
+        elsewhere.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+        beside.chain(elsewhere).collect()
+    }
 }
 
-/// Beside the arrow at many heights, the middle ones first; then anywhere in the frame, the nearest first.
-fn label_places(arrow: &Arrow, frame: &Rect, width: f64, prefer_left: bool) -> Vec<Rect> {
-    const HEIGHT: f64 = SMALL_PT + 2.0;
-    const GAP: f64 = 4.0;
-    let at = |x0: f64, y: f64| Rect { x0, y0: y - HEIGHT / 2.0, x1: x0 + width + 2.0, y1: y + HEIGHT / 2.0 };
-    let (right, left) = (arrow.x + GAP, arrow.x - GAP - width - 2.0);
-    let sides = if prefer_left { [left, right] } else { [right, left] };
-    let heights = [0.45, 0.35, 0.55, 0.25, 0.65, 0.15, 0.75, 0.85];
-    let beside = heights.into_iter().flat_map(|t| sides.map(|x| at(x, arrow.from + t * (arrow.to - arrow.from))));
-    let mut elsewhere: Vec<Rect> = (1..24)
-        .flat_map(|i| (1..16).map(move |j| (i as f64 / 24.0, j as f64 / 16.0)))
-        .map(|(fx, fy)| at(frame.x0 + fx * frame.width() - width / 2.0, frame.y0 + fy * frame.height()))
-        .filter(|r| frame.grown(-3.0).encloses(r))
-        .collect();
-    let distance = |r: &Rect| ((r.x0 + r.x1) / 2.0 - arrow.x).hypot((r.y0 + r.y1) / 2.0 - arrow.to);
-    elsewhere.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
-    beside.chain(elsewhere).collect()
+/// Distance between two lines of a label (pt).
+const LINE: f64 = SMALL_PT + 2.5;
+/// Free room around a label (pt).
+const PADDING: f64 = 2.5;
+
+/// The room of a label around its centre.
+fn around((x, y): Point, width: f64, height: f64) -> Rect {
+    Rect { x0: x - width / 2.0, y0: y - height / 2.0, x1: x + width / 2.0, y1: y + height / 2.0 }.grown(PADDING)
+}
+
+/// Places all over a frame.
+fn grid(frame: &Rect, width: f64, height: f64) -> Vec<Rect> {
+    let across = (1..32).flat_map(|i| (1..24).map(move |j| (f64::from(i) / 32.0, f64::from(j) / 24.0)));
+    let places = across.map(|(fx, fy)| (frame.x0 + fx * frame.width(), frame.y0 + fy * frame.height()));
+    places.map(|p| around(p, width, height)).filter(|r| frame.grown(-2.0).encloses(r)).collect()
+}
+
+impl Arrow {
+    fn length(&self) -> f64 {
+        (self.to - self.from).abs()
+    }
 }
 
 /// From level to level; only a line where there is no room for heads.
@@ -251,7 +307,7 @@ fn double_arrow(canvas: &mut Canvas, arrow: &Arrow) {
     const HALF: f64 = 1.3;
     let (up, x) = ((arrow.to - arrow.from).signum(), arrow.x);
     canvas.line(&[(x, arrow.from), (x, arrow.to)], 0.6, BLACK);
-    if (arrow.to - arrow.from).abs() > 3.0 * HEAD {
+    if arrow.length() > 3.0 * HEAD {
         for (tip, inward) in [(arrow.to, -up), (arrow.from, up)] {
             canvas.polygon(&[(x, tip), (x - HALF, tip + inward * HEAD), (x + HALF, tip + inward * HEAD)], BLACK);
         }

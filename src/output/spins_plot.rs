@@ -1,7 +1,7 @@
 //! `spins.svg` and `.png`: all spins of the path, site along x and image along y. Above the out-of-plane component m_z, below
 //! the in-plane angle φ = atan2(m_y, m_x), which fades to grey where the spin points along z and has no angle.
 
-use super::canvas::{Align, Axis, COLUMN_MM, Canvas, Colour, Frame, LIGHT_GREY, Rect, SMALL_PT, THIN_PT};
+use super::canvas::{Align, Axis, COLUMN_MM, Canvas, Colour, Frame, LIGHT_GREY, Rect, SMALL_PT, THIN_PT, Ticks};
 use super::canvas::{BLACK, Text, colour_bar, cyclic, diverging, heat_map, mix};
 use super::{Format, Picture, RunReport};
 use crate::error::Result;
@@ -26,7 +26,7 @@ impl Format for SpinsPlot {
 const HEIGHT_MM: f64 = 92.0;
 const BAR: f64 = 8.0;
 /// Room right of the maps for the colour bars.
-const RIGHT: f64 = 50.0;
+const RIGHT: f64 = 53.0;
 const GAP: f64 = 10.0;
 /// In-plane length from which an angle has its full colour.
 const FULL: f64 = 0.25;
@@ -45,13 +45,13 @@ pub fn draw_spins(path: &Path) -> Result<Canvas> {
     let panel = |y0: f64| Rect { x0: left, y0, x1: width, y1: y0 + height };
     let bar = |r: Rect| Rect { x0: r.x1 + 6.0, x1: r.x1 + 6.0 + BAR, ..r };
 
-    let upper = Frame { rect: panel(4.0), x: x.clone(), y: y.clone() };
+    let upper = Frame { rect: panel(4.0), x: x.clone(), y: y.clone(), ticks: Ticks::Outward };
     heat_map(&mut canvas, upper.rect, cells.columns, cells.rows, |c, r| diverging(cells.at(c, r)[2]));
     upper_axes(&upper, &mut canvas)?;
     let labels = [(0.0, "−1"), (0.25, "−0.5"), (0.5, "0"), (0.75, "0.5"), (1.0, "1")];
     colour_bar(&mut canvas, bar(upper.rect), "m_{z}", &labels, |f| diverging(2.0 * f - 1.0))?;
 
-    let lower = Frame { rect: panel(4.0 + height + GAP), x, y };
+    let lower = Frame { rect: panel(4.0 + height + GAP), x, y, ticks: Ticks::Outward };
     heat_map(&mut canvas, lower.rect, cells.columns, cells.rows, |c, r| in_plane(cells.at(c, r)));
     lower.draw(&mut canvas, "Site", "Image")?;
     let mut angles = bar(lower.rect);

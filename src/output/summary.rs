@@ -9,9 +9,9 @@ use crate::error::{Error, Result};
 use serde::{Serialize, Serializer, ser::Error as _};
 
 /// J in a meV: e/1000, e in C.
-const J_PER_MEV: f64 = 1.602176634e-19 / 1000.0;
+const J_PER_MEV: f64 = 1.602176634e-22;
 /// Boltzmann's constant in meV/K.
-const K_B_MEV: f64 = 8.617333262e-5 * 1000.0;
+const K_B_MEV: f64 = 8.617333262e-2;
 
 /// `summary.json`.
 #[derive(Clone, Copy, Debug)]
@@ -137,7 +137,7 @@ struct WorkEntry {
 
 fn document<'a>(run: &RunReport<'a>) -> Document<'a> {
     let outcome = run.outcome;
-    let barrier = |unit: f64| outcome.barrier.map(|b| both_ways(b, unit));
+    let barrier = |convert: fn(f64) -> f64| outcome.barrier.map(|b| both_ways(b, convert));
     Document {
         name: run.name,
         version: run.version,
@@ -146,9 +146,9 @@ fn document<'a>(run: &RunReport<'a>) -> Document<'a> {
         certified: outcome.certified,
         stop_reason: &outcome.stop_reason,
         warnings: &outcome.warnings,
-        barrier_meV: barrier(1.0),
-        barrier_J: barrier(J_PER_MEV),
-        barrier_K: barrier(1.0 / K_B_MEV),
+        barrier_meV: barrier(|mev| mev),
+        barrier_J: barrier(|mev| mev * J_PER_MEV),
+        barrier_K: barrier(|mev| mev / K_B_MEV),
         saddles: outcome.saddles.iter().map(saddle).collect(),
         initial: end(&outcome.initial),
         r#final: end(&outcome.final_state),
@@ -159,8 +159,8 @@ fn document<'a>(run: &RunReport<'a>) -> Document<'a> {
     }
 }
 
-fn both_ways(barrier: Barrier, unit: f64) -> BothWays {
-    BothWays { forward: Number(barrier.forward_mev * unit), backward: Number(barrier.backward_mev * unit) }
+fn both_ways(barrier: Barrier, convert: fn(f64) -> f64) -> BothWays {
+    BothWays { forward: Number(convert(barrier.forward_mev)), backward: Number(convert(barrier.backward_mev)) }
 }
 
 fn saddle(s: &SaddlePoint) -> SaddleEntry {

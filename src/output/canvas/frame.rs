@@ -45,6 +45,15 @@ impl Rect {
     }
 }
 
+/// On which side of the frame the ticks are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ticks {
+    /// Inside, on all four sides.
+    Inward,
+    /// Outside, left and below, where they cover no cells.
+    Outward,
+}
+
 /// A plotting area with its two axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
@@ -54,6 +63,8 @@ pub struct Frame {
     pub x: Axis,
     /// Bottom to top.
     pub y: Axis,
+    /// Where the ticks are.
+    pub ticks: Ticks,
 }
 
 impl Frame {
@@ -68,12 +79,12 @@ impl Frame {
 
     /// Room needed left of the frame (pt).
     pub fn left_margin(y: &Axis) -> Result<f64> {
-        Ok(widest(y)? + Frame::GAP + LABEL_PT + 6.0)
+        Ok(widest(y)? + Frame::GAP + LABEL_PT + 6.5)
     }
 
     /// Room needed below the frame (pt).
     pub fn bottom_margin() -> f64 {
-        Frame::GAP + SMALL_PT + LABEL_PT + 7.0
+        Frame::GAP + SMALL_PT + LABEL_PT + 7.5
     }
 
     /// The box, inward ticks on all sides, tick labels and axis labels.
@@ -84,19 +95,21 @@ impl Frame {
         Ok(())
     }
 
-    /// The x ticks inside, without labels.
+    /// The x ticks, without labels.
     pub fn draw_x_ticks(&self, canvas: &mut Canvas) {
         let r = self.rect;
         for x in self.tick_places(&self.x).into_iter().map(|(f, _)| r.x0 + f * r.width()) {
-            canvas.line(&[(x, r.y1), (x, r.y1 - Frame::TICK)], THIN_PT, BLACK);
-            canvas.line(&[(x, r.y0), (x, r.y0 + Frame::TICK)], THIN_PT, BLACK);
+            canvas.line(&[(x, r.y1), (x, r.y1 - self.inward())], THIN_PT, BLACK);
+            if self.ticks == Ticks::Inward {
+                canvas.line(&[(x, r.y0), (x, r.y0 + Frame::TICK)], THIN_PT, BLACK);
+            }
         }
     }
 
     fn draw_x(&self, canvas: &mut Canvas, label: &str) -> Result<()> {
         let r = self.rect;
         self.draw_x_ticks(canvas);
-        let baseline = r.y1 + Frame::GAP + 0.76 * SMALL_PT;
+        let baseline = r.y1 + self.gap() + 0.76 * SMALL_PT;
         for (f, text) in self.tick_places(&self.x) {
             canvas.text((r.x0 + f * r.width(), baseline), Text::new(text, SMALL_PT).align(Align::Centre))?;
         }
@@ -109,12 +122,24 @@ impl Frame {
         let r = self.rect;
         for (f, text) in self.tick_places(&self.y) {
             let y = r.y1 - f * r.height();
-            canvas.line(&[(r.x0, y), (r.x0 + Frame::TICK, y)], THIN_PT, BLACK);
-            canvas.line(&[(r.x1, y), (r.x1 - Frame::TICK, y)], THIN_PT, BLACK);
-            canvas.text((r.x0 - Frame::GAP, y + 0.36 * SMALL_PT), Text::new(text, SMALL_PT).align(Align::Right))?;
+            canvas.line(&[(r.x0, y), (r.x0 + self.inward(), y)], THIN_PT, BLACK);
+            if self.ticks == Ticks::Inward {
+                canvas.line(&[(r.x1, y), (r.x1 - Frame::TICK, y)], THIN_PT, BLACK);
+            }
+            canvas.text((r.x0 - self.gap(), y + 0.36 * SMALL_PT), Text::new(text, SMALL_PT).align(Align::Right))?;
         }
-        let at = (r.x0 - Frame::GAP - widest(&self.y)? - 5.0, (r.y0 + r.y1) / 2.0);
+        let at = (r.x0 - self.gap() - widest(&self.y)? - 4.5, (r.y0 + r.y1) / 2.0);
         canvas.text(at, Text::new(label, LABEL_PT).align(Align::Centre).upwards())
+    }
+
+    /// Length of a tick into the frame (pt); negative outwards.
+    fn inward(&self) -> f64 {
+        if self.ticks == Ticks::Inward { Frame::TICK } else { -Frame::TICK }
+    }
+
+    /// Distance of the tick labels from the frame (pt).
+    fn gap(&self) -> f64 {
+        if self.ticks == Ticks::Inward { Frame::GAP } else { Frame::GAP + 1.5 }
     }
 
     fn tick_places<'a>(&self, axis: &'a Axis) -> Vec<(f64, &'a str)> {

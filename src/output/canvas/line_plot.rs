@@ -1,7 +1,7 @@
 //! Lines and markers in a frame.
 
 use super::axis::{Axis, Scale};
-use super::frame::{Frame, Rect};
+use super::frame::{Frame, Rect, Ticks};
 use super::obstacles::Obstacles;
 use super::palette::{Colour, SERIES};
 use super::shapes::{Canvas, Point, Text};
@@ -13,6 +13,8 @@ use crate::error::{Error, Result};
 pub enum Marker {
     /// A filled circle.
     Disc,
+    /// A small filled circle.
+    Dot,
     /// A circle with a white inside.
     Ring,
     /// A filled diamond, larger than the circles.
@@ -232,7 +234,7 @@ impl LinePlot {
         let x = Axis::new(x0, x1, self.x.scale, ((canvas.width() - left) / (4.5 * SMALL_PT)) as usize);
         let right = self.overhang(&x, canvas.width() - left)?.max(1.5 * MM);
         let rect = Rect { x0: left, y0: 4.0, x1: canvas.width() - right, y1: 4.0 + inner_height };
-        Ok(Frame { rect, x, y })
+        Ok(Frame { rect, x, y, ticks: Ticks::Inward })
     }
 
     /// How far the last x label reaches beyond the frame (pt).
@@ -271,13 +273,14 @@ fn stroke(canvas: &mut Canvas, points: &[Point], width: f64, colour: Colour, das
 fn mark(canvas: &mut Canvas, (x, y): Point, marker: Marker, colour: Colour) {
     match marker {
         Marker::Disc => canvas.disc((x, y), 1.7, colour),
+        Marker::Dot => canvas.disc((x, y), 1.1, colour),
         Marker::Ring => {
             canvas.disc((x, y), 1.9, colour);
             canvas.disc((x, y), 1.2, WHITE);
         }
         Marker::Diamond => {
             let diamond = |d: f64| [(x - d, y), (x, y - d), (x + d, y), (x, y + d)];
-            canvas.polygon(&diamond(4.2), WHITE);
+            canvas.polygon(&diamond(3.9), WHITE);
             canvas.polygon(&diamond(3.3), colour);
         }
         Marker::Square => canvas.fill(Rect { x0: x, y0: y, x1: x, y1: y }.grown(1.6), colour),

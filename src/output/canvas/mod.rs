@@ -23,7 +23,7 @@ mod render_plot;
 mod shapes;
 
 pub use axis::{Axis, Scale, Tick};
-pub use frame::{Frame, Rect};
+pub use frame::{Frame, Rect, Ticks};
 pub use heat_map::{colour_bar, heat_map};
 pub use line_plot::{AxisLabel, LinePlot, Marker, Series};
 pub use number::{decimal, power_of_ten, significant};
