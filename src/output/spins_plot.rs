@@ -30,8 +30,8 @@ const RIGHT: f64 = 53.0;
 const GAP: f64 = 10.0;
 /// In-plane length from which an angle has its full colour.
 const FULL: f64 = 0.25;
-/// More cells than this are averaged, in x and in y.
-const MOST: (usize, usize) = (1500, 800);
+/// More cells than this, in x and in y, are gathered into blocks: their mean m_z, and their angle where they lie most in the plane.
+const MOST: (usize, usize) = (600, 400);
 
 /// The figure.
 pub fn draw_spins(path: &Path) -> Result<Canvas> {
@@ -46,13 +46,13 @@ pub fn draw_spins(path: &Path) -> Result<Canvas> {
     let bar = |r: Rect| Rect { x0: r.x1 + 6.0, x1: r.x1 + 6.0 + BAR, ..r };
 
     let upper = Frame { rect: panel(4.0), x: x.clone(), y: y.clone(), ticks: Ticks::Outward };
-    heat_map(&mut canvas, upper.rect, cells.columns, cells.rows, |c, r| diverging(cells.at(c, r)[2]));
+    heat_map(&mut canvas, upper.rect, cells.columns, cells.rows, |c, r| diverging(cells.mean_z(c, r)));
     upper_axes(&upper, &mut canvas)?;
     let labels = [(0.0, "−1"), (0.25, "−0.5"), (0.5, "0"), (0.75, "0.5"), (1.0, "1")];
     colour_bar(&mut canvas, bar(upper.rect), "m_{z}", &labels, |f| diverging(2.0 * f - 1.0))?;
 
     let lower = Frame { rect: panel(4.0 + height + GAP), x, y, ticks: Ticks::Outward };
-    heat_map(&mut canvas, lower.rect, cells.columns, cells.rows, |c, r| in_plane(cells.at(c, r)));
+    heat_map(&mut canvas, lower.rect, cells.columns, cells.rows, |c, r| in_plane(cells.most_in_plane(c, r)));
     lower.draw(&mut canvas, "Site", "Image")?;
     let mut angles = bar(lower.rect);
     angles.y1 -= 2.0 * BAR;
@@ -84,42 +84,37 @@ fn in_plane(m: Vector) -> Colour {
     mix(LIGHT_GREY, cyclic(libm::atan2(m[1], m[0])), length / FULL)
 }
 
-/// The spins, averaged over blocks where there are more than anyone can see.
-struct Cells {
+/// The spins in blocks, where there are more than anyone can see.
+struct Cells<'a> {
+    path: &'a Path,
     columns: usize,
     rows: usize,
-    m: Vec<Vector>,
 }
 
-impl Cells {
-    fn new(path: &Path) -> Cells {
-        let (sites, images) = (path.sites(), path.images());
-        let (columns, rows) = (sites.min(MOST.0), images.min(MOST.1));
-        let block = |k: usize, cells: usize, n: usize| k * n / cells..(k + 1) * n / cells;
-        let mut m = Vec::with_capacity(columns * rows);
-        for row in 0..rows {
-            for column in 0..columns {
-                m.push(mean(path, block(row, rows, images), block(column, columns, sites)));
-            }
-        }
-        Cells { columns, rows, m }
+impl<'a> Cells<'a> {
+    fn new(path: &'a Path) -> Cells<'a> {
+        Cells { path, columns: path.sites().min(MOST.0), rows: path.images().min(MOST.1) }
     }
 
-    fn at(&self, column: usize, row: usize) -> Vector {
-        self.m[row * self.columns + column]
+    /// The spins of a block.
+    fn block(&self, column: usize, row: usize) -> impl Iterator<Item = Vector> + use<'a> {
+        let (path, n) = (self.path, self.path.sites());
+        let range = |k: usize, cells: usize, n: usize| k * n / cells..(k + 1) * n / cells;
+        let sites = range(column, self.columns, n);
+        range(row, self.rows, path.images())
+            .map(|k| path.image(k))
+            .flat_map(move |m| sites.clone().map(move |i| [m[i], m[n + i], m[2 * n + i]]))
     }
-}
 
-/// The mean spin of a block.
-fn mean(path: &Path, images: std::ops::Range<usize>, sites: std::ops::Range<usize>) -> Vector {
-    let n = path.sites();
-    let count = (images.len() * sites.len()).max(1) as f64;
-    let mut sum = [0.0; 3];
-    for k in images {
-        let image = path.image(k);
-        for (c, total) in sum.iter_mut().enumerate() {
-            *total += image[c * n..][sites.clone()].iter().sum::<f64>();
-        }
+    /// Mean m_z of a block.
+    fn mean_z(&self, column: usize, row: usize) -> f64 {
+        let (sum, count) = self.block(column, row).fold((0.0, 0usize), |(sum, count), m| (sum + m[2], count + 1));
+        sum / count.max(1) as f64
     }
-    sum.map(|total| total / count)
+
+    /// The spin of a block that lies most in the plane, so that a wall shows that is thinner than a block.
+    fn most_in_plane(&self, column: usize, row: usize) -> Vector {
+        let length = |m: &Vector| m[0].hypot(m[1]);
+        self.block(column, row).max_by(|a, b| length(a).total_cmp(&length(b))).unwrap_or([0.0, 0.0, 1.0])
+    }
 }

@@ -280,7 +280,7 @@ fn mark(canvas: &mut Canvas, (x, y): Point, marker: Marker, colour: Colour) {
         }
         Marker::Diamond => {
             let diamond = |d: f64| [(x - d, y), (x, y - d), (x + d, y), (x, y + d)];
-            canvas.polygon(&diamond(3.9), WHITE);
+            canvas.polygon(&diamond(3.7), WHITE);
             canvas.polygon(&diamond(3.3), colour);
         }
         Marker::Square => canvas.fill(Rect { x0: x, y0: y, x1: x, y1: y }.grown(1.6), colour),

@@ -6,8 +6,9 @@
 use super::palette::Colour;
 use super::shapes::{Align, Canvas, Point, Raster, Shape, Text};
 use crate::error::{Error, Result};
-use crate::output::font::{HEIGHT_PER_EM, font};
-use plotters::prelude::{BitMapBackend, DrawingBackend, RGBColor, SVGBackend};
+use crate::output::font::{glyphs, named};
+use plotters::backend::{BitMapBackend, DrawingBackend, SVGBackend};
+use plotters::prelude::RGBColor;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, FontTransform, TextStyle};
 use std::fmt::Write;
@@ -149,12 +150,14 @@ impl<B: DrawingBackend> Pen<'_, B> {
     }
 
     fn text(&mut self, at: Point, text: &Text) -> Result<()> {
-        let em = text.size * self.scale;
-        let (size, above) = match self.kind {
-            Kind::Svg => (em * SVG_SIZE_PER_EM, 0.0),
-            Kind::Pixels => (em * HEIGHT_PER_EM, em * HEIGHT_PER_EM / 2.0 / self.scale),
-        };
-        let at = if text.upwards { (at.0 - above, at.1) } else { (at.0, at.1 - above) };
+        match self.kind {
+            Kind::Svg => self.named_text(at, text),
+            Kind::Pixels => self.glyphs(at, text),
+        }
+    }
+
+    /// A text that the viewer sets.
+    fn named_text(&mut self, at: Point, text: &Text) -> Result<()> {
         let h_pos = match text.align {
             Align::Left => HPos::Left,
             Align::Centre => HPos::Center,
@@ -162,9 +165,35 @@ impl<B: DrawingBackend> Pen<'_, B> {
         };
         let turn = if text.upwards { FontTransform::Rotate270 } else { FontTransform::None };
         let colour = rgb(text.colour);
-        let style = TextStyle::from(font(size)?.transform(turn)).pos(Pos::new(h_pos, VPos::Top)).color(&colour);
+        let font = named(text.size * self.scale * SVG_SIZE_PER_EM)?.transform(turn);
+        let style = TextStyle::from(font).pos(Pos::new(h_pos, VPos::Top)).color(&colour);
         let place = self.at(at);
         self.backend.draw_text(&text.text, &style, place).map_err(refused)
+    }
+
+    /// A text glyph by glyph.
+    fn glyphs(&mut self, at: Point, text: &Text) -> Result<()> {
+        let before = match text.align {
+            Align::Left => 0.0,
+            Align::Centre => text.width()? / 2.0,
+            Align::Right => text.width()?,
+        };
+        let start = self.at(if text.upwards { (at.0, at.1 + before) } else { (at.0 - before, at.1) });
+        let colour = rgb(text.colour);
+        for glyph in glyphs(&text.text, text.size * self.scale)? {
+            let corner = glyph.px_bounds().min;
+            let mut drawn = Ok(());
+            glyph.draw(|x, y, coverage| {
+                let (x, y) = (corner.x as i32 + x as i32, corner.y as i32 + y as i32);
+                let place = if text.upwards { (start.0 + y, start.1 - x) } else { (start.0 + x, start.1 + y) };
+                let shade = Color::to_backend_color(&colour.mix(f64::from(coverage.clamp(0.0, 1.0))));
+                if drawn.is_ok() && coverage > 0.0 && place.0 >= 0 && place.1 >= 0 {
+                    drawn = self.backend.draw_pixel(place, shade).map_err(refused);
+                }
+            });
+            drawn?;
+        }
+        Ok(())
     }
 }
 

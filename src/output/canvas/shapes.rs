@@ -83,6 +83,11 @@ impl Run<'_> {
     fn width(&self, size: f64) -> Result<f64> {
         Ok(width_em(self.text)? * self.size(size))
     }
+
+    /// Width of the spaces before the first letter, which an SVG viewer would swallow.
+    fn indent(&self, size: f64) -> Result<f64> {
+        Ok(width_em(&self.text[..self.text.len() - self.text.trim_start().len()])? * self.size(size))
+    }
 }
 
 /// "E_{0} (meV)" → "E", ₀"0", " (meV)".
@@ -198,10 +203,12 @@ impl Canvas {
         };
         for run in pieces {
             let drop = run.drop(text.size);
-            let at = if text.upwards { (at.0 + drop, at.1 - along) } else { (at.0 + along, at.1 + drop) };
-            let piece = Text { text: run.text.into(), size: run.size(text.size), align: Align::Left, ..text.clone() };
-            self.shapes.push(Shape::Text { at, text: piece });
+            let along_here = along + run.indent(text.size)?;
             along += run.width(text.size)?;
+            let at = if text.upwards { (at.0 + drop, at.1 - along_here) } else { (at.0 + along_here, at.1 + drop) };
+            let piece =
+                Text { text: run.text.trim().into(), size: run.size(text.size), align: Align::Left, ..text.clone() };
+            self.shapes.push(Shape::Text { at, text: piece });
         }
         Ok(())
     }
