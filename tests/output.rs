@@ -20,7 +20,7 @@ fn wall_sweep(sites: usize, images: usize) -> Path {
         .map(|k| {
             let t = k as f64 / (images - 1).max(1) as f64;
             let centre = (0.2 + 0.6 * t) * (sites as f64 - 1.0);
-            let (sin, cos) = (1.5708 * t).sin_cos();
+            let (sin, cos) = (std::f64::consts::FRAC_PI_2 * t).sin_cos();
             let vector = |i: usize| {
                 let u = (i as f64 - centre) / 4.0;
                 let across = 1.0 / u.cosh();
@@ -401,6 +401,24 @@ fn several_paths_are_overlaid_with_a_legend() {
     let svg = String::from_utf8(canvas.svg().unwrap()).unwrap();
     assert!(chosen.iter().all(|name| svg.contains(&format!("{name}: "))));
     assert!(draw_energy_paths(&[]).unwrap().svg().is_ok());
+}
+
+#[test]
+fn a_logarithmic_plot_leaves_out_what_has_no_logarithm() {
+    use spinneb::output::canvas::{LinePlot, Marker, Series};
+    let decay = |rate: f64| (0..=60).map(|k| (f64::from(k) * 10.0, (-rate * f64::from(k)).exp())).collect::<Vec<_>>();
+    let mut broken = decay(0.2);
+    broken[5].1 = 0.0;
+    let plot = LinePlot::new("Iteration", "Largest predicted rotation (rad)")
+        .log_y()
+        .with(Series::line(broken).label("velocity projection").marker(Marker::Ring))
+        .with(Series::line(decay(0.5)).label("implicit"))
+        .with(Series::line(vec![(0.0, 1e-6), (600.0, 1e-6)]).label("tolerance").dash(3.0, 2.0).width(0.7));
+    let canvas = plot.draw().unwrap();
+    keep("log.png", &canvas.png().unwrap());
+    assert!(numbers_are_finite(&String::from_utf8(canvas.svg().unwrap()).unwrap()));
+    let not_a_number = LinePlot::new("x", "y").with(Series::line(vec![(0.0, f64::NAN)]));
+    assert!(not_a_number.draw().is_err());
 }
 
 #[test]

@@ -119,7 +119,7 @@ fn stage<'a>(dir: &Path, file: &'a File) -> Result<(&'a str, NamedTempFile)> {
 }
 
 fn fill(file: &mut NamedTempFile, bytes: &[u8]) -> io::Result<()> {
-    file.write_all(bytes)?;
+    file.as_file_mut().write_all(bytes)?;
     file.as_file().sync_all()
 }
 

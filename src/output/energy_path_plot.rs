@@ -99,10 +99,11 @@ impl EnergyUnit {
             paths.iter().flat_map(EnergyPath::energies).fold((0.0f64, 0.0f64), |(lo, hi), e| (lo.min(e), hi.max(e)));
         let mev = hi - lo;
         let (name, per_mev) = match mev {
-            s if s >= 1e3 => ("eV", 1e-3),
-            s if s >= 0.1 || s < EnergyUnit::FLAT_MEV => ("meV", 1.0),
-            s if s >= 1e-4 => ("µeV", 1e3),
-            _ => ("neV", 1e6),
+            ..EnergyUnit::FLAT_MEV => ("meV", 1.0),
+            ..1e-4 => ("neV", 1e6),
+            ..0.1 => ("µeV", 1e3),
+            ..1e3 => ("meV", 1.0),
+            _ => ("eV", 1e-3),
         };
         EnergyUnit { name, per_mev, span: if mev < EnergyUnit::FLAT_MEV { 0.0 } else { mev * per_mev } }
     }
