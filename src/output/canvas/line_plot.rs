@@ -278,11 +278,7 @@ fn mark(canvas: &mut Canvas, (x, y): Point, marker: Marker, colour: Colour) {
             canvas.disc((x, y), 1.9, colour);
             canvas.disc((x, y), 1.2, WHITE);
         }
-        Marker::Diamond => {
-            let diamond = |d: f64| [(x - d, y), (x, y - d), (x + d, y), (x, y + d)];
-            canvas.polygon(&diamond(3.7), WHITE);
-            canvas.polygon(&diamond(3.3), colour);
-        }
+        Marker::Diamond => canvas.polygon(&[(x - 3.4, y), (x, y - 3.4), (x + 3.4, y), (x, y + 3.4)], colour),
         Marker::Square => canvas.fill(Rect { x0: x, y0: y, x1: x, y1: y }.grown(1.6), colour),
     }
 }
