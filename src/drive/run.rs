@@ -170,7 +170,7 @@ impl<'a, 'o> Run<'a, 'o> {
         let mut finished = 0;
         for c in &mut tried {
             let lowest = c.top_mev();
-            let worth = finished < 2 && self.problem.refine;
+            let worth = finished < 2 && self.problem.seeks_saddles();
             if worth && !(finished == 1 && lowest > 1.2 * self.lowest_top) {
                 self.conclude(c);
                 finished += 1;
@@ -191,7 +191,7 @@ impl<'a, 'o> Run<'a, 'o> {
             if !c.stop.is_converged() {
                 self.relax(c, Goal::Loose, c.band.evaluations() + 24);
             }
-            if !self.problem.refine {
+            if !self.problem.seeks_saddles() {
                 return;
             }
             self.zoom(c);
@@ -242,7 +242,7 @@ impl<'a, 'o> Run<'a, 'o> {
     /// Every maximum within a tenth of the highest, refined; saddles found twice count once.
     fn all_saddles(&mut self, c: &mut Candidate<'a>) -> Vec<Found> {
         let scale = self.scales.stiffness_mev;
-        if !self.problem.refine {
+        if !self.problem.seeks_saddles() {
             return Vec::new();
         }
         let h = &self.problem.hamiltonian;
