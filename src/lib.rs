@@ -10,6 +10,7 @@ pub mod geometry;
 pub mod lattice;
 pub mod linalg;
 pub mod optimise;
+pub mod output;
 pub mod path;
 pub mod registry;
 pub mod sphere;

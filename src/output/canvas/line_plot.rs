@@ -1,0 +1,284 @@
+//! Lines and markers in a frame.
+
+use super::axis::{Axis, Scale};
+use super::frame::{Frame, Rect, Ticks};
+use super::obstacles::Obstacles;
+use super::palette::{Colour, SERIES};
+use super::shapes::{Canvas, Point, Text};
+use super::{COLUMN_MM, MM, SMALL_PT, WHITE};
+use crate::error::{Error, Result};
+
+/// The mark at a data point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Marker {
+    /// A filled circle.
+    Disc,
+    /// A small filled circle.
+    Dot,
+    /// A circle with a white inside.
+    Ring,
+    /// A filled diamond, larger than the circles.
+    Diamond,
+    /// A filled square.
+    Square,
+}
+
+/// Points that belong together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Series {
+    /// The points, in data coordinates.
+    pub points: Vec<(f64, f64)>,
+    /// Its name in the legend; none, no entry.
+    pub label: Option<String>,
+    /// Thickness of the line through the points (pt); none, no line.
+    pub width: Option<f64>,
+    /// Length of dashes and gaps (pt); none, a full line.
+    pub dash: Option<(f64, f64)>,
+    /// The mark at each point.
+    pub marker: Option<Marker>,
+    /// Its colour; none, the next of the palette.
+    pub colour: Option<Colour>,
+}
+
+impl Series {
+    /// A line through points.
+    pub fn line(points: Vec<(f64, f64)>) -> Series {
+        Series { points, label: None, width: Some(1.0), dash: None, marker: None, colour: None }
+    }
+
+    /// Marks at points.
+    pub fn markers(points: Vec<(f64, f64)>, marker: Marker) -> Series {
+        Series { points, label: None, width: None, dash: None, marker: Some(marker), colour: None }
+    }
+
+    /// With a name.
+    pub fn label(self, label: impl Into<String>) -> Series {
+        Series { label: Some(label.into()), ..self }
+    }
+
+    /// In this colour.
+    pub fn colour(self, colour: Colour) -> Series {
+        Series { colour: Some(colour), ..self }
+    }
+
+    /// With a mark at each point.
+    pub fn marker(self, marker: Marker) -> Series {
+        Series { marker: Some(marker), ..self }
+    }
+
+    /// With so thick a line (pt).
+    pub fn width(self, width: f64) -> Series {
+        Series { width: Some(width), ..self }
+    }
+
+    /// With a dashed line (pt drawn, pt left out).
+    pub fn dash(self, on: f64, off: f64) -> Series {
+        Series { dash: Some((on, off)), ..self }
+    }
+}
+
+/// What an axis shows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct AxisLabel {
+    /// Its label, with the unit.
+    pub label: String,
+    /// Even or logarithmic.
+    pub scale: Scale,
+    /// The range; none, what the data need and a little more.
+    pub range: Option<(f64, f64)>,
+}
+
+/// A plot of series.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LinePlot {
+    /// Width of the figure (mm).
+    pub width_mm: f64,
+    /// Height of the figure (mm).
+    pub height_mm: f64,
+    /// The horizontal axis.
+    pub x: AxisLabel,
+    /// The vertical axis.
+    pub y: AxisLabel,
+    /// What is plotted, later ones on top.
+    pub series: Vec<Series>,
+}
+
+impl LinePlot {
+    /// An empty plot one column wide.
+    pub fn new(x_label: impl Into<String>, y_label: impl Into<String>) -> LinePlot {
+        let axis = |label| AxisLabel { label, ..AxisLabel::default() };
+        LinePlot {
+            width_mm: COLUMN_MM,
+            height_mm: 60.0,
+            x: axis(x_label.into()),
+            y: axis(y_label.into()),
+            series: Vec::new(),
+        }
+    }
+
+    /// With one more series.
+    pub fn with(mut self, series: Series) -> LinePlot {
+        self.series.push(series);
+        self
+    }
+
+    /// With a logarithmic y axis.
+    pub fn log_y(mut self) -> LinePlot {
+        self.y.scale = Scale::Log;
+        self
+    }
+
+    /// With a logarithmic x axis.
+    pub fn log_x(mut self) -> LinePlot {
+        self.x.scale = Scale::Log;
+        self
+    }
+
+    /// With this range of x.
+    pub fn x_range(mut self, min: f64, max: f64) -> LinePlot {
+        self.x.range = Some((min, max));
+        self
+    }
+
+    /// With this range of y.
+    pub fn y_range(mut self, min: f64, max: f64) -> LinePlot {
+        self.y.range = Some((min, max));
+        self
+    }
+
+    /// The finished figure. An error where a number is not finite.
+    pub fn draw(&self) -> Result<Canvas> {
+        let (mut canvas, frame) = self.draw_frame()?;
+        let obstacles = self.draw_series(&mut canvas, &frame);
+        self.draw_legend(&mut canvas, &frame, &obstacles)?;
+        Ok(canvas)
+    }
+
+    /// The axes alone, and the frame to draw into.
+    pub fn draw_frame(&self) -> Result<(Canvas, Frame)> {
+        if !self.series.iter().flat_map(|s| &s.points).all(|p| p.0.is_finite() && p.1.is_finite()) {
+            return Err(Error::Numerical(format!("a number to plot as {:?} is not finite", self.y.label)));
+        }
+        let mut canvas = Canvas::new(self.width_mm, self.height_mm);
+        let frame = self.frame(&canvas)?;
+        frame.draw(&mut canvas, &self.x.label, &self.y.label)?;
+        Ok((canvas, frame))
+    }
+
+    /// The series, and the places they take.
+    pub fn draw_series(&self, canvas: &mut Canvas, frame: &Frame) -> Obstacles {
+        let mut obstacles = Obstacles::default();
+        for (k, series) in self.series.iter().enumerate() {
+            let places: Vec<Point> = series
+                .points
+                .iter()
+                .filter_map(|&p| frame.place(p))
+                .filter(|&p| frame.rect.grown(0.5).contains(p))
+                .collect();
+            let colour = self.colour(k);
+            if let Some(width) = series.width {
+                stroke(canvas, &places, width, colour, series.dash);
+                obstacles.add_line(&places);
+            }
+            if let Some(marker) = series.marker {
+                for &p in &places {
+                    mark(canvas, p, marker, colour);
+                    obstacles.add_box(Rect { x0: p.0, y0: p.1, x1: p.0, y1: p.1 }.grown(2.0));
+                }
+            }
+        }
+        obstacles
+    }
+
+    /// The legend in the freest corner; nothing without labels.
+    pub fn draw_legend(&self, canvas: &mut Canvas, frame: &Frame, obstacles: &Obstacles) -> Result<()> {
+        const LINE: f64 = 14.0;
+        const PITCH: f64 = SMALL_PT + 3.0;
+        let entries: Vec<(usize, Text)> = (self.series.iter().enumerate())
+            .filter_map(|(k, s)| s.label.as_ref().map(|label| (k, Text::new(label, SMALL_PT))))
+            .collect();
+        let widest = entries.iter().try_fold(0.0, |w: f64, (_, t)| Ok::<_, Error>(w.max(t.width()?)))?;
+        let (width, height) = (LINE + 4.0 + widest + 4.0, PITCH * entries.len() as f64 + 2.0);
+        let corners = corners(&frame.rect.grown(-5.0), width, height);
+        let Some((corner, hits)) = obstacles.freest(&frame.rect, &corners).filter(|_| !entries.is_empty()) else {
+            return Ok(());
+        };
+        let r = corners[corner];
+        if hits > 0 {
+            canvas.fill(r, WHITE);
+        }
+        for (row, (k, text)) in entries.into_iter().enumerate() {
+            let y = r.y0 + 1.0 + PITCH * (row as f64 + 0.5);
+            let series = &self.series[k];
+            if let Some(width) = series.width {
+                stroke(canvas, &[(r.x0 + 1.0, y), (r.x0 + 1.0 + LINE, y)], width, self.colour(k), series.dash);
+            }
+            if let Some(marker) = series.marker {
+                mark(canvas, (r.x0 + 1.0 + LINE / 2.0, y), marker, self.colour(k));
+            }
+            canvas.text((r.x0 + LINE + 5.0, y + 0.36 * SMALL_PT), text)?;
+        }
+        Ok(())
+    }
+
+    fn colour(&self, k: usize) -> Colour {
+        self.series[k].colour.unwrap_or(SERIES[k % SERIES.len()])
+    }
+
+    fn frame(&self, canvas: &Canvas) -> Result<Frame> {
+        let (x0, x1) = self.x.range.unwrap_or_else(|| self.data_range(self.x.scale, 0.03, |p| p.0));
+        let (y0, y1) = self.y.range.unwrap_or_else(|| self.data_range(self.y.scale, 0.06, |p| p.1));
+        let inner_height = canvas.height() - Frame::bottom_margin() - 4.0;
+        let y = Axis::new(y0, y1, self.y.scale, (inner_height / (3.0 * SMALL_PT)) as usize);
+        let left = Frame::left_margin(&y)?;
+        let x = Axis::new(x0, x1, self.x.scale, ((canvas.width() - left) / (4.5 * SMALL_PT)) as usize);
+        let right = self.overhang(&x, canvas.width() - left)?.max(1.5 * MM);
+        let rect = Rect { x0: left, y0: 4.0, x1: canvas.width() - right, y1: 4.0 + inner_height };
+        Ok(Frame { rect, x, y, ticks: Ticks::Inward })
+    }
+
+    /// How far the last x label reaches beyond the frame (pt).
+    fn overhang(&self, x: &Axis, width: f64) -> Result<f64> {
+        let Some(last) = x.ticks.last() else { return Ok(0.0) };
+        let inside = (1.0 - x.fraction(last.at).unwrap_or(1.0)) * width;
+        Ok(Text::new(&last.label, SMALL_PT).width()? / 2.0 - inside + 1.0)
+    }
+
+    /// Smallest and largest value with a margin on both sides.
+    fn data_range(&self, scale: Scale, margin: f64, value: impl Fn(&(f64, f64)) -> f64) -> (f64, f64) {
+        let values = self.series.iter().flat_map(|s| &s.points).map(value);
+        let usable = values.filter(|v| scale == Scale::Linear || *v > 0.0);
+        let (lo, hi) = usable.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| (lo.min(v), hi.max(v)));
+        match scale {
+            _ if lo > hi => (0.0, 1.0),
+            Scale::Linear => (lo - margin * (hi - lo), hi + margin * (hi - lo)),
+            Scale::Log => (lo * (lo / hi).powf(margin), hi * (hi / lo).powf(margin)),
+        }
+    }
+}
+
+/// Upper right, upper left, lower right, lower left.
+fn corners(r: &Rect, width: f64, height: f64) -> [Rect; 4] {
+    let at = |x0: f64, y0: f64| Rect { x0, y0, x1: x0 + width, y1: y0 + height };
+    [at(r.x1 - width, r.y0), at(r.x0, r.y0), at(r.x1 - width, r.y1 - height), at(r.x0, r.y1 - height)]
+}
+
+fn stroke(canvas: &mut Canvas, points: &[Point], width: f64, colour: Colour, dash: Option<(f64, f64)>) {
+    match dash {
+        Some(dash) => canvas.dashed(points, width, colour, dash),
+        None => canvas.line(points, width, colour),
+    }
+}
+
+fn mark(canvas: &mut Canvas, (x, y): Point, marker: Marker, colour: Colour) {
+    match marker {
+        Marker::Disc => canvas.disc((x, y), 1.7, colour),
+        Marker::Dot => canvas.disc((x, y), 1.1, colour),
+        Marker::Ring => {
+            canvas.disc((x, y), 1.9, colour);
+            canvas.disc((x, y), 1.2, WHITE);
+        }
+        Marker::Diamond => canvas.polygon(&[(x - 3.4, y), (x, y - 3.4), (x + 3.4, y), (x, y + 3.4)], colour),
+        Marker::Square => canvas.fill(Rect { x0: x, y0: y, x1: x, y1: y }.grown(1.6), colour),
+    }
+}

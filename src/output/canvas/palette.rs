@@ -1,0 +1,92 @@
+//! Colours that readers with any colour vision tell apart, and colour maps.
+
+/// Red, green, blue.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Colour(pub u8, pub u8, pub u8);
+
+/// Black.
+pub const BLACK: Colour = Colour(0, 0, 0);
+/// White.
+pub const WHITE: Colour = Colour(255, 255, 255);
+/// A grey for guides.
+pub const GREY: Colour = Colour(0x80, 0x80, 0x80);
+/// A light grey for what has no value.
+pub const LIGHT_GREY: Colour = Colour(0xe4, 0xe4, 0xe4);
+/// Okabe–Ito blue.
+pub const BLUE: Colour = Colour(0x00, 0x72, 0xb2);
+/// Okabe–Ito vermillion.
+pub const VERMILLION: Colour = Colour(0xd5, 0x5e, 0x00);
+/// Okabe–Ito bluish green.
+pub const GREEN: Colour = Colour(0x00, 0x9e, 0x73);
+/// Okabe–Ito reddish purple.
+pub const PURPLE: Colour = Colour(0xcc, 0x79, 0xa7);
+/// Okabe–Ito orange.
+pub const ORANGE: Colour = Colour(0xe6, 0x9f, 0x00);
+/// Okabe–Ito sky blue.
+pub const SKY: Colour = Colour(0x56, 0xb4, 0xe9);
+
+/// The order in which series take their colours.
+pub const SERIES: [Colour; 7] = [BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, BLACK];
+
+/// The mixture (1 − t) a + t b, t in [0, 1].
+pub fn mix(a: Colour, b: Colour, t: f64) -> Colour {
+    let t = t.clamp(0.0, 1.0);
+    let channel = |a: u8, b: u8| (f64::from(a) + t * (f64::from(b) - f64::from(a))).round() as u8;
+    Colour(channel(a.0, b.0), channel(a.1, b.1), channel(a.2, b.2))
+}
+
+/// A diverging map of [−1, 1]: blue, white, red, of equal lightness on both sides.
+pub fn diverging(v: f64) -> Colour {
+    let t = if v.is_finite() { v.clamp(-1.0, 1.0) } else { 0.0 };
+    let hue = if t < 0.0 { 255.0_f64 } else { 28.0 }.to_radians();
+    let s = t.abs();
+    let lightness = 0.975 - 0.53 * s.powf(1.25);
+    let chroma = 0.165 * (1.35 * s).sin();
+    oklab(lightness, chroma * hue.cos(), chroma * hue.sin())
+}
+
+/// A cyclic map of an angle (rad): the hue circle at nearly equal lightness; 0 is red, π green-blue.
+pub fn cyclic(phi: f64) -> Colour {
+    let phi = if phi.is_finite() { phi } else { 0.0 };
+    let hue = phi + 25.0_f64.to_radians();
+    let lightness = 0.70 + 0.10 * (phi - 1.5).cos();
+    oklab(lightness, 0.125 * hue.cos(), 0.125 * hue.sin())
+}
+
+/// From Oklab (Ottosson 2020): lightness and two opponent axes.
+fn oklab(l: f64, a: f64, b: f64) -> Colour {
+    let long = (l + 0.3963377774 * a + 0.2158037573 * b).powi(3);
+    let medium = (l - 0.1055613458 * a - 0.0638541728 * b).powi(3);
+    let short = (l - 0.0894841775 * a - 1.2914855480 * b).powi(3);
+    Colour(
+        gamma(4.0767416621 * long - 3.3077115913 * medium + 0.2309699292 * short),
+        gamma(-1.2684380046 * long + 2.6097574011 * medium - 0.3413193965 * short),
+        gamma(-0.0041960863 * long - 0.7034186147 * medium + 1.7076147010 * short),
+    )
+}
+
+/// The sRGB transfer curve.
+fn gamma(linear: f64) -> u8 {
+    let v = linear.clamp(0.0, 1.0);
+    let s = if v <= 0.0031308 { 12.92 * v } else { 1.055 * libm::pow(v, 1.0 / 2.4) - 0.055 };
+    (255.0 * s).round() as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_diverging_map_is_white_in_the_middle_and_blue_and_red_at_the_ends() {
+        let Colour(r, g, b) = diverging(0.0);
+        assert!(r.min(g).min(b) > 240);
+        let (cold, warm) = (diverging(-1.0), diverging(1.0));
+        assert!(cold.2 > cold.0 && warm.0 > warm.2);
+    }
+
+    #[test]
+    fn the_cyclic_map_closes() {
+        use std::f64::consts::PI;
+        assert_eq!(cyclic(-PI), cyclic(PI));
+    }
+}

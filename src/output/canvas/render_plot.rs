@@ -1,0 +1,292 @@
+//! A canvas as a file: SVG and PNG, both through plotters' backends.
+//!
+//! The backends know whole pixels only. So an SVG is drawn with many units a point and its root says how large it is,
+//! and a PNG is drawn larger and box-averaged.
+
+use super::palette::Colour;
+use super::shapes::{Align, Canvas, Point, Raster, Shape, Text};
+use crate::error::{Error, Result};
+use crate::output::font::{glyphs, named};
+use plotters::backend::{BitMapBackend, DrawingBackend, SVGBackend};
+use plotters::prelude::RGBColor;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use plotters::style::{Color, FontTransform, TextStyle};
+use std::fmt::Write;
+
+/// SVG units a point.
+const SVG_UNITS: f64 = 20.0;
+/// The SVG backend divides a font's size by this to get its em.
+const SVG_SIZE_PER_EM: f64 = 1.24;
+/// PNG pixels an inch.
+const DPI: f64 = 300.0;
+/// A PNG is drawn so many times larger.
+const OVERSAMPLING: usize = 4;
+/// What an SVG asks for, best first.
+const FONT_STACK: &str = "DejaVu Sans, Verdana, sans-serif";
+
+impl Canvas {
+    /// The figure as SVG.
+    pub fn svg(&self) -> Result<Vec<u8>> {
+        let size = ((self.width() * SVG_UNITS).round() as u32, (self.height() * SVG_UNITS).round() as u32);
+        let mut text = String::new();
+        let mut backend = SVGBackend::with_string(&mut text, size);
+        let mut pen = Pen { backend: &mut backend, scale: SVG_UNITS, kind: Kind::Svg };
+        self.shapes.iter().try_for_each(|shape| pen.draw(shape))?;
+        backend.present().map_err(refused)?;
+        drop(backend);
+        Ok(self.finish_svg(&text)?.into_bytes())
+    }
+
+    /// The figure as PNG, 300 pixels an inch.
+    pub fn png(&self) -> Result<Vec<u8>> {
+        let scale = DPI / 72.0;
+        let (width, height) = ((self.width() * scale).round() as usize, (self.height() * scale).round() as usize);
+        let (wide, high) = (width * OVERSAMPLING, height * OVERSAMPLING);
+        let mut pixels = vec![255u8; 3 * wide * high];
+        let scale = scale * OVERSAMPLING as f64;
+        self.rasters.iter().for_each(|r| paint(&mut pixels, (wide, high), r, scale));
+        let mut backend = BitMapBackend::with_buffer(&mut pixels, (wide as u32, high as u32));
+        let mut pen = Pen { backend: &mut backend, scale, kind: Kind::Pixels };
+        self.shapes.iter().try_for_each(|shape| pen.draw(shape))?;
+        drop(backend);
+        encode_png(&averaged(&pixels, width, height), width, height)
+    }
+
+    /// The root in millimetres, a white ground, the rasters beneath the shapes, and the font by name.
+    fn finish_svg(&self, drawn: &str) -> Result<String> {
+        let (root, body) = drawn.split_once('\n').ok_or_else(|| Error::Numerical("the SVG has no root".into()))?;
+        let view = root.split("viewBox=\"").nth(1).and_then(|s| s.split('"').next()).unwrap_or_default();
+        let mut svg = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}mm\" height=\"{}mm\" viewBox=\"{view}\" stroke-linejoin=\"round\">\n\
+             <rect width=\"100%\" height=\"100%\" fill=\"#FFFFFF\"/>\n",
+            self.width_mm, self.height_mm
+        );
+        for raster in &self.rasters {
+            svg.push_str(&image_element(raster)?);
+        }
+        svg.push_str(
+            &body
+                .replace(" dy=\"0.76em\"", "")
+                .replace("font-family=\"sans-serif\"", &format!("font-family=\"{FONT_STACK}\"")),
+        );
+        Ok(svg)
+    }
+}
+
+/// An error of a backend.
+fn refused(e: impl std::fmt::Display) -> Error {
+    Error::Numerical(format!("the plot cannot be drawn: {e}"))
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Svg,
+    Pixels,
+}
+
+/// Draws shapes on a backend.
+struct Pen<'a, B> {
+    backend: &'a mut B,
+    scale: f64,
+    kind: Kind,
+}
+
+impl<B: DrawingBackend> Pen<'_, B> {
+    fn draw(&mut self, shape: &Shape) -> Result<()> {
+        match shape {
+            Shape::Line { points, width, colour } => self.line(points, *width, *colour),
+            Shape::Polygon { points, colour } => self.polygon(points, *colour),
+            Shape::Box { rect, colour } => {
+                let (a, b) = (self.at((rect.x0, rect.y0)), self.at((rect.x1, rect.y1)));
+                self.backend.draw_rect(a, b, &rgb(*colour), true).map_err(refused)
+            }
+            Shape::Disc { centre, radius, colour } => {
+                let (centre, radius) = (self.at(*centre), (radius * self.scale).round() as u32);
+                self.backend.draw_circle(centre, radius, &rgb(*colour), true).map_err(refused)
+            }
+            Shape::Text { at, text } => self.text(*at, text),
+        }
+    }
+
+    fn at(&self, (x, y): Point) -> (i32, i32) {
+        ((x * self.scale).round() as i32, (y * self.scale).round() as i32)
+    }
+
+    fn polygon(&mut self, points: &[Point], colour: Colour) -> Result<()> {
+        let places: Vec<_> = points.iter().map(|&p| self.at(p)).collect();
+        self.backend.fill_polygon(places, &rgb(colour)).map_err(refused)
+    }
+
+    fn line(&mut self, points: &[Point], width: f64, colour: Colour) -> Result<()> {
+        match self.kind {
+            Kind::Svg => {
+                let places: Vec<_> = points.iter().map(|&p| self.at(p)).collect();
+                let style = Color::stroke_width(&rgb(colour), (width * self.scale).round().max(1.0) as u32);
+                self.backend.draw_path(places, &style).map_err(refused)
+            }
+            Kind::Pixels => self.bars(points, width, colour),
+        }
+    }
+
+    /// A line in pixels: a bar a piece, a disc where thick pieces meet.
+    fn bars(&mut self, points: &[Point], width: f64, colour: Colour) -> Result<()> {
+        for pair in points.windows(2) {
+            let ((ax, ay), (bx, by)) = (pair[0], pair[1]);
+            let length = (bx - ax).hypot(by - ay);
+            if length > 0.0 {
+                let (nx, ny) = (-(by - ay) / length * width / 2.0, (bx - ax) / length * width / 2.0);
+                self.polygon(
+                    &[(ax + nx, ay + ny), (bx + nx, by + ny), (bx - nx, by - ny), (ax - nx, ay - ny)],
+                    colour,
+                )?;
+            }
+        }
+        let joints = points.get(1..points.len().saturating_sub(1)).unwrap_or_default();
+        for &joint in joints {
+            let (centre, radius) = (self.at(joint), (width / 2.0 * self.scale).floor() as u32);
+            self.backend.draw_circle(centre, radius, &rgb(colour), true).map_err(refused)?;
+        }
+        Ok(())
+    }
+
+    fn text(&mut self, at: Point, text: &Text) -> Result<()> {
+        match self.kind {
+            Kind::Svg => self.named_text(at, text),
+            Kind::Pixels => self.glyphs(at, text),
+        }
+    }
+
+    /// A text that the viewer sets.
+    fn named_text(&mut self, at: Point, text: &Text) -> Result<()> {
+        let h_pos = match text.align {
+            Align::Left => HPos::Left,
+            Align::Centre => HPos::Center,
+            Align::Right => HPos::Right,
+        };
+        let turn = if text.upwards { FontTransform::Rotate270 } else { FontTransform::None };
+        let colour = rgb(text.colour);
+        let font = named(text.size * self.scale * SVG_SIZE_PER_EM)?.transform(turn);
+        let style = TextStyle::from(font).pos(Pos::new(h_pos, VPos::Top)).color(&colour);
+        let place = self.at(at);
+        self.backend.draw_text(&text.text, &style, place).map_err(refused)
+    }
+
+    /// A text glyph by glyph.
+    fn glyphs(&mut self, at: Point, text: &Text) -> Result<()> {
+        let before = match text.align {
+            Align::Left => 0.0,
+            Align::Centre => text.width()? / 2.0,
+            Align::Right => text.width()?,
+        };
+        let start = self.at(if text.upwards { (at.0, at.1 + before) } else { (at.0 - before, at.1) });
+        let colour = rgb(text.colour);
+        for glyph in glyphs(&text.text, text.size * self.scale)? {
+            let corner = glyph.px_bounds().min;
+            let mut drawn = Ok(());
+            glyph.draw(|x, y, coverage| {
+                let (x, y) = (corner.x as i32 + x as i32, corner.y as i32 + y as i32);
+                let place = if text.upwards { (start.0 + y, start.1 - x) } else { (start.0 + x, start.1 + y) };
+                let shade = Color::to_backend_color(&colour.mix(f64::from(coverage.clamp(0.0, 1.0))));
+                if drawn.is_ok() && coverage > 0.0 && place.0 >= 0 && place.1 >= 0 {
+                    drawn = self.backend.draw_pixel(place, shade).map_err(refused);
+                }
+            });
+            drawn?;
+        }
+        Ok(())
+    }
+}
+
+fn rgb(Colour(r, g, b): Colour) -> RGBColor {
+    RGBColor(r, g, b)
+}
+
+/// The raster's cells on the pixels they cover.
+fn paint(pixels: &mut [u8], (wide, high): (usize, usize), raster: &Raster, scale: f64) {
+    let r = raster.rect;
+    let cell = |p: usize, start: f64, length: f64, cells: usize| {
+        let f = ((p as f64 + 0.5) / scale - start) / length;
+        (0.0..1.0).contains(&f).then(|| ((f * cells as f64) as usize).min(cells.saturating_sub(1)))
+    };
+    let columns: Vec<_> = (0..wide).map(|p| cell(p, r.x0, r.width(), raster.columns)).collect();
+    for y in 0..high {
+        let Some(row) = cell(y, r.y0, r.height(), raster.rows) else { continue };
+        for (x, column) in columns.iter().enumerate() {
+            if let Some(column) = column {
+                let from = 3 * (row * raster.columns + column);
+                pixels[3 * (y * wide + x)..][..3].copy_from_slice(&raster.rgb[from..from + 3]);
+            }
+        }
+    }
+}
+
+/// Each pixel the mean of the block drawn for it.
+fn averaged(pixels: &[u8], width: usize, height: usize) -> Vec<u8> {
+    const BLOCK: u32 = (OVERSAMPLING * OVERSAMPLING) as u32;
+    let row_bytes = 3 * width * OVERSAMPLING;
+    let mut out = Vec::with_capacity(3 * width * height);
+    let mut sums = vec![0u32; 3 * width];
+    for block in pixels.chunks_exact(row_bytes * OVERSAMPLING) {
+        sums.fill(0);
+        for row in block.chunks_exact(row_bytes) {
+            for (k, &v) in row.iter().enumerate() {
+                sums[3 * (k / (3 * OVERSAMPLING)) + k % 3] += u32::from(v);
+            }
+        }
+        out.extend(sums.iter().map(|s| ((s + BLOCK / 2) / BLOCK) as u8));
+    }
+    out
+}
+
+/// RGB pixels as a PNG file that knows its size.
+fn encode_png(rgb: &[u8], width: usize, height: usize) -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width as u32, height as u32);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    let per_metre = (DPI / 0.0254).round() as u32;
+    encoder.set_pixel_dims(Some(png::PixelDimensions { xppu: per_metre, yppu: per_metre, unit: png::Unit::Meter }));
+    encoder.write_header().and_then(|mut writer| writer.write_image_data(rgb)).map_err(refused)?;
+    Ok(bytes)
+}
+
+/// A raster as an SVG element that carries its pixels.
+fn image_element(raster: &Raster) -> Result<String> {
+    let r = raster.rect;
+    let data = base64(&encode_png(&raster.rgb, raster.columns, raster.rows)?);
+    let unit = |v: f64| (v * SVG_UNITS).round();
+    Ok(format!(
+        "<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\" \
+         href=\"data:image/png;base64,{data}\"/>\n",
+        unit(r.x0),
+        unit(r.y0),
+        unit(r.x1) - unit(r.x0),
+        unit(r.y1) - unit(r.y0),
+    ))
+}
+
+/// RFC 4648.
+fn base64(bytes: &[u8]) -> String {
+    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for chunk in bytes.chunks(3) {
+        let word = chunk.iter().enumerate().fold(0u32, |w, (k, &b)| w | u32::from(b) << (16 - 8 * k));
+        for k in 0..4 {
+            let letter = LETTERS[(word >> (18 - 6 * k)) as usize & 63] as char;
+            let _ = write!(text, "{}", if k <= chunk.len() { letter } else { '=' });
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn base64_pads_as_rfc_4648_says() {
+        for (plain, coded) in [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")] {
+            assert_eq!(base64(plain.as_bytes()), coded);
+        }
+    }
+}

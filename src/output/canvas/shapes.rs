@@ -1,0 +1,263 @@
+//! The display list: what is drawn, before any file format.
+
+use super::palette::Colour;
+use super::{MM, Rect};
+use crate::error::Result;
+use crate::output::font::width_em;
+
+/// A place on the canvas (pt), y downwards.
+pub type Point = (f64, f64);
+
+/// Which part of a text is at its place.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Align {
+    /// Its beginning.
+    #[default]
+    Left,
+    /// Its middle.
+    Centre,
+    /// Its end.
+    Right,
+}
+
+/// A line of text. `_{…}` is a subscript.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Text {
+    /// The characters.
+    pub text: String,
+    /// Size of the font (pt).
+    pub size: f64,
+    /// What is at the place.
+    pub align: Align,
+    /// Read from bottom to top.
+    pub upwards: bool,
+    /// Its colour.
+    pub colour: Colour,
+}
+
+impl Text {
+    /// Black, left-aligned, horizontal.
+    pub fn new(text: impl Into<String>, size: f64) -> Text {
+        Text { text: text.into(), size, align: Align::Left, upwards: false, colour: super::BLACK }
+    }
+
+    /// Aligned otherwise.
+    pub fn align(self, align: Align) -> Text {
+        Text { align, ..self }
+    }
+
+    /// Read from bottom to top.
+    pub fn upwards(self) -> Text {
+        Text { upwards: true, ..self }
+    }
+
+    /// In another colour.
+    pub fn colour(self, colour: Colour) -> Text {
+        Text { colour, ..self }
+    }
+
+    /// Its width (pt).
+    pub fn width(&self) -> Result<f64> {
+        runs(&self.text).iter().map(|run| run.width(self.size)).sum()
+    }
+}
+
+/// A piece of text at one height.
+struct Run<'a> {
+    text: &'a str,
+    subscript: bool,
+}
+
+impl Run<'_> {
+    const SUBSCRIPT_SIZE: f64 = 0.72;
+    const SUBSCRIPT_DROP: f64 = 0.22;
+
+    fn size(&self, size: f64) -> f64 {
+        if self.subscript { size * Run::SUBSCRIPT_SIZE } else { size }
+    }
+
+    fn drop(&self, size: f64) -> f64 {
+        if self.subscript { size * Run::SUBSCRIPT_DROP } else { 0.0 }
+    }
+
+    fn width(&self, size: f64) -> Result<f64> {
+        Ok(width_em(self.text)? * self.size(size))
+    }
+
+    /// Width of the spaces before the first letter, which an SVG viewer would swallow.
+    fn indent(&self, size: f64) -> Result<f64> {
+        Ok(width_em(&self.text[..self.text.len() - self.text.trim_start().len()])? * self.size(size))
+    }
+}
+
+/// "E_{0} (meV)" → "E", ₀"0", " (meV)".
+fn runs(text: &str) -> Vec<Run<'_>> {
+    let mut found = Vec::new();
+    let mut rest = text;
+    while let Some((before, subscript, after)) =
+        rest.split_once("_{").and_then(|(before, tail)| tail.split_once('}').map(|(s, after)| (before, s, after)))
+    {
+        found.push(Run { text: before, subscript: false });
+        found.push(Run { text: subscript, subscript: true });
+        rest = after;
+    }
+    found.push(Run { text: rest, subscript: false });
+    found.retain(|run| !run.text.is_empty());
+    found
+}
+
+/// One thing drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Shape {
+    Line { points: Vec<Point>, width: f64, colour: Colour },
+    Polygon { points: Vec<Point>, colour: Colour },
+    Box { rect: Rect, colour: Colour },
+    Disc { centre: Point, radius: f64, colour: Colour },
+    Text { at: Point, text: Text },
+}
+
+/// A raster of colours that lies beneath all shapes.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Raster {
+    pub rect: Rect,
+    pub columns: usize,
+    pub rows: usize,
+    pub rgb: Vec<u8>,
+}
+
+/// A figure under construction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Canvas {
+    pub(super) width_mm: f64,
+    pub(super) height_mm: f64,
+    pub(super) rasters: Vec<Raster>,
+    pub(super) shapes: Vec<Shape>,
+}
+
+impl Canvas {
+    /// An empty white figure.
+    pub fn new(width_mm: f64, height_mm: f64) -> Canvas {
+        Canvas { width_mm, height_mm, rasters: Vec::new(), shapes: Vec::new() }
+    }
+
+    /// Width (pt).
+    pub fn width(&self) -> f64 {
+        self.width_mm * MM
+    }
+
+    /// Height (pt).
+    pub fn height(&self) -> f64 {
+        self.height_mm * MM
+    }
+
+    /// A line through points.
+    pub fn line(&mut self, points: &[Point], width: f64, colour: Colour) {
+        if points.len() > 1 {
+            self.shapes.push(Shape::Line { points: points.to_vec(), width, colour });
+        }
+    }
+
+    /// A line drawn `on` points long, then left out for `off`.
+    pub fn dashed(&mut self, points: &[Point], width: f64, colour: Colour, (on, off): (f64, f64)) {
+        for piece in dashes(points, on, off) {
+            self.line(&piece, width, colour);
+        }
+    }
+
+    /// The outline of a rectangle.
+    pub fn outline(&mut self, r: Rect, width: f64, colour: Colour) {
+        self.line(&[(r.x0, r.y0), (r.x1, r.y0), (r.x1, r.y1), (r.x0, r.y1), (r.x0, r.y0)], width, colour);
+    }
+
+    /// A filled polygon.
+    pub fn polygon(&mut self, points: &[Point], colour: Colour) {
+        self.shapes.push(Shape::Polygon { points: points.to_vec(), colour });
+    }
+
+    /// A filled rectangle.
+    pub fn fill(&mut self, rect: Rect, colour: Colour) {
+        self.shapes.push(Shape::Box { rect, colour });
+    }
+
+    /// A filled circle.
+    pub fn disc(&mut self, centre: Point, radius: f64, colour: Colour) {
+        self.shapes.push(Shape::Disc { centre, radius, colour });
+    }
+
+    /// Coloured cells that fill a rectangle, beneath everything else; `rgb` row by row from the top.
+    pub(super) fn raster(&mut self, rect: Rect, columns: usize, rows: usize, rgb: Vec<u8>) {
+        self.rasters.push(Raster { rect, columns, rows, rgb });
+    }
+
+    /// A text with its baseline at a place.
+    pub fn text(&mut self, at: Point, text: Text) -> Result<()> {
+        let pieces = runs(&text.text);
+        if pieces.iter().all(|run| !run.subscript) {
+            self.shapes.push(Shape::Text { at, text });
+            return Ok(());
+        }
+        let mut along = match text.align {
+            Align::Left => 0.0,
+            Align::Centre => -text.width()? / 2.0,
+            Align::Right => -text.width()?,
+        };
+        for run in pieces {
+            let drop = run.drop(text.size);
+            let along_here = along + run.indent(text.size)?;
+            along += run.width(text.size)?;
+            let at = if text.upwards { (at.0 + drop, at.1 - along_here) } else { (at.0 + along_here, at.1 + drop) };
+            let piece =
+                Text { text: run.text.trim().into(), size: run.size(text.size), align: Align::Left, ..text.clone() };
+            self.shapes.push(Shape::Text { at, text: piece });
+        }
+        Ok(())
+    }
+}
+
+/// The pieces of a dashed line.
+fn dashes(points: &[Point], on: f64, off: f64) -> Vec<Vec<Point>> {
+    let (mut pieces, mut piece) = (Vec::new(), Vec::new());
+    let (mut drawing, mut left) = (true, on);
+    for pair in points.windows(2) {
+        let (a, b) = (pair[0], pair[1]);
+        let length = (b.0 - a.0).hypot(b.1 - a.1);
+        let at = |s: f64| (a.0 + (b.0 - a.0) * s / length, a.1 + (b.1 - a.1) * s / length);
+        let mut done = 0.0;
+        if drawing {
+            piece.push(a);
+        }
+        while length - done > left {
+            done += left;
+            piece.push(at(done));
+            if drawing {
+                pieces.push(std::mem::take(&mut piece));
+            }
+            drawing = !drawing;
+            left = if drawing { on } else { off }.max(0.1);
+        }
+        left -= length - done;
+    }
+    if let (true, Some(&last)) = (drawing, points.last()) {
+        piece.push(last);
+        pieces.push(piece);
+    }
+    pieces
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_dashed_line_is_cut_into_pieces() {
+        let pieces = dashes(&[(0.0, 0.0), (5.0, 0.0)], 2.0, 1.0);
+        assert_eq!(pieces, [vec![(0.0, 0.0), (2.0, 0.0)], vec![(3.0, 0.0), (5.0, 0.0)]]);
+    }
+
+    #[test]
+    fn subscripts_are_found() {
+        let pieces: Vec<_> = runs("E_{0} (meV)").iter().map(|r| (r.text.to_string(), r.subscript)).collect();
+        assert_eq!(pieces, [("E".into(), false), ("0".into(), true), (" (meV)".into(), false)]);
+        assert_eq!(runs("a_b").len(), 1);
+    }
+}

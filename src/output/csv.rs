@@ -1,0 +1,158 @@
+//! Tables: `path.csv` (a row an image), `profile.csv` (the interpolated energy path), `history.csv` (a row an iteration).
+//!
+//! Separated by commas; numbers in the shortest form that reads back to the same value.
+
+use super::{Format, RunReport};
+use crate::drive::Outcome;
+use crate::error::{Error, Result};
+use std::fmt::Write;
+
+/// What `csv` writes.
+pub(super) const SUMMARY: &str =
+    "path.csv, profile.csv, history.csv: energies by image, interpolated, and by iteration";
+
+/// All tables.
+pub(super) fn formats() -> Vec<Box<dyn Format>> {
+    vec![Box::new(PathCsv), Box::new(ProfileCsv), Box::new(HistoryCsv)]
+}
+
+/// `path.csv`.
+#[derive(Clone, Copy, Debug)]
+pub struct PathCsv;
+
+/// `profile.csv`.
+#[derive(Clone, Copy, Debug)]
+pub struct ProfileCsv;
+
+/// `history.csv`.
+#[derive(Clone, Copy, Debug)]
+pub struct HistoryCsv;
+
+impl Format for PathCsv {
+    fn file_name(&self) -> String {
+        "path.csv".into()
+    }
+
+    fn render(&self, run: &RunReport) -> Result<Vec<u8>> {
+        let t = &run.outcome.images;
+        let mut table = Table::new("path.csv");
+        table.add("image", whole(0..t.energy_mev.len()));
+        table.add("reaction_coordinate_rad", real(&t.reaction_coordinate_rad));
+        table.add("energy_meV", real(&t.energy_mev));
+        for (term, energy) in &t.terms_mev {
+            table.add(&format!("{}_meV", column_name(term)), real(energy));
+        }
+        table.add("max_perpendicular_torque_meV", real(&t.max_perpendicular_torque_mev));
+        table.add("energy_above_initial_meV", real(&t.above_initial_mev));
+        table.render()
+    }
+}
+
+impl Format for ProfileCsv {
+    fn file_name(&self) -> String {
+        "profile.csv".into()
+    }
+
+    fn render(&self, run: &RunReport) -> Result<Vec<u8>> {
+        let profile = &run.outcome.profile;
+        let start = start_energy(run.outcome);
+        let mut table = Table::new("profile.csv");
+        table.add("reaction_coordinate_rad", profile.iter().map(|p| Cell::Real(p.reaction_coordinate_rad)).collect());
+        table.add("energy_meV", profile.iter().map(|p| Cell::Real(start + p.above_initial_mev)).collect());
+        table.add("energy_above_initial_meV", profile.iter().map(|p| Cell::Real(p.above_initial_mev)).collect());
+        table.render()
+    }
+}
+
+impl Format for HistoryCsv {
+    fn file_name(&self) -> String {
+        "history.csv".into()
+    }
+
+    fn render(&self, run: &RunReport) -> Result<Vec<u8>> {
+        let rows = &run.outcome.history;
+        let mut table = Table::new("history.csv");
+        table.add("iteration", whole(rows.iter().map(|r| r.iteration)));
+        table.add("images", whole(rows.iter().map(|r| r.images)));
+        let mut column = |name, value: fn(&crate::drive::HistoryRow) -> f64| {
+            table.add(name, rows.iter().map(|r| Cell::Real(value(r))).collect());
+        };
+        column("max_perpendicular_torque_meV", |r| r.max_perpendicular_torque_mev);
+        column("largest_predicted_rotation_rad", |r| r.largest_predicted_rotation_rad);
+        column("highest_image_above_initial_meV", |r| r.highest_image_mev);
+        column("length_rad", |r| r.length_rad);
+        table.render()
+    }
+}
+
+/// Energy of the initial image.
+fn start_energy(outcome: &Outcome) -> f64 {
+    outcome.images.energy_mev.first().copied().unwrap_or(outcome.initial.energy_mev)
+}
+
+/// A term's name without what would break a header.
+fn column_name(term: &str) -> String {
+    term.chars().map(|c| if c.is_whitespace() || matches!(c, ',' | '"') { '_' } else { c }).collect()
+}
+
+enum Cell {
+    Whole(usize),
+    Real(f64),
+}
+
+fn whole(values: impl IntoIterator<Item = usize>) -> Vec<Cell> {
+    values.into_iter().map(Cell::Whole).collect()
+}
+
+fn real(values: &[f64]) -> Vec<Cell> {
+    values.iter().copied().map(Cell::Real).collect()
+}
+
+/// Columns under their names.
+struct Table {
+    file: &'static str,
+    columns: Vec<(String, Vec<Cell>)>,
+}
+
+impl Table {
+    fn new(file: &'static str) -> Table {
+        Table { file, columns: Vec::new() }
+    }
+
+    fn add(&mut self, name: &str, cells: Vec<Cell>) {
+        self.columns.push((name.into(), cells));
+    }
+
+    /// An error where a column is too short or too long or a number is not finite.
+    fn render(&self) -> Result<Vec<u8>> {
+        let rows = self.columns.first().map_or(0, |(_, cells)| cells.len());
+        if let Some((name, cells)) = self.columns.iter().find(|(_, cells)| cells.len() != rows) {
+            return Err(Error::Numerical(format!("{}: {name} has {} rows, not {rows}", self.file, cells.len())));
+        }
+        let names: Vec<&str> = self.columns.iter().map(|(name, _)| name.as_str()).collect();
+        let mut text = names.join(",") + "\n";
+        for row in 0..rows {
+            for (k, (name, cells)) in self.columns.iter().enumerate() {
+                text.push_str(if k > 0 { "," } else { "" });
+                self.write_cell(&mut text, name, row, &cells[row])?;
+            }
+            text.push('\n');
+        }
+        Ok(text.into_bytes())
+    }
+
+    fn write_cell(&self, text: &mut String, name: &str, row: usize, cell: &Cell) -> Result<()> {
+        let written = match cell {
+            Cell::Whole(n) => write!(text, "{n}"),
+            Cell::Real(v) if v.is_finite() => write!(text, "{v:?}"),
+            Cell::Real(v) => {
+                return Err(Error::Numerical(format!(
+                    "{}: {name}, row {}: {v} is not a finite number",
+                    self.file,
+                    row + 1
+                )));
+            }
+        };
+        written.map_err(|e| Error::Numerical(e.to_string()))
+    }
+}

@@ -1,0 +1,316 @@
+//! `energy_path.svg` and `.png`: energy against the reaction coordinate, images as marks on the interpolated curve, saddles as
+//! diamonds, the barrier as a double arrow.
+
+use super::canvas::{
+    AxisLabel, BLACK, BLUE, Canvas, Frame, GREY, LinePlot, Marker, Obstacles, Point, Rect, SERIES, SMALL_PT, Series,
+    THIN_PT, Text, VERMILLION, WHITE, significant,
+};
+use super::{Format, Picture, RunReport};
+use crate::drive::{Barrier, Outcome};
+use crate::error::{Error, Result};
+
+/// The energy path as a figure.
+#[derive(Clone, Copy, Debug)]
+pub struct EnergyPathPlot(pub Picture);
+
+impl Format for EnergyPathPlot {
+    fn file_name(&self) -> String {
+        format!("energy_path.{}", self.0.extension())
+    }
+
+    fn render(&self, run: &RunReport) -> Result<Vec<u8>> {
+        self.0.render(&draw_energy_paths(&[EnergyPath::from_outcome(run.name, run.outcome)])?)
+    }
+}
+
+/// An energy path to draw; points are (reaction coordinate in rad, energy above the initial state in meV).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct EnergyPath {
+    /// Its name, where several are drawn.
+    pub name: String,
+    /// The images.
+    pub images: Vec<(f64, f64)>,
+    /// The interpolated curve.
+    pub profile: Vec<(f64, f64)>,
+    /// The saddles.
+    pub saddles: Vec<(f64, f64)>,
+    /// The barrier.
+    pub barrier: Option<Barrier>,
+}
+
+impl EnergyPath {
+    /// The energy path of an outcome.
+    pub fn from_outcome(name: &str, outcome: &Outcome) -> EnergyPath {
+        let t = &outcome.images;
+        EnergyPath {
+            name: name.into(),
+            images: t.reaction_coordinate_rad.iter().copied().zip(t.above_initial_mev.iter().copied()).collect(),
+            profile: outcome.profile.iter().map(|p| (p.reaction_coordinate_rad, p.above_initial_mev)).collect(),
+            saddles: outcome.saddles.iter().map(|s| (s.reaction_coordinate_rad, s.above_initial_mev)).collect(),
+            barrier: outcome.barrier,
+        }
+    }
+
+    /// The curve to draw: the profile, or the images where there is none.
+    fn curve(&self) -> &[(f64, f64)] {
+        if self.profile.len() > 1 { &self.profile } else { &self.images }
+    }
+
+    fn energies(&self) -> impl Iterator<Item = f64> {
+        self.images.iter().chain(&self.profile).chain(&self.saddles).map(|p| p.1)
+    }
+}
+
+/// One path with its barrier marked, or several with a legend.
+pub fn draw_energy_paths(paths: &[EnergyPath]) -> Result<Canvas> {
+    let unit = EnergyUnit::for_paths(paths);
+    let plot = plot(paths, unit);
+    let (mut canvas, frame) = plot.draw_frame()?;
+    match paths {
+        [only] => {
+            let guides = guides(only, unit, &frame);
+            guides.draw_lines(&mut canvas);
+            let mut obstacles = plot.draw_series(&mut canvas, &frame);
+            guides.draw_labels(&mut canvas, &frame, &mut obstacles)?;
+        }
+        _ => {
+            let obstacles = plot.draw_series(&mut canvas, &frame);
+            plot.draw_legend(&mut canvas, &frame, &obstacles)?;
+        }
+    }
+    Ok(canvas)
+}
+
+/// The unit in which the numbers on the axis are short.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct EnergyUnit {
+    name: &'static str,
+    per_mev: f64,
+    /// The span of energies in this unit; zero where the path is flat.
+    span: f64,
+}
+
+impl EnergyUnit {
+    /// Below this a path is flat (meV).
+    const FLAT_MEV: f64 = 1e-9;
+
+    fn for_paths(paths: &[EnergyPath]) -> EnergyUnit {
+        let (lo, hi) =
+            paths.iter().flat_map(EnergyPath::energies).fold((0.0f64, 0.0f64), |(lo, hi), e| (lo.min(e), hi.max(e)));
+        let mev = hi - lo;
+        let (name, per_mev) = match mev {
+            ..EnergyUnit::FLAT_MEV => ("meV", 1.0),
+            ..1e-4 => ("neV", 1e6),
+            ..0.1 => ("µeV", 1e3),
+            ..1e3 => ("meV", 1.0),
+            _ => ("eV", 1e-3),
+        };
+        EnergyUnit { name, per_mev, span: if mev < EnergyUnit::FLAT_MEV { 0.0 } else { mev * per_mev } }
+    }
+
+    fn scaled(&self, points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+        points.iter().map(|&(x, e)| (x, e * self.per_mev)).collect()
+    }
+}
+
+fn plot(paths: &[EnergyPath], unit: EnergyUnit) -> LinePlot {
+    let mut plot = LinePlot::new("Reaction coordinate (rad)", "");
+    plot.y = AxisLabel { label: format!("E − E_{{initial}} ({})", unit.name), ..AxisLabel::default() };
+    for (k, path) in paths.iter().enumerate() {
+        let colour = if paths.len() == 1 { BLUE } else { SERIES[k % SERIES.len()] };
+        let marker = image_marker(path.images.len());
+        let mut curve = Series::line(unit.scaled(path.curve())).colour(colour);
+        if paths.len() > 1 {
+            curve = curve.label(legend(path, unit));
+        }
+        plot.series.push(curve);
+        plot.series.extend(marker.map(|m| Series::markers(unit.scaled(&path.images), m).colour(colour)));
+        let saddle_colour = if paths.len() == 1 { VERMILLION } else { colour };
+        plot.series.push(Series::markers(unit.scaled(&path.saddles), Marker::Diamond).colour(saddle_colour));
+    }
+    plot.y.range = Some(energy_range(paths, unit));
+    if plot.series.iter().flat_map(|s| &s.points).all(|p| p.0 == 0.0) {
+        plot.x.range = Some((-1.2, 1.2));
+    }
+    plot
+}
+
+/// Smaller where there are many, none where they would run into a band.
+fn image_marker(images: usize) -> Option<Marker> {
+    match images {
+        0..=45 => Some(Marker::Disc),
+        46..=120 => Some(Marker::Dot),
+        _ => None,
+    }
+}
+
+fn legend(path: &EnergyPath, unit: EnergyUnit) -> String {
+    match path.barrier {
+        Some(b) => format!("{}: {} {}", path.name, significant(b.forward_mev * unit.per_mev, 4), unit.name),
+        None => path.name.clone(),
+    }
+}
+
+/// All energies, with room above for the highest mark.
+fn energy_range(paths: &[EnergyPath], unit: EnergyUnit) -> (f64, f64) {
+    if unit.span == 0.0 {
+        return (-1.2, 1.2);
+    }
+    let energies = || paths.iter().flat_map(EnergyPath::energies).map(|e| e * unit.per_mev);
+    let (lo, hi) = (energies().fold(0.0, f64::min), energies().fold(0.0, f64::max));
+    (lo - 0.07 * unit.span, hi + 0.10 * unit.span)
+}
+
+/// A double arrow between two levels (pt).
+struct Arrow {
+    x: f64,
+    from: f64,
+    to: f64,
+}
+
+/// Everything that explains a barrier: levels and arrows, in points, and what they mean, a line each.
+#[derive(Default)]
+struct Guides {
+    levels: Vec<[Point; 2]>,
+    arrows: Vec<Arrow>,
+    lines: Vec<String>,
+}
+
+/// Room that the saddle's mark takes (pt).
+const MARK: f64 = 4.0;
+
+/// The barrier from the initial state, and from the final one where it differs.
+fn guides(path: &EnergyPath, unit: EnergyUnit, frame: &Frame) -> Guides {
+    let mut guides = Guides::default();
+    let highest = path.saddles.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1));
+    let (Some(barrier), Some(saddle), Some(first), Some(last)) =
+        (path.barrier, highest, path.images.first(), path.images.last())
+    else {
+        return guides;
+    };
+    if (barrier.forward_mev - barrier.backward_mev).abs() <= 1e-3 * barrier.forward_mev.abs() {
+        guides.add(frame, unit, Height { saddle, end: first.0, mev: barrier.forward_mev, shift: 0.0, symbol: "ΔE" });
+    } else {
+        guides.add(
+            frame,
+            unit,
+            Height { saddle, end: first.0, mev: barrier.forward_mev, shift: -3.0, symbol: "ΔE_{→}" },
+        );
+        guides.add(
+            frame,
+            unit,
+            Height { saddle, end: last.0, mev: barrier.backward_mev, shift: 3.0, symbol: "ΔE_{←}" },
+        );
+    }
+    guides
+}
+
+/// A saddle above one end of the path.
+struct Height {
+    saddle: (f64, f64),
+    end: f64,
+    mev: f64,
+    shift: f64,
+    symbol: &'static str,
+}
+
+impl Guides {
+    fn add(&mut self, frame: &Frame, unit: EnergyUnit, h: Height) {
+        let place = |x: f64, e: f64| frame.place((x, e * unit.per_mev));
+        let level = h.saddle.1 - h.mev;
+        let (Some(top), Some(foot), Some(end)) =
+            (place(h.saddle.0, h.saddle.1), place(h.saddle.0, level), place(h.end, level))
+        else {
+            return;
+        };
+        let x = foot.0 + h.shift;
+        self.levels.push([end, (x, foot.1)]);
+        if foot.1 - top.1 > 2.0 * MARK {
+            self.arrows.push(Arrow { x, from: foot.1, to: top.1 + MARK });
+        }
+        self.lines.push(format!("{} = {} {}", h.symbol, significant(h.mev * unit.per_mev, 4), unit.name));
+    }
+
+    /// Beneath the curve: levels and arrows.
+    fn draw_lines(&self, canvas: &mut Canvas) {
+        for level in &self.levels {
+            canvas.dashed(level, THIN_PT, GREY, (2.0, 2.0));
+        }
+        for arrow in &self.arrows {
+            double_arrow(canvas, arrow);
+        }
+    }
+
+    /// Beside the arrows, where nothing is covered.
+    fn draw_labels(&self, canvas: &mut Canvas, frame: &Frame, obstacles: &mut Obstacles) -> Result<()> {
+        for arrow in &self.arrows {
+            obstacles.add_line(&[(arrow.x, arrow.from), (arrow.x, arrow.to)]);
+        }
+        self.levels.iter().for_each(|level| obstacles.add_line(level));
+        let texts: Vec<Text> = self.lines.iter().map(|line| Text::new(line, SMALL_PT)).collect();
+        let width = texts.iter().try_fold(0.0, |w: f64, t| Ok::<_, Error>(w.max(t.width()?)))?;
+        let places = self.label_places(&frame.rect, width, LINE * texts.len() as f64);
+        let Some((best, hits)) = obstacles.freest(&frame.rect, &places) else { return Ok(()) };
+        let r = places[best];
+        if hits > 0 {
+            canvas.fill(r, WHITE);
+        }
+        for (k, text) in texts.into_iter().enumerate() {
+            canvas.text((r.x0 + PADDING, r.y0 + PADDING + LINE * k as f64 + 0.8 * SMALL_PT), text)?;
+        }
+        Ok(())
+    }
+
+    /// Beside the arrows at many heights, the middle ones first; then anywhere in the frame, the nearest first.
+    fn label_places(&self, frame: &Rect, width: f64, height: f64) -> Vec<Rect> {
+        let Some(longest) = self.arrows.iter().max_by(|a, b| a.length().total_cmp(&b.length())) else {
+            return grid(frame, width, height);
+        };
+        let (left, right) = self.arrows.iter().fold((longest.x, longest.x), |(l, r), a| (l.min(a.x), r.max(a.x)));
+        let heights = [0.45, 0.4, 0.35, 0.3, 0.25, 0.2, 0.5, 0.55, 0.6, 0.65, 0.15, 0.7, 0.75, 0.8, 0.85, 0.9];
+        let sides = [right + width / 2.0 + PADDING + 1.5, left - width / 2.0 - PADDING - 1.5];
+        let beside = sides.into_iter().flat_map(|x| {
+            heights.into_iter().map(move |t| around((x, longest.from + t * (longest.to - longest.from)), width, height))
+        });
+        let mut elsewhere = grid(frame, width, height);
+        let distance = |r: &Rect| ((r.x0 + r.x1) / 2.0 - longest.x).hypot((r.y0 + r.y1) / 2.0 - longest.to);
+        elsewhere.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+        beside.chain(elsewhere).collect()
+    }
+}
+
+/// Distance between two lines of a label (pt).
+const LINE: f64 = SMALL_PT + 2.5;
+/// Free room around a label (pt).
+const PADDING: f64 = 2.5;
+
+/// The room of a label around its centre.
+fn around((x, y): Point, width: f64, height: f64) -> Rect {
+    Rect { x0: x - width / 2.0, y0: y - height / 2.0, x1: x + width / 2.0, y1: y + height / 2.0 }.grown(PADDING)
+}
+
+/// Places all over a frame.
+fn grid(frame: &Rect, width: f64, height: f64) -> Vec<Rect> {
+    let across = (1..32).flat_map(|i| (1..24).map(move |j| (f64::from(i) / 32.0, f64::from(j) / 24.0)));
+    let places = across.map(|(fx, fy)| (frame.x0 + fx * frame.width(), frame.y0 + fy * frame.height()));
+    places.map(|p| around(p, width, height)).filter(|r| frame.grown(-2.0).encloses(r)).collect()
+}
+
+impl Arrow {
+    fn length(&self) -> f64 {
+        (self.to - self.from).abs()
+    }
+}
+
+/// From level to level; only a line where there is no room for heads.
+fn double_arrow(canvas: &mut Canvas, arrow: &Arrow) {
+    const HEAD: f64 = 4.0;
+    const HALF: f64 = 1.3;
+    let (up, x) = ((arrow.to - arrow.from).signum(), arrow.x);
+    canvas.line(&[(x, arrow.from), (x, arrow.to)], 0.6, BLACK);
+    if arrow.length() > 3.0 * HEAD {
+        for (tip, inward) in [(arrow.to, -up), (arrow.from, up)] {
+            canvas.polygon(&[(x, tip), (x - HALF, tip + inward * HEAD), (x + HALF, tip + inward * HEAD)], BLACK);
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! What is written: each format is a pure function of the outcome, from [`RunReport`] to bytes; only [`disk`] touches the disk.
+//!
+//! Energies are in meV, angles and path lengths in rad, and every outer name carries its unit. The same outcome gives the same
+//! bytes: there are no time stamps.
+
+pub mod canvas;
+mod config_copy;
+mod csv;
+pub mod disk;
+mod energy_path_plot;
+mod font;
+mod spins_plot;
+mod summary;
+
+pub use config_copy::ConfigCopy;
+pub use csv::{HistoryCsv, PathCsv, ProfileCsv};
+pub use energy_path_plot::{EnergyPath, EnergyPathPlot, draw_energy_paths};
+pub use spins_plot::{SpinsPlot, draw_spins};
+pub use summary::Summary;
+
+use crate::drive::Outcome;
+use crate::error::Result;
+
+/// Everything that a format may know about a run.
+#[derive(Clone, Copy, Debug)]
+pub struct RunReport<'a> {
+    /// Name of the run.
+    pub name: &'a str,
+    /// Version of the program.
+    pub version: &'a str,
+    /// Hash of the config.
+    pub config_sha256: &'a str,
+    /// The config as run.
+    pub config_text: &'a str,
+    /// What was found.
+    pub outcome: &'a Outcome,
+}
+
+/// One file of a result: a pure function of the outcome.
+pub trait Format {
+    /// Its name in the directory of the result.
+    fn file_name(&self) -> String;
+
+    /// Its bytes.
+    fn render(&self, run: &RunReport) -> Result<Vec<u8>>;
+}
+
+/// How a figure is stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Picture {
+    /// Vector graphics.
+    Svg,
+    /// Pixels.
+    Png,
+}
+
+impl Picture {
+    /// The ending of its file names.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Picture::Svg => "svg",
+            Picture::Png => "png",
+        }
+    }
+
+    /// The figure as a file.
+    pub fn render(self, canvas: &canvas::Canvas) -> Result<Vec<u8>> {
+        match self {
+            Picture::Svg => canvas.svg(),
+            Picture::Png => canvas.png(),
+        }
+    }
+}
+
+/// When a kind of file is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Group {
+    /// Always.
+    Always,
+    /// If named in `output.formats`.
+    Formats,
+    /// If named in `output.plots`.
+    Plots,
+}
+
+/// A name in the config with the files that it stands for.
+pub struct Kind {
+    /// The name.
+    pub name: &'static str,
+    /// In which list it is named.
+    pub group: Group,
+    /// What it is, in a line.
+    pub summary: &'static str,
+    /// Its files.
+    pub formats: fn() -> Vec<Box<dyn Format>>,
+}
+
+/// All kinds of files, in the order in which they are listed.
+pub const KINDS: &[Kind] = &[
+    Kind { name: "csv", group: Group::Formats, summary: csv::SUMMARY, formats: csv::formats },
+    Kind {
+        name: "svg",
+        group: Group::Plots,
+        summary: "energy_path.svg, spins.svg: the energy path and the map of the spins as vector graphics",
+        formats: || plots(Picture::Svg),
+    },
+    Kind {
+        name: "png",
+        group: Group::Plots,
+        summary: "energy_path.png, spins.png: the same figures as pixels, 300 an inch",
+        formats: || plots(Picture::Png),
+    },
+    Kind {
+        name: "config",
+        group: Group::Always,
+        summary: "config.json: the config as run",
+        formats: || vec![Box::new(ConfigCopy)],
+    },
+    Kind {
+        name: "summary",
+        group: Group::Always,
+        summary: "summary.json: barrier, saddles, ends, work and whether they are certified",
+        formats: || vec![Box::new(Summary)],
+    },
+];
+
+fn plots(picture: Picture) -> Vec<Box<dyn Format>> {
+    vec![Box::new(EnergyPathPlot(picture)), Box::new(SpinsPlot(picture))]
+}
+
+/// The files of a run that names these kinds, `summary.json` last.
+pub fn render_files(run: &RunReport, wanted: impl Fn(&Kind) -> bool) -> Result<Vec<disk::File>> {
+    let kinds = KINDS.iter().filter(|kind| kind.group == Group::Always || wanted(kind));
+    let formats = kinds.flat_map(|kind| (kind.formats)());
+    formats.map(|format| Ok(disk::File { name: format.file_name(), bytes: format.render(run)? })).collect()
+}
+
+/// Names of all files that a result can have.
+pub fn known_files() -> Vec<String> {
+    KINDS.iter().flat_map(|kind| (kind.formats)()).map(|format| format.file_name()).collect()
+}

@@ -1,0 +1,521 @@
+//! Results as files: whole contents for a tiny outcome, figures that do not break, a disk that is treated with care.
+
+use spinneb::drive::{
+    Barrier, EndPoint, HistoryRow, ImageTable, IntermediateMinimum, Outcome, ProfilePoint, RejectedPath, SaddlePoint,
+    Work,
+};
+use spinneb::error::{Error, Result};
+use spinneb::output::disk::{self, Destination, File};
+use spinneb::output::{
+    EnergyPath, EnergyPathPlot, Format, HistoryCsv, KINDS, PathCsv, Picture, ProfileCsv, RunReport, SpinsPlot, Summary,
+    draw_energy_paths, known_files, render_files,
+};
+use spinneb::path::Path;
+use spinneb::spins::Spins;
+use std::io::ErrorKind;
+
+/// A path along which a tanh wall of width 4 sites moves through a chain, its plane turning by a right angle.
+fn wall_sweep(sites: usize, images: usize) -> Path {
+    let states: Vec<Spins> = (0..images)
+        .map(|k| {
+            let t = k as f64 / (images - 1).max(1) as f64;
+            let centre = (0.2 + 0.6 * t) * (sites as f64 - 1.0);
+            let (sin, cos) = (std::f64::consts::FRAC_PI_2 * t).sin_cos();
+            let vector = |i: usize| {
+                let u = (i as f64 - centre) / 4.0;
+                let across = 1.0 / u.cosh();
+                [across * cos, across * sin, -u.tanh()]
+            };
+            Spins::from_vectors(&(0..sites).map(vector).collect::<Vec<_>>()).unwrap()
+        })
+        .collect();
+    Path::new(&states)
+}
+
+/// An outcome whose energy above the initial state is `energy(s)` at reaction coordinate s in [0, length].
+fn outcome(path: Path, length: f64, energy: impl Fn(f64) -> f64) -> Outcome {
+    let n = path.images();
+    let s: Vec<f64> = (0..n).map(|k| length * k as f64 / (n - 1).max(1) as f64).collect();
+    let above: Vec<f64> = s.iter().map(|&s| energy(s)).collect();
+    let profile: Vec<ProfilePoint> = (0..=400)
+        .map(|k| length * k as f64 / 400.0)
+        .map(|s| ProfilePoint { reaction_coordinate_rad: s, above_initial_mev: energy(s) })
+        .collect();
+    let saddles: Vec<SaddlePoint> = profile
+        .windows(3)
+        .filter(|w| w[1].above_initial_mev > w[0].above_initial_mev && w[1].above_initial_mev >= w[2].above_initial_mev)
+        .map(|w| saddle(w[1], n, length))
+        .collect();
+    let top = saddles.iter().map(|s| s.above_initial_mev).max_by(f64::total_cmp);
+    let end = |e: f64| EndPoint {
+        energy_mev: e - 500.0,
+        max_torque_mev: 1e-13,
+        negative_modes: Some(0),
+        zero_modes: Some(1),
+    };
+    Outcome {
+        converged: true,
+        certified: true,
+        stop_reason: "converged: largest predicted rotation 3.1e-7 rad".into(),
+        warnings: Vec::new(),
+        barrier: top.map(|e| Barrier { forward_mev: e, backward_mev: e - energy(length) }),
+        saddles,
+        initial: end(0.0),
+        final_state: end(energy(length)),
+        intermediate_minima: Vec::new(),
+        rejected_paths: Vec::new(),
+        images: ImageTable {
+            reaction_coordinate_rad: s,
+            energy_mev: above.iter().map(|e| e - 500.0).collect(),
+            terms_mev: vec![("exchange".into(), above.clone())],
+            max_perpendicular_torque_mev: vec![0.0; n],
+            above_initial_mev: above,
+        },
+        path,
+        profile,
+        history: Vec::new(),
+        work: Work { iterations: 10, force_evaluations: 200, seconds: 0.5, threads: 2 },
+        max_perpendicular_torque_mev: 1e-9,
+        largest_predicted_rotation_rad: 3.1e-7,
+    }
+}
+
+fn saddle(p: ProfilePoint, images: usize, length: f64) -> SaddlePoint {
+    SaddlePoint {
+        energy_mev: p.above_initial_mev - 500.0,
+        above_initial_mev: p.above_initial_mev,
+        reaction_coordinate_rad: p.reaction_coordinate_rad,
+        image: (p.reaction_coordinate_rad / length * (images - 1) as f64).round() as usize,
+        max_torque_mev: Some(1e-13),
+        negative_modes: Some(1),
+        zero_modes: Some(0),
+        lowest_eigenvalues_mev: vec![-0.25, 0.5],
+    }
+}
+
+/// Three images of one spin that turns over, every number chosen by hand.
+fn tiny() -> Outcome {
+    let states = [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]].map(|v| Spins::from_vectors(&[v]).unwrap());
+    let mut o = outcome(Path::new(&states), 2.0, |_| 0.0);
+    o.certified = false;
+    o.warnings = vec!["flat to 1e-12 meV".into()];
+    o.barrier = Some(Barrier { forward_mev: 0.5, backward_mev: 0.75 });
+    o.saddles = vec![SaddlePoint {
+        energy_mev: 0.25,
+        above_initial_mev: 0.5,
+        reaction_coordinate_rad: 1.0,
+        image: 1,
+        max_torque_mev: None,
+        negative_modes: Some(1),
+        zero_modes: None,
+        lowest_eigenvalues_mev: vec![-0.1],
+    }];
+    o.initial = EndPoint { energy_mev: -0.25, max_torque_mev: 0.0, negative_modes: Some(0), zero_modes: Some(0) };
+    o.final_state = EndPoint { energy_mev: -0.5, max_torque_mev: 1e-13, negative_modes: None, zero_modes: None };
+    o.intermediate_minima =
+        vec![IntermediateMinimum { image: 1, reaction_coordinate_rad: 0.9, state: o.initial.clone() }];
+    o.rejected_paths = vec![RejectedPath {
+        guess: "rotation".into(),
+        barrier_mev: None,
+        negative_modes: Some(2),
+        reason: "higher".into(),
+    }];
+    o.images = ImageTable {
+        reaction_coordinate_rad: vec![0.0, 0.1 + 0.2, 2.0],
+        energy_mev: vec![-0.25, 0.25, -0.5],
+        above_initial_mev: vec![0.0, 0.5, -0.25],
+        terms_mev: vec![("exchange".into(), vec![0.0; 3]), ("easy axis".into(), vec![-0.25, 0.25, -0.5])],
+        max_perpendicular_torque_mev: vec![0.0, 1e-13, 0.0],
+    };
+    o.profile = vec![
+        ProfilePoint { reaction_coordinate_rad: 0.0, above_initial_mev: 0.0 },
+        ProfilePoint { reaction_coordinate_rad: 1.0, above_initial_mev: 0.5 },
+    ];
+    o.history = vec![HistoryRow {
+        iteration: 1,
+        images: 3,
+        max_perpendicular_torque_mev: 0.125,
+        largest_predicted_rotation_rad: 1e-7,
+        highest_image_mev: 0.5,
+        length_rad: 2.0,
+    }];
+    o
+}
+
+fn report(outcome: &Outcome) -> RunReport<'_> {
+    RunReport { name: "tiny", version: "0.1.0", config_sha256: "abc", config_text: "{}", outcome }
+}
+
+fn text(format: &dyn Format, outcome: &Outcome) -> String {
+    String::from_utf8(format.render(&report(outcome)).unwrap()).unwrap()
+}
+
+#[test]
+fn tables_are_exactly_so() {
+    let o = tiny();
+    assert_eq!(
+        text(&PathCsv, &o),
+        "image,reaction_coordinate_rad,energy_meV,exchange_meV,easy_axis_meV,max_perpendicular_torque_meV,energy_above_initial_meV\n\
+         0,0.0,-0.25,0.0,-0.25,0.0,0.0\n\
+         1,0.30000000000000004,0.25,0.0,0.25,1e-13,0.5\n\
+         2,2.0,-0.5,0.0,-0.5,0.0,-0.25\n"
+    );
+    assert_eq!(
+        text(&ProfileCsv, &o),
+        "reaction_coordinate_rad,energy_meV,energy_above_initial_meV\n0.0,-0.25,0.0\n1.0,0.25,0.5\n"
+    );
+    assert_eq!(
+        text(&HistoryCsv, &o),
+        "iteration,images,max_perpendicular_torque_meV,largest_predicted_rotation_rad,highest_image_above_initial_meV,length_rad\n\
+         1,3,0.125,1e-7,0.5,2.0\n"
+    );
+}
+
+#[test]
+fn the_summary_is_exactly_so() {
+    let expected = r#"{
+  "name": "tiny",
+  "version": "0.1.0",
+  "config_sha256": "abc",
+  "converged": true,
+  "certified": false,
+  "stop_reason": "converged: largest predicted rotation 3.1e-7 rad",
+  "warnings": [
+    "flat to 1e-12 meV"
+  ],
+  "barrier_meV": {
+    "forward": 0.5,
+    "backward": 0.75
+  },
+  "barrier_J": {
+    "forward": 8.01088317e-23,
+    "backward": 1.2016324755000001e-22
+  },
+  "barrier_K": {
+    "forward": 5.802259060872792,
+    "backward": 8.703388591309189
+  },
+  "saddles": [
+    {
+      "energy_meV": 0.25,
+      "energy_above_initial_meV": 0.5,
+      "reaction_coordinate_rad": 1.0,
+      "image": 1,
+      "max_torque_meV": null,
+      "negative_modes": 1,
+      "zero_modes": null,
+      "lowest_eigenvalues_meV": [
+        -0.1
+      ]
+    }
+  ],
+  "initial": {
+    "energy_meV": -0.25,
+    "max_torque_meV": 0.0,
+    "negative_modes": 0,
+    "zero_modes": 0
+  },
+  "final": {
+    "energy_meV": -0.5,
+    "max_torque_meV": 1e-13,
+    "negative_modes": null,
+    "zero_modes": null
+  },
+  "intermediate_minima": [
+    {
+      "image": 1,
+      "reaction_coordinate_rad": 0.9,
+      "energy_meV": -0.25,
+      "max_torque_meV": 0.0,
+      "negative_modes": 0,
+      "zero_modes": 0
+    }
+  ],
+  "rejected_paths": [
+    {
+      "guess": "rotation",
+      "barrier_meV": null,
+      "negative_modes": 2,
+      "reason": "higher"
+    }
+  ],
+  "path": {
+    "images": 3,
+    "length_rad": 2.0,
+    "max_perpendicular_torque_meV": 1e-9,
+    "largest_predicted_rotation_rad": 3.1e-7
+  },
+  "work": {
+    "iterations": 10,
+    "force_evaluations": 200,
+    "seconds": 0.5,
+    "threads": 2
+  }
+}
+"#;
+    assert_eq!(text(&Summary, &tiny()), expected);
+}
+
+#[test]
+fn a_missing_barrier_is_null() {
+    let mut o = tiny();
+    o.barrier = None;
+    let json: serde_json::Value = serde_json::from_str(&text(&Summary, &o)).unwrap();
+    for key in ["barrier_meV", "barrier_J", "barrier_K"] {
+        assert_eq!(json.get(key), Some(&serde_json::Value::Null));
+    }
+}
+
+#[test]
+fn a_number_that_is_not_finite_is_an_error_with_its_place() {
+    let mut o = tiny();
+    o.saddles[0].lowest_eigenvalues_mev[0] = f64::NAN;
+    o.images.energy_mev[2] = f64::INFINITY;
+    o.images.above_initial_mev[2] = f64::INFINITY;
+    let message = |format: &dyn Format| format.render(&report(&o)).unwrap_err().to_string();
+    assert_eq!(message(&Summary), "summary.json: saddles[0].lowest_eigenvalues_meV[0]: NaN is not a finite number");
+    assert_eq!(message(&PathCsv), "path.csv: energy_meV, row 3: inf is not a finite number");
+    assert!(message(&EnergyPathPlot(Picture::Svg)).contains("not finite"));
+}
+
+#[test]
+fn columns_of_different_lengths_are_an_error() {
+    let mut o = tiny();
+    o.images.terms_mev[0].1.pop();
+    let e = PathCsv.render(&report(&o)).unwrap_err();
+    assert_eq!(e.to_string(), "path.csv: exchange_meV has 2 rows, not 3");
+}
+
+#[test]
+fn every_kind_has_a_name_a_summary_and_files_that_no_other_kind_has() {
+    assert!(KINDS.iter().all(|k| !k.name.is_empty() && !k.summary.is_empty() && !(k.formats)().is_empty()));
+    let mut names = known_files();
+    names.sort();
+    names.dedup();
+    assert_eq!(names.len(), known_files().len());
+}
+
+#[test]
+fn the_same_outcome_gives_the_same_bytes() {
+    let o = outcome(wall_sweep(50, 20), 9.0, |s| 6.298 * (s * std::f64::consts::PI / 9.0).sin().powi(2));
+    let render = || render_files(&report(&o), |_| true).unwrap();
+    assert_eq!(render(), render());
+}
+
+/// Everything that once might break a plot: (name, outcome).
+fn figures() -> Vec<(&'static str, Outcome)> {
+    use std::f64::consts::PI;
+    let one_spin = tiny().path;
+    let mut no_barrier = outcome(wall_sweep(50, 20), 9.0, |s| 0.3 * s);
+    no_barrier.barrier = None;
+    let mut single = outcome(wall_sweep(10, 2), 1.0, |_| 0.0);
+    single.images = ImageTable {
+        reaction_coordinate_rad: vec![0.0],
+        energy_mev: vec![1.0],
+        above_initial_mev: vec![0.0],
+        terms_mev: vec![],
+        max_perpendicular_torque_mev: vec![0.0],
+    };
+    single.profile.clear();
+    let mut empty = single.clone();
+    empty.images = ImageTable::default();
+    vec![
+        ("wall", outcome(wall_sweep(50, 20), 9.0, |s| 6.29761 * (s * PI / 9.0).sin().powi(2))),
+        ("tilted", outcome(wall_sweep(50, 20), 9.0, |s| 6.29761 * (s * PI / 9.0).sin().powi(2) - 0.35 * s)),
+        ("uphill", outcome(wall_sweep(50, 31), 3.1, |s| 20.0 * (s * PI / 3.1).sin().powi(2) + 9.0 * s)),
+        (
+            "maxima",
+            outcome(wall_sweep(100, 41), 28.0, |s| 0.17 * (3.0 * s * PI / 28.0).sin().powi(2) * (1.0 + 0.02 * s)),
+        ),
+        ("narrow", outcome(wall_sweep(200, 101), 28.0, |s| 812.3 * (-(s - 14.0).powi(2)).exp())),
+        ("micro", outcome(wall_sweep(60, 20), 5.0, |s| 3.7e-3 * (s * PI / 5.0).sin().powi(2))),
+        ("electronvolt", outcome(wall_sweep(20, 12), 5.0, |s| 4321.0 * (s * PI / 5.0).sin())),
+        (
+            "plateau",
+            outcome(wall_sweep(100, 30), 40.0, |s| {
+                25.0 * ((s - 3.0).tanh() - (s - 37.0).tanh() - 0.1 * (s / 40.0)) / 2.0
+            }),
+        ),
+        ("flat", outcome(wall_sweep(30, 10), 9.0, |s| 1e-14 * s)),
+        ("two", outcome(wall_sweep(12, 2), 1.0, |s| s)),
+        ("three", outcome(one_spin, PI, |s| 0.5 * s.sin().powi(2))),
+        ("no_barrier", no_barrier),
+        ("single", single),
+        ("empty", empty),
+        ("long", outcome(wall_sweep(100_000, 12), 9.0, |s| 6.298 * (s * PI / 9.0).sin().powi(2))),
+    ]
+}
+
+/// With SPINNEB_FIGURES=DIR the figures are kept there, to be looked at.
+fn keep(name: &str, bytes: &[u8]) {
+    if let Ok(dir) = std::env::var("SPINNEB_FIGURES") {
+        disk::write_file(&std::path::Path::new(&dir).join(name), bytes).unwrap();
+    }
+}
+
+fn size_of_png(bytes: &[u8]) -> (u32, u32) {
+    let mut reader = png::Decoder::new(bytes).read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size()];
+    let info = reader.next_frame(&mut pixels).unwrap();
+    assert!(pixels.iter().any(|&v| v != 255), "an empty figure");
+    (info.width, info.height)
+}
+
+#[test]
+fn figures_of_all_outcomes_are_drawn() {
+    for (name, o) in figures() {
+        for picture in [Picture::Svg, Picture::Png] {
+            let formats: [&dyn Format; 2] = [&EnergyPathPlot(picture), &SpinsPlot(picture)];
+            for (format, size) in formats.into_iter().zip([(1004, 709), (1004, 1087)]) {
+                let bytes = format.render(&report(&o)).unwrap();
+                keep(&format!("{name}_{}", format.file_name()), &bytes);
+                match picture {
+                    Picture::Png => assert_eq!(size_of_png(&bytes), size, "{name}"),
+                    Picture::Svg => {
+                        let svg = String::from_utf8(bytes).unwrap();
+                        assert!(svg.starts_with("<svg xmlns=") && svg.trim_end().ends_with("</svg>"), "{name}");
+                        assert!(numbers_are_finite(&svg), "{name}");
+                        assert!(svg.len() < 800_000, "{name}: {} bytes", svg.len());
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// No NaN or inf outside the pixels of an embedded image.
+fn numbers_are_finite(svg: &str) -> bool {
+    svg.lines().filter(|line| !line.starts_with("<image")).all(|line| !line.contains("NaN") && !line.contains("inf"))
+}
+
+#[test]
+fn several_paths_are_overlaid_with_a_legend() {
+    let chosen = ["wall", "tilted", "uphill"];
+    let paths: Vec<EnergyPath> = figures()
+        .iter()
+        .filter(|(name, _)| chosen.contains(name))
+        .map(|(name, o)| EnergyPath::from_outcome(name, o))
+        .collect();
+    let canvas = draw_energy_paths(&paths).unwrap();
+    keep("overlay.png", &canvas.png().unwrap());
+    let svg = String::from_utf8(canvas.svg().unwrap()).unwrap();
+    assert!(chosen.iter().all(|name| svg.contains(&format!("{name}: "))));
+    assert!(draw_energy_paths(&[]).unwrap().svg().is_ok());
+}
+
+#[test]
+fn a_logarithmic_plot_leaves_out_what_has_no_logarithm() {
+    use spinneb::output::canvas::{LinePlot, Marker, Series};
+    let decay = |rate: f64| (0..=60).map(|k| (f64::from(k) * 10.0, (-rate * f64::from(k)).exp())).collect::<Vec<_>>();
+    let mut broken = decay(0.2);
+    broken[5].1 = 0.0;
+    let plot = LinePlot::new("Iteration", "Largest predicted rotation (rad)")
+        .log_y()
+        .with(Series::line(broken).label("velocity projection").marker(Marker::Ring))
+        .with(Series::line(decay(0.5)).label("implicit"))
+        .with(Series::line(vec![(0.0, 1e-6), (600.0, 1e-6)]).label("tolerance").dash(3.0, 2.0).width(0.7));
+    let canvas = plot.draw().unwrap();
+    keep("log.png", &canvas.png().unwrap());
+    assert!(numbers_are_finite(&String::from_utf8(canvas.svg().unwrap()).unwrap()));
+    let not_a_number = LinePlot::new("x", "y").with(Series::line(vec![(0.0, f64::NAN)]));
+    assert!(not_a_number.draw().is_err());
+}
+
+#[test]
+fn text_in_an_svg_is_escaped() {
+    let path =
+        |name: &str| EnergyPath { name: name.into(), images: vec![(0.0, 0.0), (1.0, 1.0)], ..Default::default() };
+    let svg = draw_energy_paths(&[path("a<b"), path("c&d")]).unwrap().svg().unwrap();
+    let svg = String::from_utf8(svg).unwrap();
+    assert!(svg.contains("a&lt;b") && svg.contains("c&amp;d"));
+}
+
+fn file(name: &str, content: &str) -> File {
+    File { name: name.into(), bytes: content.into() }
+}
+
+fn names(dir: &std::path::Path) -> Vec<String> {
+    let mut names: Vec<String> =
+        std::fs::read_dir(dir).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+fn kind_of(result: Result<Destination>) -> (ErrorKind, String) {
+    match result {
+        Err(e @ Error::Io { .. }) => {
+            let words = e.to_string();
+            let Error::Io { source, .. } = e else { unreachable!() };
+            (source.kind(), words)
+        }
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_result_is_written_found_again_refused_and_replaced() {
+    let top = tempfile::tempdir().unwrap();
+    let dir = top.path().join("results/tiny");
+    assert_eq!(disk::prepare(&dir, "0.1.0", "abc", false).unwrap(), Destination::Ready);
+    assert_eq!(names(&dir), [""; 0]);
+
+    let o = tiny();
+    let files = render_files(&report(&o), |kind| kind.name == "csv").unwrap();
+    assert_eq!(files.last().unwrap().name, "summary.json");
+    disk::write_result(&dir, &files, &known_files()).unwrap();
+    std::fs::write(dir.join("notes.txt"), "mine").unwrap();
+    assert_eq!(names(&dir), ["config.json", "history.csv", "notes.txt", "path.csv", "profile.csv", "summary.json"]);
+
+    match disk::prepare(&dir, "0.1.0", "abc", false).unwrap() {
+        Destination::Finished(stored) => assert_eq!(stored.exit_code(), 3),
+        Destination::Ready => panic!("the result was not seen"),
+    }
+    let (kind, words) = kind_of(disk::prepare(&dir, "0.1.0", "other", false));
+    assert_eq!(kind, ErrorKind::AlreadyExists);
+    assert!(words.contains("tiny: holds a result of another config; use --force"), "{words}");
+    let (_, words) = kind_of(disk::prepare(&dir, "0.2.0", "abc", false));
+    assert!(words.contains("of this config by version 0.1.0 (this is 0.2.0)"), "{words}");
+
+    assert_eq!(disk::prepare(&dir, "0.1.0", "other", true).unwrap(), Destination::Ready);
+    disk::write_result(&dir, &[file("summary.json", "{}"), file("path.csv", "new")], &known_files()).unwrap();
+    assert_eq!(names(&dir), ["notes.txt", "path.csv", "summary.json"]);
+    assert_eq!(std::fs::read_to_string(dir.join("path.csv")).unwrap(), "new");
+}
+
+#[test]
+fn a_file_of_a_result_without_its_mark_is_not_taken_away() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("path.csv"), "mine").unwrap();
+    disk::write_result(dir.path(), &[file("summary.json", "{}")], &known_files()).unwrap();
+    assert_eq!(names(dir.path()), ["path.csv", "summary.json"]);
+}
+
+#[test]
+fn a_directory_that_is_a_file_is_refused_in_words() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("out");
+    std::fs::write(&path, "").unwrap();
+    let (kind, words) = kind_of(disk::prepare(&path, "v", "c", false));
+    assert_eq!(kind, ErrorKind::NotADirectory);
+    assert!(words.contains("is a file, and results need a directory"), "{words}");
+    let (_, words) = kind_of(disk::prepare(&path.join("deeper"), "v", "c", false));
+    assert!(words.contains("the directory cannot be made"), "{words}");
+}
+
+#[test]
+fn a_summary_that_is_not_ours_is_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("summary.json"), "[1, 2]").unwrap();
+    let (kind, words) = kind_of(disk::prepare(dir.path(), "v", "c", false));
+    assert_eq!(kind, ErrorKind::AlreadyExists);
+    assert!(words.contains("summary.json: is there but is not a result"), "{words}");
+}
+
+#[test]
+fn a_failed_write_leaves_the_old_result_as_it_was() {
+    let dir = tempfile::tempdir().unwrap();
+    disk::write_result(dir.path(), &[file("path.csv", "old"), file("summary.json", "{}")], &[]).unwrap();
+    let bad = [file("path.csv", "new"), file("no_such_folder/x", ""), file("summary.json", "{}")];
+    assert!(disk::write_result(dir.path(), &bad, &[]).is_err());
+    assert!(!names(dir.path()).iter().any(|n| n.starts_with(".spinneb")), "temporary files stay behind");
+}
