@@ -31,8 +31,8 @@ impl OutputConfig {
     /// Kinds that were asked for and are left out.
     pub fn left_out(&self) -> Vec<&'static str> {
         let written: Vec<&str> = names(Group::Formats).collect();
-        let asked = |name: &&&str| self.formats.iter().any(|f| f == **name) && !written.contains(**name);
-        NOT_WRITTEN.iter().filter(asked).copied().collect()
+        let asked = |name: &&str| self.formats.iter().any(|f| f == name) && !written.contains(name);
+        NOT_WRITTEN.iter().copied().filter(asked).collect()
     }
 }
 
