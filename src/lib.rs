@@ -13,6 +13,7 @@ pub mod optimise;
 pub mod output;
 pub mod path;
 pub mod registry;
+pub mod saddle;
 pub mod sphere;
 pub mod spins;
 pub mod units;

@@ -27,12 +27,23 @@ const SHIFT_FLOOR: f64 = 1e-3;
 const SHIFT_TRIES: usize = 14;
 /// The climbing image follows its valley once the rest of its move is below this (rad).
 const CLIMB_BELOW: f64 = 0.1;
+/// and moves along it by no more than this at a time (rad).
+const CLIMB_AT_MOST: f64 = 0.5;
 
 /// The sweep's memory between evaluations: the shifts μ.
 #[derive(Clone, Debug)]
 pub struct Sweep {
     stiffness: f64,
     shifts: Vec<f64>,
+}
+
+/// Which images climb.
+#[derive(Clone, Debug, Default)]
+pub struct Climb {
+    /// The images.
+    pub images: Vec<usize>,
+    /// An image stays where its valley offers less than this (meV).
+    pub worth_mev: f64,
 }
 
 /// What one sweep proposes.
@@ -67,8 +78,8 @@ impl Sweep {
         Sweep { stiffness, shifts: Vec::new() }
     }
 
-    /// The moves of all images for an evaluated band; `climbing` are the images that climb.
-    pub fn step(&mut self, band: &Band, axes: &[Vector], climbing: &[usize]) -> SweepStep {
+    /// The moves of all images for an evaluated band; `climb` says which images climb.
+    pub fn step(&mut self, band: &Band, axes: &[Vector], climb: &Climb) -> SweepStep {
         let (images, slab) = (band.images(), 3 * band.path().sites());
         self.shifts.resize(images, SHIFT_FLOOR * self.stiffness);
         let c = self.stiffness;
@@ -89,8 +100,8 @@ impl Sweep {
                 slab::add_scaled(&mut pushed, solver.sigma, &moves[(u - 1) * slab..u * slab]);
             }
             let y = &mut moves[(k - 1) * slab..k * slab];
-            let rotation = if climbing.contains(&k) {
-                let (rotation, gain) = solver.climb(band, k, y);
+            let rotation = if climb.images.contains(&k) {
+                let (rotation, gain) = solver.climb(band, k, climb.worth_mev, y);
                 step.climb_gain_mev = step.climb_gain_mev.max(gain);
                 rotation
             } else {
@@ -164,7 +175,7 @@ impl Solver {
 
     /// The move of the climbing image: Newton across, and along its valley once that makes sense. Returns its largest
     /// rotation and the energy that is still to be gained.
-    fn climb(&self, band: &Band, k: usize, y: &mut [f64]) -> (f64, f64) {
+    fn climb(&self, band: &Band, k: usize, worth_mev: f64, y: &mut [f64]) -> (f64, f64) {
         let mut f = self.basis.coordinates(band.perpendicular(k));
         slab::add_scaled(&mut f, band.along(k), &self.border[0]);
         let (mut x, nu) = self.bordered(&f);
@@ -180,10 +191,10 @@ impl Solver {
         let curvature = weights[0] - (self.shift + self.sigma) * slab::dot(&valley, &valley);
         let force = nu[0];
         let newton = if curvature < 0.0 { force / curvature } else { -f64::INFINITY * force.signum() };
-        let room = 0.4 * band.spacings()[k - 1].min(band.spacings()[k]) / slab::norm(&valley);
+        let room = CLIMB_AT_MOST.min(0.4 * band.spacings()[k - 1].min(band.spacings()[k])) / slab::norm(&valley);
         let along = newton.clamp(-room, room);
         let gain = 0.5 * (force * along).abs();
-        if across > CLIMB_BELOW {
+        if across > CLIMB_BELOW || gain <= worth_mev {
             return (across, gain);
         }
         if along.is_finite() {

@@ -1,5 +1,6 @@
 //! From two states to a barrier: relax the ends, make a first path, relax the band, read off what it found.
 
+mod climb;
 mod ends;
 mod explore;
 mod outcome;
@@ -8,6 +9,7 @@ mod relaxation;
 mod run;
 mod scales;
 mod stop;
+mod top;
 
 pub use ends::{Relaxed, relax_to_minimum};
 pub use explore::natural_guesses;
@@ -17,6 +19,7 @@ pub use relaxation::{Goal, Relaxation, image_levels, prominent_maxima, refined};
 pub use run::run;
 pub use scales::Scales;
 pub use stop::Stop;
+pub use top::{Top, tops};
 
 /// Watches a run.
 pub trait Observer {

@@ -27,6 +27,8 @@ pub struct Problem {
     pub noise: Option<NoiseSpec>,
     /// Smoothing of an explicit guess, 0 to 1.
     pub smooth: Option<f64>,
+    /// Refine the saddles to machine precision.
+    pub refine: bool,
     /// How the band is relaxed.
     pub neb: NebSettings,
 }
@@ -35,7 +37,7 @@ impl Problem {
     /// With everything but the physics at its default.
     pub fn new(chain: Chain, hamiltonian: Hamiltonian, initial: Spins, final_state: Spins) -> Problem {
         let neb = NebSettings::default();
-        Problem { chain, hamiltonian, initial, final_state, relax_ends: true, images: Images::Auto, guess: None, noise: None, smooth: None, neb }
+        Problem { chain, hamiltonian, initial, final_state, relax_ends: true, images: Images::Auto, guess: None, noise: None, smooth: None, refine: true, neb }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::outcome::HistoryRow;
 use super::{NebSettings, Observer, Scales, Stop};
-use crate::band::{Band, Laplacian, Sweep, align_rotations};
+use crate::band::{Band, Climb, Laplacian, Sweep, align_rotations};
 use crate::geometry::Vector;
 use crate::linalg::slab;
 use crate::optimise::{Follows, OptimiserSpec};
@@ -12,7 +12,7 @@ use crate::sphere::rotation_of;
 /// |F⊥|∞/c that is enough to double the images or to read off which path is lowest.
 pub const LOOSE: f64 = 5e-3;
 /// A climbing image is there when its valley offers less than this part of the path's height.
-const CLIMBED: f64 = 1e-11;
+const CLIMBED: f64 = 1e-9;
 /// A maximum climbs if it stands out by more than this part of the path's height.
 const PROMINENT: f64 = 1e-3;
 
@@ -29,6 +29,8 @@ pub enum Goal {
 pub struct Relaxation<'a> {
     /// Settings of the run.
     pub settings: &'a NebSettings,
+    /// Let prominent maxima climb (where their refinement does not follow).
+    pub climb: bool,
     /// Scales of the problem.
     pub scales: Scales,
     /// Symmetry axes, for the rotation gauge.
@@ -88,7 +90,8 @@ impl Relaxation<'_> {
 
     fn look(&self, band: &Band, sweep: &mut Sweep, follows: Follows, climbing: &[usize]) -> Look {
         if follows == Follows::Sweep {
-            let step = sweep.step(band, self.axes, climbing);
+            let climb = Climb { images: climbing.to_vec(), worth_mev: CLIMBED * height(band) };
+            let step = sweep.step(band, self.axes, &climb);
             return Look { direction: step.moves, rotation: step.rotation, gain: step.climb_gain_mev };
         }
         let slab = 3 * band.path().sites();
@@ -117,7 +120,7 @@ impl Relaxation<'_> {
 
     /// The images that climb: every prominent maximum, once the band is loosely relaxed.
     fn climbing(&self, band: &Band, goal: Goal) -> Vec<usize> {
-        if goal == Goal::Loose || !self.settings.climb {
+        if goal == Goal::Loose || !self.climb {
             return Vec::new();
         }
         if band.max_perpendicular_mev() > 4.0 * LOOSE * self.scales.stiffness_mev {

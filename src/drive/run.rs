@@ -3,9 +3,11 @@
 use super::ends::{Relaxed, relax_to_minimum};
 use super::explore::{natural_guesses, turning_axis};
 use super::outcome::*;
+use super::climb::{Found, conclude, escapes, same};
 use super::relaxation::{Goal, Relaxation, height, image_levels, needs_laplacian, prominent_maxima, refined};
+use super::top::{highest, tops};
 use super::{Images, Observer, Problem, Scales, Stop};
-use crate::band::{Band, Laplacian};
+use crate::band::{Band, Laplacian, align_rotations};
 use crate::error::Result;
 use crate::geometry::{Direction, Vector};
 use crate::linalg::slab;
@@ -22,6 +24,10 @@ const COARSEST: f64 = 2.0;
 const MOST_IMAGES: usize = 4001;
 /// Evaluations after which first paths are compared.
 const TRIAL: usize = 8;
+/// Rounds of leaving a saddle of higher index.
+const ESCAPES: usize = 3;
+/// Maxima within this part of the path's height of the highest are refined.
+const WINDOW: f64 = 0.1;
 /// An end that turned by more than this left the place where it was put (rad).
 const FAR: f64 = 1.0;
 /// Force at a relaxed end, in parts of the largest stiffness.
@@ -38,6 +44,31 @@ struct Candidate<'a> {
     band: Band<'a>,
     stop: Stop,
     history: Vec<HistoryRow>,
+    found: Option<Found>,
+    /// Saddles of higher index that were left: energy above the first image (meV) and index.
+    escapes: Vec<(f64, usize)>,
+}
+
+impl Candidate<'_> {
+    /// Highest image above the first (meV).
+    fn top_mev(&self) -> f64 {
+        self.band.energies_mev()[self.band.highest()] - self.band.energies_mev()[0]
+    }
+
+    /// The refined saddle above the first image (meV), or the highest image.
+    fn barrier_mev(&self) -> f64 {
+        let refined = self.found.as_ref().map(|f| f.refined.state.energy_mev - self.band.energies_mev()[0]);
+        refined.unwrap_or(self.top_mev())
+    }
+
+    /// 0: a saddle of index one; 1: nothing refined; 2: a saddle of higher index.
+    fn rank(&self) -> u8 {
+        match &self.found {
+            Some(f) if f.refined.index <= 1 => 0,
+            None => 1,
+            Some(_) => 2,
+        }
+    }
 }
 
 struct Run<'a, 'o> {
@@ -50,6 +81,7 @@ struct Run<'a, 'o> {
     laplacian: Option<Laplacian>,
     axis: Direction,
     warnings: Vec<String>,
+    lowest_top: f64,
 }
 
 impl<'a, 'o> Run<'a, 'o> {
@@ -74,7 +106,7 @@ impl<'a, 'o> Run<'a, 'o> {
         let scales = Scales::of_ends(h, a, b);
         let axes = h.symmetry_axes_at(a);
         let laplacian = needs_laplacian(&problem.neb.optimiser).then(|| Laplacian::new(h, scales.stiffness_mev));
-        let mut run = Run { problem, observer, started, ends, scales, axes, laplacian, axis: Direction::X, warnings };
+        let mut run = Run { problem, observer, started, ends, scales, axes, laplacian, axis: Direction::X, warnings, lowest_top: f64::INFINITY };
         run.axis = turning_axis(problem, &run.ends[0].spins, &run.ends[1].spins, &run.context());
         Ok(run)
     }
@@ -89,37 +121,117 @@ impl<'a, 'o> Run<'a, 'o> {
             return Ok(self.same_minimum());
         }
         let (mut candidate, rejected) = match &self.problem.guess {
-            Some(guess) => (self.start(guess, self.problem.noise.as_ref(), self.problem.smooth, Goal::Loose, usize::MAX)?, Vec::new()),
+            Some(guess) => {
+                let mut c = self.start(guess, self.problem.noise.as_ref(), self.problem.smooth, usize::MAX)?;
+                self.conclude(&mut c);
+                (c, Vec::new())
+            }
             None => self.best_natural()?,
         };
         self.resolve(&mut candidate);
         self.relax(&mut candidate, Goal::Tight, usize::MAX);
-        Ok(self.outcome(candidate, rejected))
+        let found = self.all_saddles(&mut candidate);
+        if self.problem.neb.climb {
+            seat(&mut candidate.band, &found);
+        }
+        Ok(self.outcome(candidate, found, rejected))
     }
 
-    /// The lowest of the natural first paths after a few evaluations each, and what became of the others.
+    /// The lowest of the natural first paths, and what became of the others: a few evaluations each, the best two finished.
     fn best_natural(&mut self) -> Result<(Candidate<'a>, Vec<RejectedPath>)> {
         let mut tried = Vec::new();
         for (guess, noise) in natural_guesses(self.problem, self.axis) {
             self.observer.stage(&format!("first path: {}", describe(&guess)));
-            tried.push(self.start(&guess, noise.as_ref(), None, Goal::Loose, TRIAL)?);
+            tried.push(self.start(&guess, noise.as_ref(), None, TRIAL)?);
         }
-        let top = |c: &Candidate| c.band.energies_mev()[c.band.highest()];
-        tried.sort_by(|p, q| top(p).total_cmp(&top(q)));
+        tried.sort_by(|p, q| p.top_mev().total_cmp(&q.top_mev()));
+        let mut finished = 0;
+        for c in &mut tried {
+            let lowest = c.top_mev();
+            let worth = finished < 2 && self.problem.refine;
+            if worth && !(finished == 1 && lowest > 1.2 * self.lowest_top) {
+                self.conclude(c);
+                finished += 1;
+                self.lowest_top = self.lowest_top.min(c.barrier_mev());
+            }
+        }
+        tried.sort_by(|p, q| p.rank().cmp(&q.rank()).then(p.barrier_mev().total_cmp(&q.barrier_mev())));
         let mut rest = tried.into_iter();
         let Some(best) = rest.next() else { unreachable!("the geodesic is always among the guesses") };
-        let rejected = rest.map(|c| RejectedPath {
-            guess: c.name.clone(),
-            barrier_mev: Some(top(&c) - c.band.energies_mev()[0]),
-            negative_modes: None,
-            reason: format!("its highest image lies above that of \"{}\" after {} evaluations", best.name, c.band.evaluations()),
-        });
-        let rejected = rejected.collect();
+        let rejected = rest.map(|c| rejection(&c, &best)).collect();
         Ok((best, rejected))
     }
 
+    /// Relaxes a path until its top is a refined saddle of index one, leaving saddles of higher index sideways.
+    fn conclude(&mut self, c: &mut Candidate<'a>) {
+        let scale = self.scales.stiffness_mev;
+        for round in 0..ESCAPES {
+            if !c.stop.is_converged() {
+                self.relax(c, Goal::Loose, c.band.evaluations() + 24);
+            }
+            if !self.problem.refine {
+                return;
+            }
+            self.zoom(c);
+            c.found = conclude(&c.band, scale);
+            let Some(found) = c.found.as_ref() else { return };
+            if found.is_saddle(scale) || round + 1 == ESCAPES {
+                return;
+            }
+            let mut best: Option<Band<'a>> = None;
+            for path in escapes(&c.band, found, scale) {
+                let mut band = Band::continued(&self.problem.hamiltonian, path, c.band.evaluations());
+                align_rotations(band.path_mut(), &self.axes);
+                band.evaluate();
+                let top = |b: &Band| b.energies_mev()[b.highest()];
+                if best.as_ref().is_none_or(|b| top(&band) < top(b) - 1e-9 * scale) {
+                    best = Some(band);
+                }
+            }
+            let Some(band) = best else { return };
+            self.observer.stage(&format!("leaving a saddle of index {}", found.refined.index));
+            c.escapes.push((found.refined.state.energy_mev - c.band.energies_mev()[0], found.refined.index));
+            c.band = band;
+            c.stop = Stop::NotFinite;
+        }
+    }
+
+    /// A top inside the first or last interval is not resolved: the part of the path around it becomes finer.
+    fn zoom(&mut self, c: &mut Candidate<'a>) {
+        for _ in 0..4 {
+            let last = c.band.images() - 1;
+            let Some(top) = highest(&c.band) else { return };
+            let s = c.band.path().reaction_coordinate();
+            let (left, right) = (s[1], s[last - 1]);
+            if top.s > left && top.s < right {
+                return;
+            }
+            let places = condensed(&s, if top.s <= left { 1 } else { last - 1 });
+            let path = c.band.path().at_places(&s, &places);
+            c.band = Band::continued(&self.problem.hamiltonian, path, c.band.evaluations());
+            self.relax(c, Goal::Loose, c.band.evaluations() + 24);
+        }
+    }
+
+    /// Every maximum within a tenth of the highest, refined; saddles found twice count once.
+    fn all_saddles(&mut self, c: &mut Candidate<'a>) -> Vec<Found> {
+        let scale = self.scales.stiffness_mev;
+        if !self.problem.refine {
+            return Vec::new();
+        }
+        let h = &self.problem.hamiltonian;
+        let mut found: Vec<Found> = Vec::new();
+        for top in tops(&c.band, WINDOW * height(&c.band)) {
+            let f = Found::at(h, top, scale);
+            if f.is_saddle(scale) && !found.iter().any(|g| same(&g.refined.state.m, &f.refined.state.m)) {
+                found.push(f);
+            }
+        }
+        found
+    }
+
     /// A first path, relaxed from few images to as many as asked for (automatic: as few as resolve it).
-    fn start(&mut self, guess: &GuessSpec, noise: Option<&NoiseSpec>, smoothing: Option<f64>, goal: Goal, limit: usize) -> Result<Candidate<'a>> {
+    fn start(&mut self, guess: &GuessSpec, noise: Option<&NoiseSpec>, smoothing: Option<f64>, limit: usize) -> Result<Candidate<'a>> {
         let context = self.context();
         let (a, b) = (&self.ends[0].spins, &self.ends[1].spins);
         let make = |images: usize| -> Result<Path> {
@@ -137,8 +249,8 @@ impl<'a, 'o> Run<'a, 'o> {
             Images::Count(n) => image_levels(n, |n| make(n).is_ok_and(|p| p.largest_rotation() <= COARSEST))[0],
         };
         let band = Band::new(&self.problem.hamiltonian, make(coarsest)?);
-        let mut c = Candidate { name: describe(guess), band, stop: Stop::NotFinite, history: Vec::new() };
-        self.relax(&mut c, goal, limit);
+        let mut c = Candidate { name: describe(guess), band, stop: Stop::NotFinite, history: Vec::new(), found: None, escapes: Vec::new() };
+        self.relax(&mut c, Goal::Loose, limit);
         Ok(c)
     }
 
@@ -164,6 +276,7 @@ impl<'a, 'o> Run<'a, 'o> {
     fn relax(&mut self, c: &mut Candidate<'a>, goal: Goal, limit: usize) {
         let mut relaxation = Relaxation {
             settings: &self.problem.neb,
+            climb: self.problem.neb.climb && !self.problem.refine,
             scales: self.scales,
             axes: &self.axes,
             laplacian: self.laplacian.as_ref(),
@@ -174,13 +287,13 @@ impl<'a, 'o> Run<'a, 'o> {
         c.history = relaxation.history;
     }
 
-    fn outcome(self, c: Candidate<'a>, rejected_paths: Vec<RejectedPath>) -> Outcome {
+    fn outcome(self, c: Candidate<'a>, found: Vec<Found>, rejected_paths: Vec<RejectedPath>) -> Outcome {
         let h = &self.problem.hamiltonian;
         let band = &c.band;
         let path = band.path().clone();
         let profile = band.profile();
         let (first, last) = (path.image(0), path.image(path.images() - 1));
-        let saddles = self.saddles(band);
+        let saddles = if found.is_empty() { self.saddles(band) } else { refined_saddles(h, band, &found) };
         let above_final = h.difference_mev(last, first);
         let mut warnings = self.warnings;
         let top = saddles.iter().map(|s| s.above_initial_mev).fold(f64::NEG_INFINITY, f64::max);
@@ -285,6 +398,72 @@ impl<'a, 'o> Run<'a, 'o> {
             path,
         }
     }
+}
+
+/// Puts refined saddles in the place of the images nearest to them, where they fit between the neighbours.
+fn seat(band: &mut Band, found: &[Found]) {
+    let slab_size = 3 * band.path().sites();
+    let last = band.images() - 1;
+    for f in found {
+        let k = f.top.image.clamp(1, last - 1);
+        let saddle = &f.refined.state.m;
+        let gap = distance(band.path().image(k - 1), band.path().image(k + 1));
+        let fits = [k - 1, k + 1].iter().all(|&j| distance(band.path().image(j), saddle) < gap);
+        if fits {
+            band.path_mut().as_mut_slice()[k * slab_size..(k + 1) * slab_size].copy_from_slice(saddle);
+        }
+    }
+    if !found.is_empty() {
+        band.evaluate();
+    }
+}
+
+/// Why a path was not the one.
+fn rejection(c: &Candidate, best: &Candidate) -> RejectedPath {
+    let (barrier_mev, negative_modes) = (Some(c.barrier_mev()), c.found.as_ref().map(|f| f.refined.index));
+    let reason = match &c.found {
+        Some(f) if f.refined.index > 1 => "its top is a saddle of higher index".to_string(),
+        Some(_) => format!("its saddle is not below that of \"{}\"", best.name),
+        None => format!("its highest image lies above the path \"{}\" after {} evaluations", best.name, c.band.evaluations()),
+    };
+    RejectedPath { guess: c.name.clone(), barrier_mev, negative_modes, reason }
+}
+
+/// Places for a path whose interval beside image k gets finer: the intervals within two of k in quarters.
+fn condensed(s: &[f64], k: usize) -> Vec<f64> {
+    let mut places = vec![s[0]];
+    for i in 1..s.len() {
+        let near = i + 1 >= k && i <= k + 2;
+        let parts = if near { 4 } else { 1 };
+        for j in 1..=parts {
+            places.push(s[i - 1] + (s[i] - s[i - 1]) * j as f64 / parts as f64);
+        }
+    }
+    places
+}
+
+/// Refined saddles in path order.
+fn refined_saddles(h: &crate::energy::Hamiltonian, band: &Band, found: &[Found]) -> Vec<SaddlePoint> {
+    let first = band.path().image(0);
+    let reference = h.energy_mev(first);
+    let mut saddles: Vec<SaddlePoint> = found
+        .iter()
+        .map(|f| {
+            let above = h.difference_mev(&f.refined.state.m, first);
+            SaddlePoint {
+                energy_mev: reference + above,
+                above_initial_mev: above,
+                reaction_coordinate_rad: f.top.s,
+                image: f.top.image,
+                max_torque_mev: Some(f.refined.state.max_torque_mev()),
+                negative_modes: Some(f.refined.index),
+                zero_modes: Some(f.refined.state.zeros.len()),
+                lowest_eigenvalues_mev: Vec::new(),
+            }
+        })
+        .collect();
+    saddles.sort_by(|p, q| p.reaction_coordinate_rad.total_cmp(&q.reaction_coordinate_rad));
+    saddles
 }
 
 /// The config fragment of a guess, for people.

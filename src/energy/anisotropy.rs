@@ -69,6 +69,11 @@ pub struct Anisotropy {
 }
 
 impl Anisotropy {
+    /// The same K (meV) on all sites.
+    pub fn uniform(sites: usize, k: f64, axis: Direction) -> Anisotropy {
+        Anisotropy { axis: axis.vector(), k: vec![k; sites], k2: vec![0.0; sites] }
+    }
+
     /// Energy of one spin above its reference, as squares of what is small: 1 − c² = |m − c e|².
     #[inline]
     fn site(k: f64, k2: f64, c: f64, rest2: f64) -> f64 {

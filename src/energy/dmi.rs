@@ -12,7 +12,7 @@ use super::spec::{Medium, TermBuilder};
 use crate::error::Result;
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, Vector, vector};
-use crate::lattice::Selection;
+use crate::lattice::{Chain, Selection};
 use crate::registry::Described;
 use crate::units::BondEnergy;
 use serde::Deserialize;
@@ -59,6 +59,12 @@ pub struct Dmi {
 }
 
 impl Dmi {
+    /// The same D (meV) on all bonds.
+    pub fn uniform(chain: &Chain, d: f64, direction: Direction) -> Dmi {
+        let d = (0..chain.sites).map(|i| if i < chain.bonds(1) { d } else { 0.0 }).collect();
+        Dmi { direction: direction.vector(), d }
+    }
+
     /// Σ over the two bonds of a site: D_i (m_{i+1} × d̂) − D_{i−1} (m_{i−1} × d̂).
     #[inline(always)]
     fn slope(&self, dp: f64, dm: f64, p: Vector, q: Vector) -> Vector {

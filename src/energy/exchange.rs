@@ -13,7 +13,7 @@ use super::spec::{Medium, TermBuilder};
 use crate::error::{Error, Result};
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Vector, vector};
-use crate::lattice::Selection;
+use crate::lattice::{Chain, Selection};
 use crate::linalg::slab::fold;
 use crate::registry::Described;
 use crate::units::{Energy, ExchangeStiffness};
@@ -120,6 +120,12 @@ impl Run<'_> {
 }
 
 impl Exchange {
+    /// The same energies on all bonds: `j[n − 1]` (meV) for shell n.
+    pub fn uniform(chain: &Chain, j: &[f64]) -> Exchange {
+        let shell = |(k, j): (usize, &f64)| (0..chain.sites).map(|i| if i < chain.bonds(k + 1) { *j } else { 0.0 }).collect();
+        Exchange { shells: j.iter().enumerate().map(shell).collect() }
+    }
+
     /// m_i − sgn(J) m_j.
     fn deviation(m: &Components, j: f64, a: usize, b: usize) -> Vector {
         let s = 1f64.copysign(j);

@@ -57,6 +57,14 @@ pub struct Zeeman {
     pub b: Vec<f64>,
 }
 
+impl Zeeman {
+    /// The same field energy μB (meV, a vector) on all sites.
+    pub fn uniform(sites: usize, b: Vector) -> Zeeman {
+        let strength = vector::norm(b);
+        Zeeman { direction: vector::unit(b).unwrap_or([0.0, 0.0, 1.0]), b: vec![strength; sites] }
+    }
+}
+
 impl EnergyTerm for Zeeman {
     fn name(&self) -> &'static str {
         ZeemanSpec::NAME

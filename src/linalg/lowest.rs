@@ -86,7 +86,8 @@ fn orthonormalise(space: &mut Vec<Vec<f64>>, known: &[Vec<f64>]) {
     *space = done;
 }
 
-fn rayleigh_ritz(matrix: &Banded, space: &[Vec<f64>]) -> Vec<Mode> {
+/// The eigenvalues of `matrix` within the span of orthonormal vectors, ascending, with their vectors.
+pub fn rayleigh_ritz(matrix: &Banded, space: &[Vec<f64>]) -> Vec<Mode> {
     let (n, k) = (matrix.order(), space.len());
     let images: Vec<Vec<f64>> = space
         .iter()

@@ -6,5 +6,5 @@ pub mod slab;
 mod small;
 
 pub use banded::{Banded, Ldl};
-pub use lowest::{Mode, lowest_modes};
+pub use lowest::{Mode, lowest_modes, rayleigh_ritz};
 pub use small::{eigen_symmetric, eigenvalues_symmetric, solve_dense};

@@ -3,6 +3,7 @@
 //! Distances are geodesic in the product of spheres, L(a, b) = √Σ_i θ_i² (Bessarab, Uzdin, Jónsson, Comput. Phys.
 //! Commun. 196, 335 (2015), doi:10.1016/j.cpc.2015.07.001); the reaction coordinate is their running sum, in rad.
 
+pub mod guess;
 mod resample;
 
 pub use resample::blend;

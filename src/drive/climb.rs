@@ -1,0 +1,89 @@
+//! From a band's top to a refined saddle, and away from saddles of higher index.
+
+use super::top::{Top, highest};
+use crate::band::Band;
+use crate::energy::Hamiltonian;
+use crate::field::project;
+use crate::linalg::{lowest_modes, slab};
+use crate::path::{Path, largest_angle};
+use crate::saddle::{Refined, Verdict, refine};
+use crate::sphere::{move_points, rotation_of};
+
+/// How far a path is pushed off a saddle of higher index (rad).
+const PUSH: f64 = 0.8;
+/// A saddle this far from the place where its search began (rad, any spin) is another one.
+const SAME_PLACE: f64 = 1.5;
+
+/// Where a refined saddle was looked for, and what was found.
+#[derive(Debug)]
+pub struct Found {
+    /// The start.
+    pub top: Top,
+    /// The end.
+    pub refined: Refined,
+}
+
+impl Found {
+    /// Refines a top.
+    pub fn at(h: &Hamiltonian, top: Top, c: f64) -> Found {
+        let refined = refine(h, &top.m, &top.tau, c);
+        Found { top, refined }
+    }
+
+    /// Stationary to machine precision, and still the start's saddle.
+    pub fn is_stationary(&self, c: f64) -> bool {
+        let done = matches!(self.refined.verdict, Verdict::Saddle | Verdict::Flat | Verdict::HigherIndex);
+        done && self.refined.state.max_torque_mev() < 1e-9 * c && self.refined.rotation_rad < SAME_PLACE
+    }
+
+    /// A stationary state with at most one negative direction.
+    pub fn is_saddle(&self, c: f64) -> bool {
+        self.is_stationary(c) && self.refined.index <= 1
+    }
+}
+
+/// The refined top of a band, if it has one.
+pub fn conclude(band: &Band, c: f64) -> Option<Found> {
+    highest(band).map(|top| Found::at(band.hamiltonian(), top, c))
+}
+
+/// Two paths pushed off a stationary point of index > 1, along its lowest negative mode other than the path's own, both ways.
+pub fn escapes(band: &Band, found: &Found, c: f64) -> Vec<Path> {
+    let state = &found.refined.state;
+    let modes = lowest_modes(&state.hessian, 8, &state.zeros);
+    let negative: Vec<_> = modes.into_iter().filter(|m| m.value < -1e-6 * c).collect();
+    if negative.len() < 2 {
+        return Vec::new();
+    }
+    let mut along = found.top.tau.clone();
+    project(&state.m, &mut along);
+    let along = state.basis.coordinates(&along);
+    let overlap = |v: &[f64]| slab::dot(v, &along).abs();
+    let own = (0..negative.len()).max_by(|&i, &j| overlap(&negative[i].vector).total_cmp(&overlap(&negative[j].vector)));
+    let Some(other) = (0..negative.len()).find(|i| Some(*i) != own) else { return Vec::new() };
+    let mode = state.field(&negative[other].vector);
+    [PUSH, -PUSH].map(|push| pushed(band.path(), &mode, push)).into()
+}
+
+/// The path with every image moved along the mode's tangent part, sin(πs) as far, and resampled.
+fn pushed(path: &Path, mode: &[f64], push: f64) -> Path {
+    let last = path.images() - 1;
+    let mut out = path.clone();
+    let slab_size = mode.len();
+    for k in 1..last {
+        let mut v = mode.to_vec();
+        project(path.image(k), &mut v);
+        let size = rotation_of(&v);
+        if size > 1e-12 {
+            let far = push * libm::sin(std::f64::consts::PI * k as f64 / last as f64) / size;
+            let image = &mut out.as_mut_slice()[k * slab_size..(k + 1) * slab_size];
+            move_points(image, &v, slab_size, far);
+        }
+    }
+    out.resampled(path.images())
+}
+
+/// Whether two configurations are the same but for a rotation of no spin by more than 1e-4 rad.
+pub fn same(a: &[f64], b: &[f64]) -> bool {
+    largest_angle(a, b) < 1e-4
+}

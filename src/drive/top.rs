@@ -1,0 +1,104 @@
+//! Where a relaxed band has its maxima: starting points for their refinement.
+
+use crate::band::{Band, Extremum, Profile};
+use crate::field::{Components, ComponentsMut};
+use crate::geometry::log;
+use crate::linalg::slab;
+use crate::path::blend;
+
+/// A maximum of a band, as far as the band tells.
+#[derive(Clone, Debug)]
+pub struct Top {
+    /// Spins, component-major.
+    pub m: Vec<f64>,
+    /// Unit direction of the path (3N).
+    pub tau: Vec<f64>,
+    /// Energy above the Hamiltonian's reference (meV).
+    pub energy_mev: f64,
+    /// Reaction coordinate (rad).
+    pub s: f64,
+    /// The nearest image.
+    pub image: usize,
+}
+
+/// Every maximum whose energy is within `window` (meV) of the highest, highest first.
+pub fn tops(band: &Band, window: f64) -> Vec<Top> {
+    let profile = band.profile();
+    let e = band.energies_mev();
+    let last = e.len() - 1;
+    let mut found: Vec<Top> = Vec::new();
+    for k in 1..last {
+        if e[k] >= e[k - 1] && e[k] >= e[k + 1] {
+            found.push(beside(band, &profile, k));
+        }
+    }
+    for x in profile.extrema().into_iter().filter(|x| x.is_maximum) {
+        let at_an_image = |k: usize| k > 0 && k < last && e[k] >= e[k - 1] && e[k] >= e[k + 1];
+        if !at_an_image(x.interval) && !at_an_image(x.interval + 1) {
+            found.push(between(band, &profile, &x));
+        }
+    }
+    let highest = found.iter().map(|t| t.energy_mev).fold(f64::NEG_INFINITY, f64::max);
+    found.retain(|t| t.energy_mev >= highest - window);
+    found.sort_by(|p, q| q.energy_mev.total_cmp(&p.energy_mev).then(p.image.cmp(&q.image)));
+    found
+}
+
+/// The highest maximum, if the band rises anywhere above its ends.
+pub fn highest(band: &Band) -> Option<Top> {
+    tops(band, 0.0).into_iter().next()
+}
+
+/// A maximal image, or the interpolated maximum beside it where that can be trusted: its force is below twice the image's, or
+/// its energy is within 2 % of what the interpolation said (on coarse plateaus the interpolation overshoots).
+fn beside(band: &Band, profile: &Profile, k: usize) -> Top {
+    let image = Top { m: band.path().image(k).to_vec(), tau: through(band, k), energy_mev: band.energies_mev()[k], s: profile.s[k], image: k };
+    let near = profile.extrema().into_iter().filter(|x| x.is_maximum && (x.interval == k || x.interval + 1 == k));
+    let Some(x) = near.max_by(|p, q| p.energy.total_cmp(&q.energy)) else { return image };
+    let top = between(band, profile, &x);
+    let h = band.hamiltonian();
+    let (mut g, mut f) = (vec![0.0; top.m.len()], vec![0.0; top.m.len()]);
+    let energy = h.energy_gradient(&top.m, &mut g);
+    h.force(&top.m, &g, &mut f);
+    let along = slab::dot(&f, &top.tau);
+    slab::add_scaled(&mut f, -along, &top.tau);
+    let image_force = slab::max_abs(band.perpendicular(k)) + band.along(k).abs() * slab::max_abs(band.tangent(k));
+    let height = band.energies_mev()[k] - band.energies_mev()[0].min(band.energies_mev()[band.images() - 1]);
+    let trusted = slab::max_abs(&f) < 2.0 * image_force || (energy - top.energy_mev).abs() < 0.02 * height;
+    if trusted { Top { energy_mev: energy.max(image.energy_mev), ..top } } else { image }
+}
+
+/// The interpolated maximum of an interval: its spins on the great circles between the two images.
+fn between(band: &Band, profile: &Profile, x: &Extremum) -> Top {
+    let (a, b) = (band.path().image(x.interval), band.path().image(x.interval + 1));
+    let mut m = vec![0.0; a.len()];
+    blend(a, b, x.fraction, &mut m);
+    let tau = if x.fraction < 0.5 { direction(&m, b, 1.0) } else { direction(&m, a, -1.0) };
+    let image = if x.fraction < 0.5 { x.interval } else { x.interval + 1 };
+    Top { m, tau, energy_mev: x.energy + band.energies_mev()[0], s: profile.s[x.interval] + x.fraction * (profile.s[x.interval + 1] - profile.s[x.interval]), image }
+}
+
+/// Direction of the path through image k: both neighbours, each as a unit vector.
+fn through(band: &Band, k: usize) -> Vec<f64> {
+    let here = band.path().image(k);
+    let mut t = direction(here, band.path().image(k + 1), 1.0);
+    slab::add_scaled(&mut t, 1.0, &direction(here, band.path().image(k - 1), -1.0));
+    let size = slab::norm(&t);
+    if size < 1e-12 {
+        return band.tangent(k).to_vec();
+    }
+    slab::scale(&mut t, 1.0 / size);
+    t
+}
+
+/// ± the unit initial velocity of the geodesic from m to `to`.
+fn direction(m: &[f64], to: &[f64], sign: f64) -> Vec<f64> {
+    let (a, b) = (Components::new(m), Components::new(to));
+    let mut t = vec![0.0; m.len()];
+    for i in 0..a.sites() {
+        ComponentsMut::new(&mut t).set(i, log(a.get(i), b.get(i)));
+    }
+    let size = slab::norm(&t);
+    slab::scale(&mut t, sign / size.max(f64::MIN_POSITIVE));
+    t
+}

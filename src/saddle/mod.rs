@@ -1,0 +1,12 @@
+//! Saddles to machine precision, and what kind of saddle they are.
+//!
+//! A wall that can slide gives a chain's Hessian one eigenvalue of either sign that may be 1e-12 of the others. Plain Newton
+//! oscillates there; so the soft mode is split off (Lyapunov–Schmidt): Newton across it, a safeguarded search along it.
+
+mod pinned;
+mod state;
+mod valley;
+
+pub use pinned::Pinned;
+pub use state::State;
+pub use valley::{Refined, Verdict, refine};

@@ -1,0 +1,358 @@
+//! Valley Newton: Newton across the soft mode, a bracketed search of the reduced slope along it.
+//!
+//! ```text
+//! [H  t][d]   [−g]        [H  t][w]   [0]        r = −ν: slope of the energy along the valley
+//! [tᵀ 0][ν] = [ 0]        [tᵀ 0][·] = [1]        λ = wᵀHw: its curvature
+//! m ← Exp_m(d + Δx w/|w|),   Δx = −(r/λ)|w| at a maximum, kept inside the bracket of r's sign change
+//! ```
+//! Negative directions outside the soft mode are handled in this order: modes flat to 1e-4 c are frozen (bordered like zero
+//! modes); if there is one negative direction in all, t is re-aimed at it; else a shift μ keeps the step finite, and a state
+//! that stays so is kicked along the lowest of them, at most twice.
+
+use super::pinned::Pinned;
+use super::state::{State, orthonormal, remove};
+use crate::energy::Hamiltonian;
+use crate::linalg::{Mode, lowest_modes, slab};
+use crate::path::{distance, largest_angle};
+use crate::sphere::rotation_of;
+
+/// Most steps.
+const STEPS: usize = 80;
+/// Largest rotation of a spin in a step (rad).
+const CAP: f64 = 0.3;
+/// Farthest along the valley (rad).
+const FARTHEST: f64 = 8.0;
+
+/// How a refinement ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// A stationary point to machine precision.
+    Saddle,
+    /// Stationary across the valley, and along it as far as rounding tells.
+    Flat,
+    /// A stationary point with more than one negative direction.
+    HigherIndex,
+    /// The search left the start's neighbourhood.
+    Left,
+    /// No convergence.
+    Stalled,
+}
+
+/// A refined saddle.
+#[derive(Debug)]
+pub struct Refined {
+    /// How it ended.
+    pub verdict: Verdict,
+    /// Where it ended.
+    pub state: State,
+    /// Unit tangent field (3N) of the valley there.
+    pub valley: Vec<f64>,
+    /// Newton steps.
+    pub steps: usize,
+    /// Banded factorisations.
+    pub factorisations: usize,
+    /// Negative directions, zero modes apart.
+    pub index: usize,
+    /// Curvature along the valley (meV), wᵀHw/|w|².
+    pub curvature_mev: f64,
+    /// Largest rotation of a spin from the start (rad).
+    pub rotation_rad: f64,
+}
+
+/// The search's memory.
+struct Search<'a> {
+    h: &'a Hamiltonian,
+    c: f64,
+    kappa: f64,
+    start: Vec<f64>,
+    state: State,
+    /// The soft mode as a unit field (3N).
+    tau: Vec<f64>,
+    x: f64,
+    reach: f64,
+    shift: f64,
+    visited: Vec<(f64, f64)>,
+    frozen: Vec<Vec<f64>>,
+    factorisations: usize,
+    freezes: usize,
+    aims: usize,
+    kicks: usize,
+    bad: usize,
+    last_step: f64,
+    torques: Vec<f64>,
+}
+
+/// What a step decided.
+enum Next {
+    Move(Vec<f64>, Vec<f64>),
+    Retry,
+    Stop(Verdict),
+}
+
+/// Refines `m` to the saddle along the path direction `tau` (3N); `c` is the stiffness scale (meV).
+pub fn refine(h: &Hamiltonian, m: &[f64], tau: &[f64], c: f64) -> Refined {
+    let state = State::at(h, m.to_vec());
+    let tau = unit_tangent(&state.m, tau);
+    let kappa = (h.stiffness_mev() / 3.0).max(c);
+    let mut s = Search {
+        h, c, kappa, start: m.to_vec(), state, tau, x: 0.0, reach: 0.3, shift: 0.0, visited: Vec::new(), frozen: Vec::new(),
+        factorisations: 0, freezes: 0, aims: 0, kicks: 0, bad: 0, last_step: 9.0, torques: Vec::new(),
+    };
+    let mut verdict = Verdict::Stalled;
+    let mut steps = 0;
+    for step in 0..STEPS {
+        steps = step + 1;
+        match s.step(step) {
+            Next::Move(v, tau) => {
+                let m = s.state.moved(&v);
+                s.tau = unit_tangent(&m, &tau);
+                s.state = State::at(h, m);
+            }
+            Next::Retry => {}
+            Next::Stop(v) => {
+                verdict = v;
+                break;
+            }
+        }
+    }
+    s.report(verdict, steps)
+}
+
+impl Search<'_> {
+    fn tolerance(&self) -> f64 {
+        4e-15 * self.h.stiffness_mev()
+    }
+
+    /// The Hessian pinned along the soft mode, without negative directions beside it if that can be had.
+    fn pinned(&mut self) -> Pinned {
+        self.shift = if self.shift < 0.05 * self.c { 0.0 } else { self.shift / 4.0 };
+        for _ in 0..15 {
+            let t = self.state.basis.coordinates(&self.tau);
+            let frozen: Vec<Vec<f64>> = self.frozen.iter().map(|f| self.state.basis.coordinates(f)).collect();
+            let p = Pinned::new(&self.state, &t, self.shift, &frozen, self.kappa);
+            self.factorisations += 1;
+            if p.complement_negatives == 0 || self.freeze_flat(&p) || self.aim_lower(&p) {
+                if p.complement_negatives == 0 {
+                    return p;
+                }
+                continue;
+            }
+            self.shift = if self.shift < 1e-6 * self.c { 1.001e-6 * self.c } else { (4.0 * self.shift).max(0.1 * self.c) };
+        }
+        let t = self.state.basis.coordinates(&self.tau);
+        self.factorisations += 1;
+        Pinned::new(&self.state, &t, self.shift, &[], self.kappa)
+    }
+
+    /// Modes of the complement of the soft mode and the zero modes, lowest first.
+    fn complement(&self, p: &Pinned, count: usize) -> Vec<Mode> {
+        let mut known = p.zeros().to_vec();
+        known.push(p.soft.clone());
+        let modes = lowest_modes(&self.state.hessian, count, p.zeros());
+        let rest = modes.into_iter().map(|mut m| {
+            remove(&mut m.vector, &known);
+            m.vector
+        });
+        let space = orthonormal(rest.collect(), 0.5);
+        crate::linalg::rayleigh_ritz(&self.state.hessian, &space)
+    }
+
+    /// Freezes modes that are flat to 1e-4 c, if nothing beside them is worse.
+    fn freeze_flat(&mut self, p: &Pinned) -> bool {
+        if self.freezes >= 6 {
+            return false;
+        }
+        self.freezes += 1;
+        let modes = self.complement(p, 5);
+        let flat = 1e-4 * self.c;
+        if modes.first().is_none_or(|m| m.value <= -flat) {
+            return false;
+        }
+        let fields: Vec<Vec<f64>> = modes.iter().filter(|m| m.value.abs() < flat).map(|m| self.state.field(&m.vector)).collect();
+        let found = !fields.is_empty();
+        self.frozen.extend(fields);
+        found
+    }
+
+    /// With one negative direction in all, makes that the soft mode.
+    fn aim_lower(&mut self, p: &Pinned) -> bool {
+        if p.index > 1 || self.shift != 0.0 || self.aims >= 4 {
+            return false;
+        }
+        let Some(lowest) = lowest_modes(&self.state.hessian, 1, p.zeros()).into_iter().next() else { return false };
+        let sign = if slab::dot(&lowest.vector, &p.soft) >= 0.0 { 1.0 } else { -1.0 };
+        let mut field = self.state.field(&lowest.vector);
+        slab::scale(&mut field, sign);
+        self.tau = field;
+        self.aims += 1;
+        self.visited.clear();
+        true
+    }
+
+    fn step(&mut self, step: usize) -> Next {
+        let p = self.pinned();
+        let c = self.c;
+        self.bad = if self.shift > 1e-5 * c { self.bad + 1 } else { 0 };
+        if self.bad >= 6 && self.last_step < 0.02 {
+            return self.kick(&p);
+        }
+        if self.bad >= 25 {
+            return Next::Stop(Verdict::HigherIndex);
+        }
+        let g = self.state.slope.clone();
+        let minus: Vec<f64> = g.iter().map(|x| -x).collect();
+        let (d, nu) = p.solve(&minus, 0.0);
+        let (w, nl) = p.solve(&vec![0.0; g.len()], 1.0);
+        let size = slab::norm(&w);
+        let (slope, curvature) = (-nu, -nl - self.shift * size * size);
+        let across = slab::max_abs(&d);
+        self.last_step = across;
+        let torque = slab::max_abs(&g);
+        let trusted = (across < 0.03 && slope.abs() > 10.0 * c * across * across && curvature.abs() > 10.0 * c * across) || across < 1e-9;
+        if let Some(verdict) = self.arrived(&p, &g, torque, across, step) {
+            return Next::Stop(verdict);
+        }
+        if trusted {
+            self.visited.push((self.x, slope));
+        }
+        let along = self.along(slope, curvature, size, across, trusted);
+        if (self.x + along).abs() > FARTHEST {
+            return Next::Stop(Verdict::Left);
+        }
+        if step > 6 && self.shift > 0.0 && distance(&self.start, &self.state.m) > self.x.abs() + 1.5 * (self.kicks + 1) as f64 {
+            return Next::Stop(Verdict::Left);
+        }
+        if across > 0.05 {
+            self.reach = (0.5 * self.reach).max(0.05);
+        } else if trusted && along.abs() > 0.99 * self.reach {
+            self.reach = (1.6 * self.reach).min(2.0);
+        }
+        self.leave(&p, &g, d, w, size, along, torque, across, curvature)
+    }
+
+    /// The move along the valley, in rad.
+    fn along(&self, slope: f64, curvature: f64, size: f64, across: f64, trusted: bool) -> f64 {
+        let newton = if curvature < 0.0 { -slope / curvature * size } else { f64::INFINITY * slope.signum() };
+        let newton = if newton.is_nan() { 0.0 } else { newton.clamp(-self.reach, self.reach) };
+        if !trusted {
+            return if across < 0.03 { 0.0 } else { newton.clamp(-0.3 * self.reach, 0.3 * self.reach) };
+        }
+        match self.bracket() {
+            Some((a, b)) if b - a > 1e-9 && !(a - 1e-12..b + 1e-12).contains(&(self.x + newton)) => 0.5 * (a + b) - self.x,
+            _ => newton,
+        }
+    }
+
+    /// The nearest places with slope up on the left and down on the right, nothing visited between them.
+    fn bracket(&self) -> Option<(f64, f64)> {
+        let mut best: Option<(f64, f64)> = None;
+        for &(a, _) in self.visited.iter().filter(|v| v.1 > 0.0) {
+            for &(b, _) in self.visited.iter().filter(|v| v.1 < 0.0 && v.0 > a) {
+                let clear = !self.visited.iter().any(|v| v.0 > a && v.0 < b);
+                let nearer = |(p, q): (f64, f64)| (0.5 * (a + b) - self.x).abs() < (0.5 * (p + q) - self.x).abs();
+                if clear && best.is_none_or(nearer) {
+                    best = Some((a, b));
+                }
+            }
+        }
+        best
+    }
+
+    fn arrived(&self, p: &Pinned, g: &[f64], torque: f64, across: f64, step: usize) -> Option<Verdict> {
+        let tolerance = self.tolerance();
+        if !self.frozen.is_empty() && step > 0 {
+            let mut rest = g.to_vec();
+            remove(&mut rest, p.zeros());
+            if slab::max_abs(&rest) <= 4.0 * tolerance && torque < 1e-7 * self.c {
+                return Some(Verdict::Flat);
+            }
+        }
+        if torque <= tolerance && across < 1e-8 {
+            return Some(if p.index <= 1 { Verdict::Saddle } else { Verdict::HigherIndex });
+        }
+        None
+    }
+
+    /// The step itself, unless nothing is left to gain.
+    #[allow(clippy::too_many_arguments)]
+    fn leave(&mut self, p: &Pinned, g: &[f64], mut d: Vec<f64>, w: Vec<f64>, size: f64, along: f64, torque: f64, across: f64, curvature: f64) -> Next {
+        let tolerance = self.tolerance();
+        slab::add_scaled(&mut d, along / size, &w);
+        let mut v = self.state.field(&d);
+        let rotation = rotation_of(&v);
+        if rotation < 3e-15 && !self.torques.is_empty() {
+            return Next::Stop(if torque < 1e3 * tolerance { Verdict::Saddle } else { Verdict::Stalled });
+        }
+        let factor = if rotation > CAP { CAP / rotation } else { 1.0 };
+        slab::scale(&mut v, factor);
+        let mut hs = vec![0.0; d.len()];
+        self.state.hessian.multiply(&p.soft, &mut hs);
+        let softer = curvature / (size * size) <= slab::dot(&p.soft, &hs);
+        let tau = if softer { self.state.field(&w) } else { self.state.field(&p.soft) };
+        self.x += factor * along;
+        let predicted = slab::dot(g, &d).abs();
+        let scale = self.state.energy_mev.abs().max(1e-2 * self.c);
+        let history = &self.torques;
+        let n = history.len();
+        let before = history.last().copied().unwrap_or(f64::INFINITY);
+        let tiny = predicted < 1e-13 * scale && n >= 2 && torque < 1e-9 * self.c;
+        if tiny && (self.shift > 0.0 || torque > 0.1 * before || across > 1e3 * torque / self.c) {
+            return Next::Stop(Verdict::Flat);
+        }
+        if torque < 1e2 * tolerance && n > 3 && torque > 0.5 * history[n - 1] && torque > 0.5 * history[n - 2] {
+            return Next::Stop(if p.index <= 1 { Verdict::Saddle } else { Verdict::HigherIndex });
+        }
+        self.torques.push(torque);
+        Next::Move(v, tau)
+    }
+
+    /// Leaves a region with more than one negative direction along the lowest mode beside the soft one.
+    fn kick(&mut self, p: &Pinned) -> Next {
+        if self.kicks >= 2 {
+            return Next::Stop(Verdict::HigherIndex);
+        }
+        let modes = self.complement(p, 6);
+        match modes.first() {
+            Some(lowest) if lowest.value < -1e-9 * self.c => {
+                let mut v = self.state.field(&lowest.vector);
+                let size = rotation_of(&v);
+                slab::scale(&mut v, 0.25 / size);
+                self.kicks += 1;
+                (self.bad, self.shift, self.last_step) = (0, 0.0, 9.0);
+                self.visited.clear();
+                Next::Move(v, self.tau.clone())
+            }
+            _ => {
+                self.bad = 0;
+                Next::Retry
+            }
+        }
+    }
+
+    fn report(mut self, verdict: Verdict, steps: usize) -> Refined {
+        let t = self.state.basis.coordinates(&self.tau);
+        let frozen: Vec<Vec<f64>> = self.frozen.iter().map(|f| self.state.basis.coordinates(f)).collect();
+        let p = Pinned::new(&self.state, &t, 0.0, &frozen, self.kappa);
+        self.factorisations += 1;
+        let (w, nl) = p.solve(&vec![0.0; t.len()], 1.0);
+        Refined {
+            verdict,
+            valley: self.state.field(&p.soft),
+            steps,
+            factorisations: self.factorisations,
+            index: p.index,
+            curvature_mev: -nl / slab::dot(&w, &w),
+            rotation_rad: largest_angle(&self.start, &self.state.m),
+            state: self.state,
+        }
+    }
+}
+
+/// The tangent part of a field at m, of unit length.
+fn unit_tangent(m: &[f64], v: &[f64]) -> Vec<f64> {
+    let mut t = v.to_vec();
+    crate::field::project(m, &mut t);
+    let size = slab::norm(&t);
+    slab::scale(&mut t, 1.0 / size.max(f64::MIN_POSITIVE));
+    t
+}
