@@ -95,7 +95,7 @@ fn run_one(arguments: &Run, loaded: &Loaded, directory: &Path) -> Result<u8> {
         say(&format!("{name}: warning: {warning}"));
     }
     let stored = Stored::of(&outcome);
-    say(&format!("{name}: {}; {}; results in {place}", barrier(&outcome), stopped(&outcome)));
+    say(&format!("{name}: {}; {}; results in {place}", barrier(&outcome), outcome.stop_reason));
     print(arguments, name, directory, &stored)
 }
 
@@ -117,10 +117,6 @@ fn barrier(outcome: &Outcome) -> String {
         Some(b) => format!("barrier {:.6} meV forward, {:.6} meV backward", b.forward_mev, b.backward_mev),
         None => "no barrier".into(),
     }
-}
-
-fn stopped(outcome: &Outcome) -> String {
-    format!("{}: {}", if outcome.converged { "converged" } else { "not converged" }, outcome.stop_reason)
 }
 
 /// What is said about a result on stdout: from an outcome, or from its `summary.json`.
