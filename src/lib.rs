@@ -16,5 +16,6 @@ pub mod registry;
 pub mod saddle;
 pub mod sphere;
 pub mod spins;
+pub mod state;
 pub mod units;
 pub mod words;

@@ -59,7 +59,8 @@ pub fn escapes(band: &Band, found: &Found, c: f64) -> Vec<Path> {
     project(&state.m, &mut along);
     let along = state.basis.coordinates(&along);
     let overlap = |v: &[f64]| slab::dot(v, &along).abs();
-    let own = (0..negative.len()).max_by(|&i, &j| overlap(&negative[i].vector).total_cmp(&overlap(&negative[j].vector)));
+    let own =
+        (0..negative.len()).max_by(|&i, &j| overlap(&negative[i].vector).total_cmp(&overlap(&negative[j].vector)));
     let Some(other) = (0..negative.len()).find(|i| Some(*i) != own) else { return Vec::new() };
     let mode = state.field(&negative[other].vector);
     [PUSH, -PUSH].map(|push| pushed(band.path(), &mode, push)).into()

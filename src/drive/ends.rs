@@ -68,7 +68,9 @@ pub fn relax_to_minimum(h: &Hamiltonian, start: &Spins, tolerance_mev: f64) -> R
     let mut stalled = 0;
     while steps < STEPS {
         if !p.torque().is_finite() {
-            return Err(Error::Numerical("the forces on the state are not finite numbers: are the energies absurdly large?".into()));
+            return Err(Error::Numerical(
+                "the forces on the state are not finite numbers: are the energies absurdly large?".into(),
+            ));
         }
         let basis = TangentBasis::at(&p.m);
         let hessian = assemble(h, &p.m, &p.gradient, &basis);
@@ -132,7 +134,8 @@ fn way_down(h: &Hamiltonian, p: &Point, hessian: &Banded, basis: &TangentBasis) 
     if lifted.factor().negatives() == 0 {
         return None;
     }
-    let known = orthonormal(h.rotation_modes(&p.m, &h.symmetry_axes_at(&p.m)).iter().map(|z| basis.coordinates(z)).collect());
+    let known =
+        orthonormal(h.rotation_modes(&p.m, &h.symmetry_axes_at(&p.m)).iter().map(|z| basis.coordinates(z)).collect());
     let mode = lowest_modes(hessian, 1, &known).into_iter().next()?;
     if mode.value > -1e-7 * h.stiffness_mev() {
         return None;

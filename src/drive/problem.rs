@@ -37,7 +37,19 @@ impl Problem {
     /// With everything but the physics at its default.
     pub fn new(chain: Chain, hamiltonian: Hamiltonian, initial: Spins, final_state: Spins) -> Problem {
         let neb = NebSettings::default();
-        Problem { chain, hamiltonian, initial, final_state, relax_ends: true, images: Images::Auto, guess: None, noise: None, smooth: None, refine: true, neb }
+        Problem {
+            chain,
+            hamiltonian,
+            initial,
+            final_state,
+            relax_ends: true,
+            images: Images::Auto,
+            guess: None,
+            noise: None,
+            smooth: None,
+            refine: true,
+            neb,
+        }
     }
 }
 
@@ -65,6 +77,11 @@ pub struct NebSettings {
 
 impl Default for NebSettings {
     fn default() -> Self {
-        NebSettings { climb: true, tolerance: 1e-6, max_evaluations: 20_000, optimiser: OptimiserSpec::Implicit(Implicit {}) }
+        NebSettings {
+            climb: true,
+            tolerance: 1e-6,
+            max_evaluations: 20_000,
+            optimiser: OptimiserSpec::Implicit(Implicit {}),
+        }
     }
 }

@@ -1,9 +1,9 @@
 //! A whole run.
 
+use super::climb::{Found, conclude, escapes, same};
 use super::ends::{Relaxed, relax_to_minimum};
 use super::explore::{natural_guesses, turning_axis};
 use super::outcome::*;
-use super::climb::{Found, conclude, escapes, same};
 use super::relaxation::{Goal, Relaxation, height, image_levels, needs_laplacian, prominent_maxima, refined};
 use super::top::{highest, tops};
 use super::{Images, Observer, Problem, Scales, Stop};
@@ -14,6 +14,7 @@ use crate::linalg::slab;
 use crate::path::guess::{GuessContext, GuessSpec, NoiseSpec, add_noise, smooth};
 use crate::path::{Path, distance};
 use crate::spins::Spins;
+use crate::state::StateContext;
 use std::time::Instant;
 
 /// Neighbouring images of an automatic path are at most this far apart, any spin (rad).
@@ -106,13 +107,27 @@ impl<'a, 'o> Run<'a, 'o> {
         let scales = Scales::of_ends(h, a, b);
         let axes = h.symmetry_axes_at(a);
         let laplacian = needs_laplacian(&problem.neb.optimiser).then(|| Laplacian::new(h, scales.stiffness_mev));
-        let mut run = Run { problem, observer, started, ends, scales, axes, laplacian, axis: Direction::X, warnings, lowest_top: f64::INFINITY };
+        let mut run = Run {
+            problem,
+            observer,
+            started,
+            ends,
+            scales,
+            axes,
+            laplacian,
+            axis: Direction::X,
+            warnings,
+            lowest_top: f64::INFINITY,
+        };
         run.axis = turning_axis(problem, &run.ends[0].spins, &run.ends[1].spins, &run.context());
         Ok(run)
     }
 
     fn context(&self) -> GuessContext<'a> {
-        GuessContext { chain: &self.problem.chain, wall_width_sites: self.scales.wall_width_sites, default_axis: self.axis }
+        GuessContext {
+            states: StateContext { chain: &self.problem.chain, wall_width_sites: self.scales.wall_width_sites },
+            default_axis: self.axis,
+        }
     }
 
     fn finish(mut self) -> Result<Outcome> {
@@ -231,13 +246,19 @@ impl<'a, 'o> Run<'a, 'o> {
     }
 
     /// A first path, relaxed from few images to as many as asked for (automatic: as few as resolve it).
-    fn start(&mut self, guess: &GuessSpec, noise: Option<&NoiseSpec>, smoothing: Option<f64>, limit: usize) -> Result<Candidate<'a>> {
+    fn start(
+        &mut self,
+        guess: &GuessSpec,
+        noise: Option<&NoiseSpec>,
+        smoothing: Option<f64>,
+        limit: usize,
+    ) -> Result<Candidate<'a>> {
         let context = self.context();
         let (a, b) = (&self.ends[0].spins, &self.ends[1].spins);
         let make = |images: usize| -> Result<Path> {
             let mut path = guess.member().path(a, b, images, &context)?;
             if let Some(noise) = noise {
-                path = add_noise(&path, noise, context.chain);
+                path = add_noise(&path, noise, context.states.chain);
             }
             Ok(match smoothing {
                 Some(strength) => smooth(&path, strength),
@@ -249,7 +270,14 @@ impl<'a, 'o> Run<'a, 'o> {
             Images::Count(n) => image_levels(n, |n| make(n).is_ok_and(|p| p.largest_rotation() <= COARSEST))[0],
         };
         let band = Band::new(&self.problem.hamiltonian, make(coarsest)?);
-        let mut c = Candidate { name: describe(guess), band, stop: Stop::NotFinite, history: Vec::new(), found: None, escapes: Vec::new() };
+        let mut c = Candidate {
+            name: describe(guess),
+            band,
+            stop: Stop::NotFinite,
+            history: Vec::new(),
+            found: None,
+            escapes: Vec::new(),
+        };
         self.relax(&mut c, Goal::Loose, limit);
         Ok(c)
     }
@@ -301,7 +329,8 @@ impl<'a, 'o> Run<'a, 'o> {
         let top = if top > above_final.max(0.0) {
             top
         } else {
-            stop_reason.push_str("; the path rises to no maximum between its ends: there is no barrier beyond the higher end");
+            stop_reason
+                .push_str("; the path rises to no maximum between its ends: there is no barrier beyond the higher end");
             above_final.max(0.0)
         };
         let barrier = Barrier { forward_mev: top, backward_mev: top - above_final };
@@ -318,7 +347,11 @@ impl<'a, 'o> Run<'a, 'o> {
             intermediate_minima: minima(h, band),
             rejected_paths,
             images: image_table(h, band),
-            profile: profile.samples(16).into_iter().map(|(s, e)| ProfilePoint { reaction_coordinate_rad: s, above_initial_mev: e }).collect(),
+            profile: profile
+                .samples(16)
+                .into_iter()
+                .map(|(s, e)| ProfilePoint { reaction_coordinate_rad: s, above_initial_mev: e })
+                .collect(),
             work: Work {
                 iterations: band.evaluations(),
                 force_evaluations: h.evaluations(),
@@ -424,7 +457,11 @@ fn rejection(c: &Candidate, best: &Candidate) -> RejectedPath {
     let reason = match &c.found {
         Some(f) if f.refined.index > 1 => "its top is a saddle of higher index".to_string(),
         Some(_) => format!("its saddle is not below that of \"{}\"", best.name),
-        None => format!("its highest image lies above the path \"{}\" after {} evaluations", best.name, c.band.evaluations()),
+        None => format!(
+            "its highest image lies above the path \"{}\" after {} evaluations",
+            best.name,
+            c.band.evaluations()
+        ),
     };
     RejectedPath { guess: c.name.clone(), barrier_mev, negative_modes, reason }
 }
@@ -482,7 +519,14 @@ fn kept(problem: &Problem, spins: &Spins) -> Relaxed {
     h.energy_gradient(m, &mut g);
     h.force(m, &g, &mut f);
     let max_torque_mev = slab::max_abs(&f);
-    Relaxed { spins: spins.clone(), max_torque_mev, steps: 0, largest_rotation_rad: 0.0, left_saddle: false, converged: true }
+    Relaxed {
+        spins: spins.clone(),
+        max_torque_mev,
+        steps: 0,
+        largest_rotation_rad: 0.0,
+        left_saddle: false,
+        converged: true,
+    }
 }
 
 fn judge_end(r: &Relaxed, which: &str) -> Vec<String> {
@@ -495,13 +539,19 @@ fn judge_end(r: &Relaxed, which: &str) -> Vec<String> {
         warnings.push(format!("the {which} state relaxed far from where it was put: a spin turned by {degrees:.0} degrees, so it may be another state than meant"));
     }
     if !r.converged {
-        warnings.push(format!("the {which} state did not relax fully: a torque of {:.1e} meV remains", r.max_torque_mev));
+        warnings
+            .push(format!("the {which} state did not relax fully: a torque of {:.1e} meV remains", r.max_torque_mev));
     }
     warnings
 }
 
 fn end_point(h: &crate::energy::Hamiltonian, r: &Relaxed) -> EndPoint {
-    EndPoint { energy_mev: h.energy_mev(r.spins.as_slice()), max_torque_mev: r.max_torque_mev, negative_modes: None, zero_modes: None }
+    EndPoint {
+        energy_mev: h.energy_mev(r.spins.as_slice()),
+        max_torque_mev: r.max_torque_mev,
+        negative_modes: None,
+        zero_modes: None,
+    }
 }
 
 /// Largest component of the whole force on image k (meV).
@@ -515,7 +565,12 @@ fn torque(band: &Band, k: usize) -> f64 {
 fn minima(h: &crate::energy::Hamiltonian, band: &Band) -> Vec<IntermediateMinimum> {
     let upside_down: Vec<f64> = band.energies_mev().iter().map(|e| -e).collect();
     let s = band.path().reaction_coordinate();
-    let state = |k: usize| EndPoint { energy_mev: h.energy_mev(band.path().image(k)), max_torque_mev: torque(band, k), negative_modes: None, zero_modes: None };
+    let state = |k: usize| EndPoint {
+        energy_mev: h.energy_mev(band.path().image(k)),
+        max_torque_mev: torque(band, k),
+        negative_modes: None,
+        zero_modes: None,
+    };
     prominent_maxima(&upside_down, 1e-3 * height(band))
         .into_iter()
         .map(|k| IntermediateMinimum { image: k, reaction_coordinate_rad: s[k], state: state(k) })

@@ -99,12 +99,14 @@ fn exchange_stiffness(h: &Hamiltonian) -> f64 {
         .bond
         .iter()
         .map(|bonds| {
-            let mut j: Vec<f64> = bonds.iter().map(|b| -(b[0][0] + b[1][1] + b[2][2]) / 3.0).filter(|j| *j != 0.0).collect();
+            let mut j: Vec<f64> =
+                bonds.iter().map(|b| -(b[0][0] + b[1][1] + b[2][2]) / 3.0).filter(|j| *j != 0.0).collect();
             j.sort_by(f64::total_cmp);
             j.get(j.len() / 2).copied().unwrap_or(0.0)
         })
         .collect();
     let sign = shells.first().map_or(1.0, |j| 1f64.copysign(*j));
-    let sum: f64 = shells.iter().enumerate().map(|(k, j)| ((k + 1) * (k + 1)) as f64 * j * sign.powi(k as i32 + 1)).sum();
+    let sum: f64 =
+        shells.iter().enumerate().map(|(k, j)| ((k + 1) * (k + 1)) as f64 * j * sign.powi(k as i32 + 1)).sum();
     sum.abs()
 }

@@ -36,7 +36,10 @@ impl fmt::Display for Stop {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Stop::Converged { rotation, tolerance } => {
-                write!(f, "converged: no spin is predicted to turn by more than {rotation:.1e} rad (tolerance {tolerance:.1e} rad)")
+                write!(
+                    f,
+                    "converged: no spin is predicted to turn by more than {rotation:.1e} rad (tolerance {tolerance:.1e} rad)"
+                )
             }
             Stop::MaxEvaluations { evaluations, rotation, tolerance } => write!(
                 f,

@@ -52,7 +52,13 @@ pub fn highest(band: &Band) -> Option<Top> {
 /// A maximal image, or the interpolated maximum beside it where that can be trusted: its force is below twice the image's, or
 /// its energy is within 2 % of what the interpolation said (on coarse plateaus the interpolation overshoots).
 fn beside(band: &Band, profile: &Profile, k: usize) -> Top {
-    let image = Top { m: band.path().image(k).to_vec(), tau: through(band, k), energy_mev: band.energies_mev()[k], s: profile.s[k], image: k };
+    let image = Top {
+        m: band.path().image(k).to_vec(),
+        tau: through(band, k),
+        energy_mev: band.energies_mev()[k],
+        s: profile.s[k],
+        image: k,
+    };
     let near = profile.extrema().into_iter().filter(|x| x.is_maximum && (x.interval == k || x.interval + 1 == k));
     let Some(x) = near.max_by(|p, q| p.energy.total_cmp(&q.energy)) else { return image };
     let top = between(band, profile, &x);
@@ -75,7 +81,13 @@ fn between(band: &Band, profile: &Profile, x: &Extremum) -> Top {
     blend(a, b, x.fraction, &mut m);
     let tau = if x.fraction < 0.5 { direction(&m, b, 1.0) } else { direction(&m, a, -1.0) };
     let image = if x.fraction < 0.5 { x.interval } else { x.interval + 1 };
-    Top { m, tau, energy_mev: x.energy + band.energies_mev()[0], s: profile.s[x.interval] + x.fraction * (profile.s[x.interval + 1] - profile.s[x.interval]), image }
+    Top {
+        m,
+        tau,
+        energy_mev: x.energy + band.energies_mev()[0],
+        s: profile.s[x.interval] + x.fraction * (profile.s[x.interval + 1] - profile.s[x.interval]),
+        image,
+    }
 }
 
 /// Direction of the path through image k: both neighbours, each as a unit vector.

@@ -122,7 +122,8 @@ impl Run<'_> {
 impl Exchange {
     /// The same energies on all bonds: `j[n − 1]` (meV) for shell n.
     pub fn uniform(chain: &Chain, j: &[f64]) -> Exchange {
-        let shell = |(k, j): (usize, &f64)| (0..chain.sites).map(|i| if i < chain.bonds(k + 1) { *j } else { 0.0 }).collect();
+        let shell =
+            |(k, j): (usize, &f64)| (0..chain.sites).map(|i| if i < chain.bonds(k + 1) { *j } else { 0.0 }).collect();
         Exchange { shells: j.iter().enumerate().map(shell).collect() }
     }
 

@@ -18,7 +18,7 @@ impl Path {
     /// A new image in the middle of every interval.
     pub fn doubled(&self) -> Path {
         let count = 2 * self.images() - 1;
-        self.build(count, |k, out| match k % 2 {
+        Path::build(count, self.sites(), |k, out| match k % 2 {
             0 => out.copy_from_slice(self.image(k / 2)),
             _ => blend(self.image(k / 2), self.image(k / 2 + 1), 0.5, out),
         })
@@ -27,7 +27,7 @@ impl Path {
     /// Images at the given places of the running length `s`.
     pub fn at_places(&self, s: &[f64], places: &[f64]) -> Path {
         let last = self.images() - 1;
-        self.build(places.len(), |k, out| {
+        Path::build(places.len(), self.sites(), |k, out| {
             if k == 0 || k + 1 == places.len() {
                 let end = if k == 0 { 0 } else { last };
                 return out.copy_from_slice(self.image(end));
@@ -39,9 +39,10 @@ impl Path {
         })
     }
 
-    fn build(&self, images: usize, fill: impl Fn(usize, &mut [f64]) + Sync) -> Path {
-        let mut path = Path { m: Array3::zeros((images, 3, self.sites())) };
-        path.as_mut_slice().par_chunks_mut(3 * self.sites()).enumerate().for_each(|(k, out)| fill(k, out));
+    /// A path whose images are written one by one, each a slab of 3N numbers.
+    pub(crate) fn build(images: usize, sites: usize, fill: impl Fn(usize, &mut [f64]) + Sync) -> Path {
+        let mut path = Path { m: Array3::zeros((images, 3, sites)) };
+        path.as_mut_slice().par_chunks_mut(3 * sites).enumerate().for_each(|(k, out)| fill(k, out));
         path
     }
 }

@@ -95,8 +95,24 @@ pub fn refine(h: &Hamiltonian, m: &[f64], tau: &[f64], c: f64) -> Refined {
     let tau = unit_tangent(&state.m, tau);
     let kappa = (h.stiffness_mev() / 3.0).max(c);
     let mut s = Search {
-        h, c, kappa, start: m.to_vec(), state, tau, x: 0.0, reach: 0.3, shift: 0.0, visited: Vec::new(), frozen: Vec::new(),
-        factorisations: 0, freezes: 0, aims: 0, kicks: 0, bad: 0, last_step: 9.0, torques: Vec::new(),
+        h,
+        c,
+        kappa,
+        start: m.to_vec(),
+        state,
+        tau,
+        x: 0.0,
+        reach: 0.3,
+        shift: 0.0,
+        visited: Vec::new(),
+        frozen: Vec::new(),
+        factorisations: 0,
+        freezes: 0,
+        aims: 0,
+        kicks: 0,
+        bad: 0,
+        last_step: 9.0,
+        torques: Vec::new(),
     };
     let mut verdict = Verdict::Stalled;
     let mut steps = 0;
@@ -137,7 +153,8 @@ impl Search<'_> {
                 }
                 continue;
             }
-            self.shift = if self.shift < 1e-6 * self.c { 1.001e-6 * self.c } else { (4.0 * self.shift).max(0.1 * self.c) };
+            self.shift =
+                if self.shift < 1e-6 * self.c { 1.001e-6 * self.c } else { (4.0 * self.shift).max(0.1 * self.c) };
         }
         let t = self.state.basis.coordinates(&self.tau);
         self.factorisations += 1;
@@ -168,7 +185,8 @@ impl Search<'_> {
         if modes.first().is_none_or(|m| m.value <= -flat) {
             return false;
         }
-        let fields: Vec<Vec<f64>> = modes.iter().filter(|m| m.value.abs() < flat).map(|m| self.state.field(&m.vector)).collect();
+        let fields: Vec<Vec<f64>> =
+            modes.iter().filter(|m| m.value.abs() < flat).map(|m| self.state.field(&m.vector)).collect();
         let found = !fields.is_empty();
         self.frozen.extend(fields);
         found
@@ -208,7 +226,9 @@ impl Search<'_> {
         let across = slab::max_abs(&d);
         self.last_step = across;
         let torque = slab::max_abs(&g);
-        let trusted = (across < 0.03 && slope.abs() > 10.0 * c * across * across && curvature.abs() > 10.0 * c * across) || across < 1e-9;
+        let trusted =
+            (across < 0.03 && slope.abs() > 10.0 * c * across * across && curvature.abs() > 10.0 * c * across)
+                || across < 1e-9;
         if let Some(verdict) = self.arrived(&p, &g, torque, across, step) {
             return Next::Stop(verdict);
         }
@@ -219,7 +239,10 @@ impl Search<'_> {
         if (self.x + along).abs() > FARTHEST {
             return Next::Stop(Verdict::Left);
         }
-        if step > 6 && self.shift > 0.0 && distance(&self.start, &self.state.m) > self.x.abs() + 1.5 * (self.kicks + 1) as f64 {
+        if step > 6
+            && self.shift > 0.0
+            && distance(&self.start, &self.state.m) > self.x.abs() + 1.5 * (self.kicks + 1) as f64
+        {
             return Next::Stop(Verdict::Left);
         }
         if across > 0.05 {
@@ -238,7 +261,9 @@ impl Search<'_> {
             return if across < 0.03 { 0.0 } else { newton.clamp(-0.3 * self.reach, 0.3 * self.reach) };
         }
         match self.bracket() {
-            Some((a, b)) if b - a > 1e-9 && !(a - 1e-12..b + 1e-12).contains(&(self.x + newton)) => 0.5 * (a + b) - self.x,
+            Some((a, b)) if b - a > 1e-9 && !(a - 1e-12..b + 1e-12).contains(&(self.x + newton)) => {
+                0.5 * (a + b) - self.x
+            }
             _ => newton,
         }
     }
@@ -275,7 +300,18 @@ impl Search<'_> {
 
     /// The step itself, unless nothing is left to gain.
     #[allow(clippy::too_many_arguments)]
-    fn leave(&mut self, p: &Pinned, g: &[f64], mut d: Vec<f64>, w: Vec<f64>, size: f64, along: f64, torque: f64, across: f64, curvature: f64) -> Next {
+    fn leave(
+        &mut self,
+        p: &Pinned,
+        g: &[f64],
+        mut d: Vec<f64>,
+        w: Vec<f64>,
+        size: f64,
+        along: f64,
+        torque: f64,
+        across: f64,
+        curvature: f64,
+    ) -> Next {
         let tolerance = self.tolerance();
         slab::add_scaled(&mut d, along / size, &w);
         let mut v = self.state.field(&d);
