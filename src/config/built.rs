@@ -8,16 +8,17 @@ use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, Vector, angle};
 use crate::lattice::{Chain, Lattice};
 use crate::linalg::slab;
-use crate::path::guess::{GuessContext, GuessSpec};
+use crate::path::guess::GuessContext;
 use crate::path::largest_angle;
 use crate::spins::Spins;
-use crate::state::StateSpec;
-use crate::words::number;
+use crate::state::{StateContext, StateSpec};
 
 /// Largest torque on a site (meV) that is taken for meant: 1e20 meV is 16 mJ.
 const LARGEST_MEV: f64 = 1e20;
 /// States closer than this are the same (rad, any spin).
 const SAME: f64 = 1e-9;
+/// Frozen spins closer than this agree, such as the tails of two walls (rad).
+const AGREE: f64 = 1e-3;
 
 impl Loaded {
     /// Where the spins are.
@@ -36,12 +37,12 @@ impl Loaded {
         let terms = self.terms(chain)?;
         let hamiltonian = Hamiltonian::new(chain, terms).map_err(|e| here(e.within("lattice.chain")))?;
         let scales = Scales::of_terms(&hamiltonian);
+        let context = StateContext { chain, wall_width_sites: scales.wall_width_sites };
         let state = |spec: &StateSpec, key: &str| -> Result<Spins> {
-            let built = spec.build(chain, scales.wall_width_sites);
-            built.map_err(|e| here(e.within(&format!("{key}.{}", spec.name()))))
+            spec.build(&context).map_err(|e| here(e.within(&format!("{key}.{}", spec.name()))))
         };
-        let given = (state(&config.initial, "initial")?, state(&config.final_state, "final")?);
-        let (initial, final_state) = frozen(chain, given.0, given.1).map_err(here)?;
+        let initial = state(&config.initial, "initial")?;
+        let final_state = frozen(chain, &initial, state(&config.final_state, "final")?).map_err(here)?;
         if largest_angle(initial.as_slice(), final_state.as_slice()) < SAME {
             let message = "the initial and the final state are identical: there is no path between them";
             return Err(here(Error::invalid("final", message)));
@@ -50,8 +51,9 @@ impl Loaded {
         problem.relax_ends = config.relax_ends;
         problem.images = config.path.images.0;
         problem.guess = config.path.guess.clone();
-        problem.noise = config.path.noise.clone();
+        problem.noise = config.path.noise;
         problem.smooth = config.path.smooth;
+        problem.refine = config.saddle.refine;
         problem.neb = config.neb.settings();
         self.affordable(needed_bytes(&problem, &scales), Some(problem.images))?;
         guess(&problem, &scales).map_err(here)?;
@@ -140,19 +142,20 @@ fn torque(term: &dyn EnergyTerm, sites: usize) -> Result<f64> {
     match finite && largest <= LARGEST_MEV {
         true => Ok(largest),
         false => {
-            let size = if finite { format!("about {} meV", number(largest)) } else { "more than can be computed with".into() };
+            let size = if finite { format!("about {largest:.0e} meV") } else { "more than can be computed with".into() };
             let message = format!("the energy of a site is {size}: is a quantity, or the lattice's cell, absurdly large?");
             Err(Error::invalid("", message))
         }
     }
 }
 
-/// The states with frozen spins where they are to stay.
-fn frozen(chain: &Chain, initial: Spins, final_state: Spins) -> Result<(Spins, Spins)> {
+/// The final state with frozen spins just where the initial state has them; an error where it has them elsewhere.
+fn frozen(chain: &Chain, initial: &Spins, final_state: Spins) -> Result<Spins> {
     if chain.frozen.is_empty() {
-        return Ok((initial, final_state));
+        return Ok(final_state);
     }
-    let (mut a, mut b) = (initial.vectors(), final_state.vectors());
+    let (n, from) = (chain.sites, initial.as_slice());
+    let mut m = final_state.as_slice().to_vec();
     let mut entry: Vec<Option<usize>> = vec![None; chain.sites];
     for (k, f) in chain.frozen.iter().enumerate() {
         let place = format!("lattice.chain.frozen[{k}]");
@@ -160,24 +163,21 @@ fn frozen(chain: &Chain, initial: Spins, final_state: Spins) -> Result<(Spins, S
             if let Some(first) = entry[i].replace(k) {
                 return Err(Error::invalid(place, format!("site {i} is frozen already, in frozen[{first}]")));
             }
-            let apart = angle(a[i], b[i]);
-            match f.direction.map(Direction::vector) {
-                Some(direction) => (a[i], b[i]) = (direction, direction),
-                None if apart <= SAME.sqrt() => b[i] = a[i],
-                None => {
-                    let degrees = apart.to_degrees();
-                    return Err(Error::invalid(
-                        place,
-                        format!(
-                            "site {i} is frozen, but the final state turns it by {degrees:.1} degrees: give a \
-                             \"direction\" or make the two states agree there"
-                        ),
-                    ));
-                }
+            let apart = angle(initial.get(i), final_state.get(i));
+            if apart > AGREE {
+                let message = format!(
+                    "site {i} is frozen, but the final state has it {:.3} degrees away from where the initial state has \
+                     it: give it a \"direction\" or make the two states agree there",
+                    apart.to_degrees()
+                );
+                return Err(Error::invalid(place, message));
+            }
+            for c in 0..3 {
+                m[c * n + i] = from[c * n + i];
             }
         }
     }
-    Ok((Spins::from_vectors(&a)?, Spins::from_vectors(&b)?))
+    Ok(Spins::from_unit_components(&m))
 }
 
 /// Whether the first path can be made; noise and smoothing need one that is named.
@@ -193,12 +193,12 @@ fn guess(problem: &Problem, scales: &Scales) -> Result<()> {
             _ => Ok(()),
         };
     };
-    let (chain, wall_width_sites) = (&problem.chain, scales.wall_width_sites);
-    let context = GuessContext { chain, wall_width_sites, default_axis: Direction::X };
-    let images = match (problem.images, guess) {
-        (Images::Count(n), _) => n.min(5),
-        (Images::Auto, _) => 5,
+    let states = StateContext { chain: &problem.chain, wall_width_sites: scales.wall_width_sites };
+    let context = GuessContext { states, default_axis: Direction::X };
+    let images = match problem.images {
+        Images::Count(n) => n.min(5),
+        Images::Auto => 5,
     };
     let made = guess.member().path(&problem.initial, &problem.final_state, images, &context);
-    made.map(|_| ()).map_err(|e| e.within(&format!("path.guess.{}", GuessSpec::name(guess))))
+    made.map(|_| ()).map_err(|e| e.within(&format!("path.guess.{}", guess.name())))
 }

@@ -5,7 +5,7 @@ use super::text::{apply_set, at_place, decode, nearest, parse};
 use super::{Config, Name};
 use crate::error::{Error, Result};
 use crate::words::quoted;
-use serde_json::Value;
+use serde_json::{Map, Value};
 use sha2::{Digest, Sha256};
 use std::fs::File;
 use std::io::{self, Read};
@@ -53,6 +53,8 @@ pub struct Loaded {
 pub fn load(path: &Path, sets: &[String]) -> Result<Loaded> {
     let file = path.display().to_string();
     let text = apply_set(&file, &read(path)?, sets)?;
+    // An array would do for serde's structs, whose keys then go unsaid.
+    parse::<Map<String, Value>>(&file, &text)?;
     let config: Config = parse(&file, &text)?;
     let text = Text { file, text };
     let name = name(path, &config).map_err(|e| text.locate(e))?;
@@ -60,6 +62,7 @@ pub fn load(path: &Path, sets: &[String]) -> Result<Loaded> {
         MaterialChoice::Inline(material) => ((**material).clone(), None),
         MaterialChoice::Named(named) => {
             let from = material_file(path, named).map_err(|e| text.locate(e))?;
+            parse::<Map<String, Value>>(&from.file, &from.text)?;
             (parse(&from.file, &from.text)?, Some(from))
         }
     };
