@@ -76,7 +76,11 @@ fn distinct(loaded: &[Loaded], directories: &[PathBuf]) -> u8 {
 
 fn run_one(arguments: &Run, loaded: &Loaded, directory: &Path) -> Result<u8> {
     let started = Instant::now();
-    let say = |line: &str| if !arguments.quiet { note(line) };
+    let say = |line: &str| {
+        if !arguments.quiet {
+            note(line)
+        }
+    };
     let problem = loaded.problem()?;
     let (name, place) = (&loaded.name, directory.display());
     if let Destination::Finished(_) = disk::prepare(directory, VERSION, &loaded.sha256, arguments.force)? {

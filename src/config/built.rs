@@ -83,11 +83,15 @@ impl Loaded {
             terms.push(built.map_err(|e| text.locate(e.within(&place)))?);
         }
         let nothing = match terms.is_empty() {
-            true => "there is no energy term, neither of the material nor here: without energy there is no path to find",
+            true => {
+                "there is no energy term, neither of the material nor here: without energy there is no path to find"
+            }
             false if largest == 0.0 => "all energies are zero: without energy there is no path to find",
             false => return Ok(terms),
         };
-        Err(self.text.locate(Error::invalid(if self.config.energy.is_empty() { "material" } else { "energy" }, nothing)))
+        Err(self
+            .text
+            .locate(Error::invalid(if self.config.energy.is_empty() { "material" } else { "energy" }, nothing)))
     }
 
     /// Refuses what no memory can hold.
@@ -142,8 +146,10 @@ fn torque(term: &dyn EnergyTerm, sites: usize) -> Result<f64> {
     match finite && largest <= LARGEST_MEV {
         true => Ok(largest),
         false => {
-            let size = if finite { format!("about {largest:.0e} meV") } else { "more than can be computed with".into() };
-            let message = format!("the energy of a site is {size}: is a quantity, or the lattice's cell, absurdly large?");
+            let size =
+                if finite { format!("about {largest:.0e} meV") } else { "more than can be computed with".into() };
+            let message =
+                format!("the energy of a site is {size}: is a quantity, or the lattice's cell, absurdly large?");
             Err(Error::invalid("", message))
         }
     }

@@ -84,7 +84,9 @@ fn bytes(path: &Path) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     File::open(path)?.take(LONGEST + 1).read_to_end(&mut bytes)?;
     match bytes.len() as u64 > LONGEST {
-        true => Err(io::Error::new(io::ErrorKind::FileTooLarge, "the file is larger than 1 GiB, too large for a config")),
+        true => {
+            Err(io::Error::new(io::ErrorKind::FileTooLarge, "the file is larger than 1 GiB, too large for a config"))
+        }
         false => Ok(bytes),
     }
 }
@@ -96,7 +98,8 @@ fn name(path: &Path, config: &Config) -> Result<String> {
     }
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     Name::new(&stem).map(|name| name.to_string()).map_err(|_| {
-        let message = format!("the file's name {} cannot name the run: give a \"name\" of A-Z a-z 0-9 . _ -", quoted(&stem));
+        let message =
+            format!("the file's name {} cannot name the run: give a \"name\" of A-Z a-z 0-9 . _ -", quoted(&stem));
         Error::invalid("", message)
     })
 }

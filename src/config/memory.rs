@@ -32,7 +32,8 @@ pub fn run_bytes(sites: usize, images: usize, reach: usize, terms: usize, period
 /// What this machine has (bytes); a usual amount where that is not known.
 pub fn machine_bytes() -> f64 {
     let text = fs::read_to_string("/proc/meminfo").unwrap_or_default();
-    let total = text.lines().find_map(|line| line.strip_prefix("MemTotal:")?.strip_suffix("kB")?.trim().parse::<f64>().ok());
+    let total =
+        text.lines().find_map(|line| line.strip_prefix("MemTotal:")?.strip_suffix("kB")?.trim().parse::<f64>().ok());
     total.map_or(USUAL, |kib| 1024.0 * kib)
 }
 
@@ -50,7 +51,9 @@ mod tests {
 
     #[test]
     fn bytes_are_shown_with_a_unit_that_fits() {
-        for (bytes, expected) in [(0.0, "0.0 B"), (999.0, "999 B"), (1500.0, "1.5 kB"), (2e10, "20 GB"), (3e24, "3000000 EB")] {
+        for (bytes, expected) in
+            [(0.0, "0.0 B"), (999.0, "999 B"), (1500.0, "1.5 kB"), (2e10, "20 GB"), (3e24, "3000000 EB")]
+        {
             assert_eq!(shown(bytes), expected);
         }
     }
