@@ -55,7 +55,7 @@ impl Loaded {
         problem.smooth = config.path.smooth;
         problem.refine = config.saddle.refine;
         problem.neb = config.neb.settings();
-        self.affordable(needed_bytes(&problem, &scales), Some(problem.images))?;
+        self.affordable(needed_bytes(&problem, &scales), Some(expected_images(&problem, &scales)))?;
         guess(&problem, &scales).map_err(here)?;
         Ok(problem)
     }
@@ -94,17 +94,23 @@ impl Loaded {
             .locate(Error::invalid(if self.config.energy.is_empty() { "material" } else { "energy" }, nothing)))
     }
 
-    /// Refuses what no memory can hold.
-    fn affordable(&self, bytes: f64, images: Option<Images>) -> Result<()> {
+    /// Refuses what no memory can hold; `images` are the path's, where it has come to them.
+    fn affordable(&self, bytes: f64, images: Option<usize>) -> Result<()> {
         if bytes <= memory::machine_bytes() {
             return Ok(());
         }
         let sites = self.chain().sites;
-        let (place, what) = match images {
-            Some(Images::Count(n)) => ("path.images", format!("{sites} sites and {n} images need")),
-            _ => ("lattice.chain.sites", format!("{sites} sites need")),
+        let automatic = self.config.path.images.0 == Images::Auto;
+        let (place, what, way_out) = match images {
+            None => ("lattice.chain.sites", format!("{sites} sites"), ""),
+            Some(n) if automatic => {
+                let what = format!("{sites} sites with the {n} images that an automatic path begins with");
+                ("lattice.chain.sites", what, ": give fewer as \"images\" of \"path\"")
+            }
+            Some(n) => ("path.images", format!("{sites} sites and {n} images"), ""),
         };
-        let message = format!("{what} about {} of memory, more than this machine has", memory::shown(bytes));
+        let size = memory::shown(bytes);
+        let message = format!("{what} need about {size} of memory, more than this machine has{way_out}");
         Err(self.text.locate(Error::invalid(place, message)))
     }
 }
