@@ -56,7 +56,7 @@ fn an_error_in_the_material_s_file_names_that_file() {
     fs::write(dir.path().join("toy.json"), TOY.replace("exchange", "exchnage")).unwrap();
     let said = load(&path, &[]).unwrap_err().to_string();
     let file = dir.path().join("toy.json").display().to_string();
-    assert!(said.starts_with(&format!("{file}: line 1, column 30: energy[0].exchnage: ")), "{said}");
+    assert!(said.starts_with(&format!("{file}: line 1, column 29: energy[0].exchnage: ")), "{said}");
     assert!(said.contains("did you mean \"exchange\"?"), "{said}");
 }
 
