@@ -20,7 +20,7 @@ mod tangent;
 pub use gauge::align_rotations;
 pub use laplacian::Laplacian;
 pub use profile::{Extremum, Profile};
-pub use sweep::{Climb, Sweep, SweepStep};
+pub use sweep::{Sweep, SweepStep};
 
 use crate::energy::Hamiltonian;
 use crate::linalg::slab;

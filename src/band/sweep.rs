@@ -10,9 +10,7 @@
 //!   [Cᵀ 0 ] [·] = [0                  ],    x₀ = d τ,    y_a = x₀ + x
 //! ```
 //! H is the banded Riemannian Hessian of the image. μ starts at a small part of the stiffness scale c and grows while A has a
-//! negative direction in the complement of C; the count is exact (inertia of the bordered matrix). The highest image may
-//! climb: once its perpendicular part is small, d is the Newton step of the energy along its valley w = A⁻¹C S⁻¹e₁,
-//! −E'/E'' with E'' = S⁻¹₁₁ − μ|w|², S = CᵀA⁻¹C.
+//! negative direction in the complement of C; the count is exact (inertia of the bordered matrix).
 
 use super::Band;
 use crate::energy::{TangentBasis, assemble};
@@ -25,10 +23,6 @@ use rayon::prelude::*;
 const SHIFT_FLOOR: f64 = 1e-3;
 /// Most growth steps of μ in one evaluation.
 const SHIFT_TRIES: usize = 14;
-/// The climbing image follows its valley once the rest of its move is below this (rad).
-const CLIMB_BELOW: f64 = 0.1;
-/// and moves along it by no more than this at a time (rad).
-const CLIMB_AT_MOST: f64 = 0.5;
 
 /// The sweep's memory between evaluations: the shifts μ.
 #[derive(Clone, Debug)]
@@ -37,24 +31,13 @@ pub struct Sweep {
     shifts: Vec<f64>,
 }
 
-/// Which images climb.
-#[derive(Clone, Debug, Default)]
-pub struct Climb {
-    /// The images.
-    pub images: Vec<usize>,
-    /// An image stays where its valley offers less than this (meV).
-    pub worth_mev: f64,
-}
-
 /// What one sweep proposes.
 #[derive(Debug)]
 pub struct SweepStep {
     /// Tangent moves (rad) of the images between the ends, slab after slab.
     pub moves: Vec<f64>,
-    /// Largest rotation of any spin across the path (rad), the climbing image's whole move included.
+    /// Largest rotation of any spin across the path (rad).
     pub rotation: f64,
-    /// Energy that the climbing image's move along its valley may still change (meV).
-    pub climb_gain_mev: f64,
     /// Banded factorisations used.
     pub factorisations: usize,
 }
@@ -78,8 +61,8 @@ impl Sweep {
         Sweep { stiffness, shifts: Vec::new() }
     }
 
-    /// The moves of all images for an evaluated band; `climb` says which images climb.
-    pub fn step(&mut self, band: &Band, axes: &[Vector], climb: &Climb) -> SweepStep {
+    /// The moves of all images for an evaluated band.
+    pub fn step(&mut self, band: &Band, axes: &[Vector]) -> SweepStep {
         let (images, slab) = (band.images(), 3 * band.path().sites());
         self.shifts.resize(images, SHIFT_FLOOR * self.stiffness);
         let c = self.stiffness;
@@ -91,7 +74,7 @@ impl Sweep {
         let mut moves = vec![0.0; (images - 2) * slab];
         let mut order: Vec<usize> = (1..images - 1).collect();
         order.sort_by(|&a, &b| band.energies_mev()[b].total_cmp(&band.energies_mev()[a]).then(a.cmp(&b)));
-        let mut step = SweepStep { moves: Vec::new(), rotation: 0.0, climb_gain_mev: 0.0, factorisations: 0 };
+        let mut step = SweepStep { moves: Vec::new(), rotation: 0.0, factorisations: 0 };
         let mut pushed = vec![0.0; slab];
         for k in order {
             let solver = &solvers[k - 1];
@@ -100,13 +83,7 @@ impl Sweep {
                 slab::add_scaled(&mut pushed, solver.sigma, &moves[(u - 1) * slab..u * slab]);
             }
             let y = &mut moves[(k - 1) * slab..k * slab];
-            let rotation = if climb.images.contains(&k) {
-                let (rotation, gain) = solver.climb(band, k, climb.worth_mev, y);
-                step.climb_gain_mev = step.climb_gain_mev.max(gain);
-                rotation
-            } else {
-                solver.relax(band, k, &pushed, y)
-            };
+            let rotation = solver.relax(band, k, &pushed, y);
             step.rotation = if rotation.is_nan() { f64::NAN } else { step.rotation.max(rotation) };
             step.factorisations += solver.tries;
         }
@@ -139,15 +116,15 @@ impl Solver {
         }
     }
 
-    /// [A C; Cᵀ 0]⁻¹ (r, 0): the solution orthogonal to C, and the multipliers.
-    fn bordered(&self, r: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    /// The x of [A C; Cᵀ 0] (x, ·) = (r, 0): the solution orthogonal to C.
+    fn bordered(&self, r: &[f64]) -> Vec<f64> {
         let mut x = solve(&self.factors, r);
         let rhs: Vec<f64> = self.border.iter().map(|b| slab::dot(b, &x)).collect();
         let nu = solve_dense(&self.schur, &rhs, rhs.len()).unwrap_or_else(|| vec![0.0; rhs.len()]);
         for (z, n) in self.solved.iter().zip(&nu) {
             slab::add_scaled(&mut x, -n, z);
         }
-        (x, nu)
+        x
     }
 
     /// The move of an image that is pushed across the path and shifted along it; returns its largest rotation across.
@@ -163,7 +140,7 @@ impl Solver {
             let overlap = slab::dot(b, &r);
             slab::add_scaled(&mut r, -overlap, b);
         }
-        let (mut x, _) = self.bordered(&r);
+        let mut x = self.bordered(&r);
         self.basis.field(&x, y);
         let rotation = rotation_of(y);
         if d != 0.0 {
@@ -171,37 +148,6 @@ impl Solver {
             self.basis.field(&x, y);
         }
         rotation
-    }
-
-    /// The move of the climbing image: Newton across, and along its valley once that makes sense. Returns its largest
-    /// rotation and the energy that is still to be gained.
-    fn climb(&self, band: &Band, k: usize, worth_mev: f64, y: &mut [f64]) -> (f64, f64) {
-        let mut f = self.basis.coordinates(band.perpendicular(k));
-        slab::add_scaled(&mut f, band.along(k), &self.border[0]);
-        let (mut x, nu) = self.bordered(&f);
-        self.basis.field(&x, y);
-        let across = rotation_of(y);
-        let mut unit = vec![0.0; self.border.len()];
-        unit[0] = 1.0;
-        let Some(weights) = solve_dense(&self.schur, &unit, unit.len()) else { return (across, f64::INFINITY) };
-        let mut valley = vec![0.0; x.len()];
-        for (z, w) in self.solved.iter().zip(&weights) {
-            slab::add_scaled(&mut valley, *w, z);
-        }
-        let curvature = weights[0] - (self.shift + self.sigma) * slab::dot(&valley, &valley);
-        let force = nu[0];
-        let newton = if curvature < 0.0 { force / curvature } else { -f64::INFINITY * force.signum() };
-        let room = CLIMB_AT_MOST.min(0.4 * band.spacings()[k - 1].min(band.spacings()[k])) / slab::norm(&valley);
-        let along = newton.clamp(-room, room);
-        let gain = 0.5 * (force * along).abs();
-        if across > CLIMB_BELOW || gain <= worth_mev {
-            return (across, gain);
-        }
-        if along.is_finite() {
-            slab::add_scaled(&mut x, along, &valley);
-            self.basis.field(&x, y);
-        }
-        (across, gain)
     }
 }
 

@@ -4,18 +4,30 @@
 //! the usual way. So several guesses are relaxed loosely, and the lowest goes on.
 
 use super::Problem;
-use crate::geometry::{Direction, Vector};
-use crate::path::guess::{Edge, FirstGuess, Geodesic, GuessContext, GuessSpec, NoiseSpec, Sweep};
+use crate::geometry::{Direction, Vector, vector};
+use crate::path::guess::{Edge, FirstGuess, Geodesic, GuessContext, GuessSpec, NoiseSpec, Rotation, Sweep, best_turn};
 use crate::spins::Spins;
 use crate::units::Angle;
 
 /// Noise that frees a swept wall from accidental symmetries (rad).
 const NOISE: f64 = 2e-3;
 
-/// Geodesic, and a wall that enters from either end (from the middle of a ring), each with the noise it starts with.
-pub fn natural_guesses(problem: &Problem, axis: Direction) -> Vec<(GuessSpec, Option<NoiseSpec>)> {
+/// Turns by less (rad) are no rotation of the whole.
+const TURNS: f64 = 0.3;
+
+/// The geodesic; rigid rotations in both senses, where one brings the states together; a wall that enters from either end
+/// (from the middle of a ring): each with the noise it starts with.
+pub fn natural_guesses(
+    problem: &Problem,
+    a: &Spins,
+    b: &Spins,
+    axis: Direction,
+) -> Vec<(GuessSpec, Option<NoiseSpec>)> {
     let geodesic = GuessSpec::Geodesic(Geodesic { axis: Some(axis) });
     let mut guesses = vec![(geodesic, None)];
+    for axis in rotation_axes(problem, a, b) {
+        guesses.push((GuessSpec::Rotation(Rotation { axis: Some(axis) }), None));
+    }
     if problem.chain.sites > 1 {
         let edges = if problem.chain.periodic { vec![Edge::Center, Edge::Left] } else { vec![Edge::Left, Edge::Right] };
         for from in edges {
@@ -24,6 +36,29 @@ pub fn natural_guesses(problem: &Problem, axis: Direction) -> Vec<(GuessSpec, Op
         }
     }
     guesses
+}
+
+/// Axes (x, y, z and the symmetry axes, both senses of a half turn) about which a rigid turn brings a to b, all spins to a
+/// degree or so. Where every spin is reversed the geodesic is such a turn already.
+fn rotation_axes(problem: &Problem, a: &Spins, b: &Spins) -> Vec<Direction> {
+    let n = a.sites() as f64;
+    if (0..a.sites()).all(|i| vector::dot(a.get(i), b.get(i)) < -0.99) {
+        return Vec::new();
+    }
+    let mut axes: Vec<Direction> = Vec::new();
+    let cartesian = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    for v in cartesian.iter().chain(problem.hamiltonian.symmetry_axes()) {
+        let Ok(axis) = Direction::new(*v) else { continue };
+        let (angle, together) = best_turn(a, b, axis);
+        let new = axes.iter().all(|k| vector::norm(vector::cross(k.vector(), *v)) > 1e-6);
+        if new && angle.abs() > TURNS && together > n - 1e-3 * n.max(10.0) {
+            axes.push(axis);
+            if angle.abs() > std::f64::consts::PI - 1e-3 {
+                axes.push(axis.reversed());
+            }
+        }
+    }
+    axes
 }
 
 /// The axis about which opposite spins turn: of ±x, ±y, ±z and the symmetry axes, the one whose wall halfway is lowest.

@@ -53,6 +53,13 @@ impl Problem {
     }
 }
 
+impl Problem {
+    /// Whether the maxima are followed to their saddles.
+    pub fn seeks_saddles(&self) -> bool {
+        self.refine || self.neb.climb
+    }
+}
+
 /// Number of images of a path, both ends counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Images {
@@ -65,7 +72,7 @@ pub enum Images {
 /// How a band is relaxed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NebSettings {
-    /// Let the maxima climb.
+    /// Let the maxima climb to their saddles and stand in the path as images.
     pub climb: bool,
     /// Largest predicted remaining rotation of any spin (rad).
     pub tolerance: f64,

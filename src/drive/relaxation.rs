@@ -2,7 +2,7 @@
 
 use super::outcome::HistoryRow;
 use super::{NebSettings, Observer, Scales, Stop};
-use crate::band::{Band, Climb, Laplacian, Sweep, align_rotations};
+use crate::band::{Band, Laplacian, Sweep, align_rotations};
 use crate::geometry::Vector;
 use crate::linalg::slab;
 use crate::optimise::{Follows, OptimiserSpec};
@@ -11,8 +11,6 @@ use crate::sphere::rotation_of;
 
 /// |F⊥|∞/c that is enough to double the images or to read off which path is lowest.
 pub const LOOSE: f64 = 5e-3;
-/// A climbing image is there when its valley offers less than this part of the path's height.
-const CLIMBED: f64 = 1e-9;
 /// A maximum climbs if it stands out by more than this part of the path's height.
 const PROMINENT: f64 = 1e-3;
 
@@ -29,7 +27,7 @@ pub enum Goal {
 pub struct Relaxation<'a> {
     /// Settings of the run.
     pub settings: &'a NebSettings,
-    /// Let prominent maxima climb (where their refinement does not follow).
+    /// Let prominent maxima climb by the reversed force, where the method has springs.
     pub climb: bool,
     /// Scales of the problem.
     pub scales: Scales,
@@ -47,7 +45,6 @@ pub struct Relaxation<'a> {
 struct Look {
     direction: Vec<f64>,
     rotation: f64,
-    gain: f64,
 }
 
 impl Relaxation<'_> {
@@ -74,7 +71,7 @@ impl Relaxation<'_> {
             if !look.rotation.is_finite() || !force.is_finite() {
                 return Stop::NotFinite;
             }
-            if goal == Goal::Tight && look.rotation <= tolerance && look.gain <= CLIMBED * height(band) {
+            if goal == Goal::Tight && look.rotation <= tolerance {
                 return Stop::Converged { rotation: look.rotation, tolerance };
             }
             if band.evaluations() >= limit {
@@ -90,24 +87,21 @@ impl Relaxation<'_> {
 
     fn look(&self, band: &Band, sweep: &mut Sweep, follows: Follows, climbing: &[usize]) -> Look {
         if follows == Follows::Sweep {
-            let climb = Climb { images: climbing.to_vec(), worth_mev: CLIMBED * height(band) };
-            let step = sweep.step(band, self.axes, &climb);
-            return Look { direction: step.moves, rotation: step.rotation, gain: step.climb_gain_mev };
+            let step = sweep.step(band, self.axes);
+            return Look { direction: step.moves, rotation: step.rotation };
         }
         let slab = 3 * band.path().sites();
         let mut y = vec![0.0; (band.images() - 2) * slab];
-        let Some(laplacian) = self.laplacian else { return Look { direction: y, rotation: f64::NAN, gain: 0.0 } };
+        let Some(laplacian) = self.laplacian else { return Look { direction: y, rotation: f64::NAN } };
         laplacian.rotations(band, &mut y);
         let rotation = y.chunks(slab).map(rotation_of).fold(0.0, f64::max);
         let c = self.scales.stiffness_mev;
-        let gain = climbing.iter().map(|&k| 0.5 * band.along(k).powi(2) / c).fold(0.0, f64::max);
         if follows == Follows::Preconditioned {
-            let shifts = band.equal_shifts(climbing.first().copied());
+            let shifts = band.equal_shifts();
             for k in 1..band.images() - 1 {
-                let along = if climbing.contains(&k) { -band.along(k) / c } else { shifts[k] };
-                slab::add_scaled(&mut y[(k - 1) * slab..k * slab], along, band.tangent(k));
+                slab::add_scaled(&mut y[(k - 1) * slab..k * slab], shifts[k], band.tangent(k));
             }
-            return Look { direction: y, rotation, gain };
+            return Look { direction: y, rotation };
         }
         for k in 1..band.images() - 1 {
             let f = &mut y[(k - 1) * slab..k * slab];
@@ -115,7 +109,7 @@ impl Relaxation<'_> {
             let along = if climbing.contains(&k) { -band.along(k) } else { c * band.spring_pull(k) };
             slab::add_scaled(f, along, band.tangent(k));
         }
-        Look { direction: y, rotation, gain }
+        Look { direction: y, rotation }
     }
 
     /// The images that climb: every prominent maximum, once the band is loosely relaxed.

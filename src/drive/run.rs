@@ -143,8 +143,15 @@ impl<'a, 'o> Run<'a, 'o> {
             }
             None => self.best_natural()?,
         };
-        self.resolve(&mut candidate);
-        self.relax(&mut candidate, Goal::Tight, usize::MAX);
+        loop {
+            self.resolve(&mut candidate);
+            let images = candidate.band.images();
+            self.relax(&mut candidate, Goal::Tight, usize::MAX);
+            let coarse = self.problem.images == Images::Auto && candidate.band.path().largest_rotation() > RESOLVED;
+            if !coarse || images >= MOST_IMAGES || !candidate.stop.is_converged() {
+                break;
+            }
+        }
         let found = self.all_saddles(&mut candidate);
         if self.problem.neb.climb {
             seat(&mut candidate.band, &found);
@@ -155,7 +162,7 @@ impl<'a, 'o> Run<'a, 'o> {
     /// The lowest of the natural first paths, and what became of the others: a few evaluations each, the best two finished.
     fn best_natural(&mut self) -> Result<(Candidate<'a>, Vec<RejectedPath>)> {
         let mut tried = Vec::new();
-        for (guess, noise) in natural_guesses(self.problem, self.axis) {
+        for (guess, noise) in natural_guesses(self.problem, &self.ends[0].spins, &self.ends[1].spins, self.axis) {
             self.observer.stage(&format!("first path: {}", describe(&guess)));
             tried.push(self.start(&guess, noise.as_ref(), None, TRIAL)?);
         }
@@ -163,7 +170,7 @@ impl<'a, 'o> Run<'a, 'o> {
         let mut finished = 0;
         for c in &mut tried {
             let lowest = c.top_mev();
-            let worth = finished < 2 && self.problem.refine;
+            let worth = finished < 2 && self.problem.seeks_saddles();
             if worth && !(finished == 1 && lowest > 1.2 * self.lowest_top) {
                 self.conclude(c);
                 finished += 1;
@@ -184,7 +191,7 @@ impl<'a, 'o> Run<'a, 'o> {
             if !c.stop.is_converged() {
                 self.relax(c, Goal::Loose, c.band.evaluations() + 24);
             }
-            if !self.problem.refine {
+            if !self.problem.seeks_saddles() {
                 return;
             }
             self.zoom(c);
@@ -221,7 +228,11 @@ impl<'a, 'o> Run<'a, 'o> {
             if top.s > left && top.s < right {
                 return;
             }
-            let places = condensed(&s, if top.s <= left { 1 } else { last - 1 });
+            let images = match self.problem.images {
+                Images::Count(n) => n,
+                Images::Auto => c.band.images() + 8,
+            };
+            let places = condensed(&s, if top.s <= left { 0 } else { last }, images);
             let path = c.band.path().at_places(&s, &places);
             c.band = Band::continued(&self.problem.hamiltonian, path, c.band.evaluations());
             self.relax(c, Goal::Loose, c.band.evaluations() + 24);
@@ -231,7 +242,7 @@ impl<'a, 'o> Run<'a, 'o> {
     /// Every maximum within a tenth of the highest, refined; saddles found twice count once.
     fn all_saddles(&mut self, c: &mut Candidate<'a>) -> Vec<Found> {
         let scale = self.scales.stiffness_mev;
-        if !self.problem.refine {
+        if !self.problem.seeks_saddles() {
             return Vec::new();
         }
         let h = &self.problem.hamiltonian;
@@ -325,6 +336,14 @@ impl<'a, 'o> Run<'a, 'o> {
         let above_final = h.difference_mev(last, first);
         let mut warnings = self.warnings;
         let top = saddles.iter().map(|s| s.above_initial_mev).fold(f64::NEG_INFINITY, f64::max);
+        let seen = band.energies_mev()[band.highest()] - band.energies_mev()[0];
+        let missed = seen > top + 1e-6 * height(band) && seen > above_final.max(0.0) + 1e-9 * height(band);
+        if missed && !found.is_empty() {
+            warnings.push(
+                "an image of the path lies above every refined saddle: the barrier is that image's energy".into(),
+            );
+        }
+        let top = if missed { seen } else { top };
         let mut stop_reason = c.stop.to_string();
         let top = if top > above_final.max(0.0) {
             top
@@ -466,17 +485,20 @@ fn rejection(c: &Candidate, best: &Candidate) -> RejectedPath {
     RejectedPath { guess: c.name.clone(), barrier_mev, negative_modes, reason }
 }
 
-/// Places for a path whose interval beside image k gets finer: the intervals within two of k in quarters.
-fn condensed(s: &[f64], k: usize) -> Vec<f64> {
-    let mut places = vec![s[0]];
-    for i in 1..s.len() {
-        let near = i + 1 >= k && i <= k + 2;
-        let parts = if near { 4 } else { 1 };
-        for j in 1..=parts {
-            places.push(s[i - 1] + (s[i] - s[i - 1]) * j as f64 / parts as f64);
-        }
+/// Places of `images` images, four times as dense within two intervals of image k as elsewhere.
+fn condensed(s: &[f64], k: usize, images: usize) -> Vec<f64> {
+    let weight = |i: usize| if i + 1 >= k.saturating_sub(1) && i < k + 2 { 4.0 } else { 1.0 };
+    let mut warped = vec![0.0];
+    for i in 0..s.len() - 1 {
+        warped.push(warped[i] + weight(i) * (s[i + 1] - s[i]));
     }
-    places
+    let total = warped[s.len() - 1];
+    let place = |j: usize| {
+        let x = total * j as f64 / (images - 1) as f64;
+        let i = warped.partition_point(|w| *w <= x).clamp(1, s.len() - 1) - 1;
+        s[i] + (x - warped[i]) / weight(i)
+    };
+    (0..images).map(place).collect()
 }
 
 /// Refined saddles in path order.

@@ -16,7 +16,7 @@ pub use clock::arcs;
 pub use geodesic::Geodesic;
 pub use nlerp::{Nlerp, component_sag};
 pub use noise::{NoiseSpec, add_noise};
-pub use rotation::Rotation;
+pub use rotation::{Rotation, best_turn};
 pub use smooth::smooth;
 pub use sweep::{Edge, Sweep};
 pub use waypoints::Waypoints;

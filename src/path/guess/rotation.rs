@@ -29,8 +29,8 @@ impl Described for Rotation {
     const EXAMPLE: &'static str = r#"{"rotation": {"axis": [0, 0, 1]}}"#;
 }
 
-/// The best turn about an axis, and Σ b·R a after it.
-fn turn(a: &Spins, b: &Spins, axis: Direction) -> (f64, f64) {
+/// The angle of the turn about an axis that brings a nearest to b (rad, −π to π), and Σ b·R a after it.
+pub fn best_turn(a: &Spins, b: &Spins, axis: Direction) -> (f64, f64) {
     let k = axis.vector();
     let (mut sine, mut cosine, mut fixed) = (0.0, 0.0, 0.0);
     for i in 0..a.sites() {
@@ -50,10 +50,11 @@ fn turn(a: &Spins, b: &Spins, axis: Direction) -> (f64, f64) {
 impl FirstGuess for Rotation {
     fn path(&self, a: &Spins, b: &Spins, images: usize, context: &GuessContext) -> Result<Path> {
         let axis = self.axis.unwrap_or_else(|| {
-            let better = |p: Direction, q: Direction| if turn(a, b, q).1 > turn(a, b, p).1 + 1e-9 { q } else { p };
+            let better =
+                |p: Direction, q: Direction| if best_turn(a, b, q).1 > best_turn(a, b, p).1 + 1e-9 { q } else { p };
             [Direction::X, Direction::Y, Direction::Z].into_iter().fold(context.default_axis, better)
         });
-        let (angle, _) = turn(a, b, axis);
+        let (angle, _) = best_turn(a, b, axis);
         // a quarter at a time: quaternion slerp goes the short way
         let half = Quaternion::from_axis_angle(axis, 0.5 * angle);
         let back = Quaternion::from_axis_angle(axis, -angle);
