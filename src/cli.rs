@@ -1,8 +1,19 @@
 //! The command line: what can be said, and the help about it.
 
+pub mod check;
+pub mod list;
+pub mod run;
+
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use spinneb::error::Error;
+use std::io::{self, ErrorKind, Write};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
+
+/// Exit code of a command line or config that is wrong.
+pub const USAGE: u8 = 2;
+/// Exit code of a run that finished without a converged result.
+pub const UNFINISHED: u8 = 3;
 
 /// Minimum-energy paths, barriers and saddles of spin chains
 #[derive(Debug, Parser)]
@@ -128,6 +139,31 @@ pub enum What {
     Materials,
 }
 
+/// Prints an error on stderr and says with which code to exit.
+pub fn report(error: &anyhow::Error) -> u8 {
+    // A reader that has seen enough (`spinneb list | head -1`) is no error.
+    if error.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == ErrorKind::BrokenPipe) {
+        return 0;
+    }
+    note(&format!("error: {error:#}"));
+    match error.downcast_ref::<Error>() {
+        Some(Error::Config { .. } | Error::Invalid { .. }) => USAGE,
+        Some(Error::Io { source, .. }) if source.kind() == ErrorKind::AlreadyExists => USAGE,
+        _ => 1,
+    }
+}
+
+/// The worse of two exit codes: 0 is better than 3 (not converged), then 2 (usage), then 1 (anything else).
+pub fn worse(a: u8, b: u8) -> u8 {
+    let rank = |code: u8| [0, UNFINISHED, USAGE].iter().position(|c| *c == code).unwrap_or(3);
+    if rank(b) > rank(a) { b } else { a }
+}
+
+/// A line on stderr. There is nowhere to say that it cannot be written.
+pub fn note(line: &str) {
+    let _ = writeln!(io::stderr(), "{line}");
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -152,6 +188,12 @@ mod tests {
         {
             assert!(Cli::try_parse_from(line.split(' ')).is_ok(), "{line}");
         }
+    }
+
+    #[test]
+    fn the_worst_exit_code_of_several_runs_is_the_code_of_all() {
+        let all = |codes: &[u8]| codes.iter().fold(0, |a, b| worse(a, *b));
+        assert_eq!((all(&[0, 0]), all(&[0, 3, 0]), all(&[3, 2, 0]), all(&[1, 2, 3])), (0, 3, 2, 1));
     }
 
     #[test]

@@ -1,1 +1,16 @@
-fn main() {}
+//! `spinneb`: arguments → configs → runs → results.
+
+mod cli;
+
+use clap::Parser;
+use cli::{Cli, Command};
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let done = match Cli::parse().command {
+        Command::Run(arguments) => cli::run::run(&arguments),
+        Command::Check(arguments) => cli::check::check(&arguments),
+        Command::List(arguments) => cli::list::list(&arguments),
+    };
+    ExitCode::from(done.unwrap_or_else(|error| cli::report(&error)))
+}

@@ -1,5 +1,72 @@
 //! The JSON of a run: read strictly, with the file, line, column and path of what is wrong.
+//!
+//! [`load`] reads a config file and everything it names; [`Loaded::problem`] builds what the drive is given. Whatever can be
+//! wrong in a config is found before anything large is allocated or computed.
 
+mod built;
 mod json;
+mod load;
+mod material;
+pub mod memory;
+mod name;
+mod neb;
+mod output;
+mod path;
 mod set;
 pub mod text;
+
+pub use built::{expected_images, needed_bytes};
+pub use load::{Loaded, Text, load};
+pub use material::{Material, MaterialChoice};
+pub use name::Name;
+pub use neb::{NebConfig, SaddleConfig};
+pub use output::OutputConfig;
+pub use path::{ImageCount, PathConfig};
+
+use crate::energy::TermSpec;
+use crate::lattice::Lattice;
+use crate::state::StateSpec;
+use serde::Deserialize;
+
+/// A config as written. Only `material`, `lattice`, `initial` and `final` are required.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Config {
+    /// Where editors find the schema; not used here.
+    #[serde(default, rename = "$schema")]
+    pub schema: Option<String>,
+    /// Name of the run and of its folder; the file's name without its ending if absent.
+    #[serde(default)]
+    pub name: Option<Name>,
+    /// What the chain is made of.
+    pub material: MaterialChoice,
+    /// Where the spins are.
+    pub lattice: Lattice,
+    /// Terms added to the material's.
+    #[serde(default)]
+    pub energy: Vec<TermSpec>,
+    /// Where the path starts.
+    pub initial: StateSpec,
+    /// Where it ends.
+    #[serde(rename = "final")]
+    pub final_state: StateSpec,
+    /// Relax both ends to minima first.
+    #[serde(default = "yes")]
+    pub relax_ends: bool,
+    /// The first path.
+    #[serde(default)]
+    pub path: PathConfig,
+    /// How the band is relaxed.
+    #[serde(default)]
+    pub neb: NebConfig,
+    /// What is done with the saddles.
+    #[serde(default)]
+    pub saddle: SaddleConfig,
+    /// What is written.
+    #[serde(default)]
+    pub output: OutputConfig,
+}
+
+fn yes() -> bool {
+    true
+}

@@ -43,7 +43,7 @@ mod tests {
 
     #[test]
     fn fewer_than_two_points_have_no_velocity_and_are_even() {
-        assert_eq!(angular_velocity(&[[1.0, 0.0, 0.0]], 1.0), []);
+        assert!(angular_velocity(&[[1.0, 0.0, 0.0]], 1.0).is_empty());
         assert_eq!(unevenness(&[]), 1.0);
     }
 

@@ -1,0 +1,83 @@
+//! `check`: whether configs are right, and what they would run.
+
+use super::{Check, USAGE, report, worse};
+use anyhow::Result;
+use spinneb::config::{Loaded, expected_images, load, memory, needed_bytes};
+use spinneb::drive::{Images, Problem, Scales};
+use std::io::{self, Write};
+
+/// Checks all configs and prints what each would run.
+pub fn check(arguments: &Check) -> Result<u8> {
+    let mut code = 0;
+    for path in &arguments.configs {
+        let checked = load(path, &arguments.set).and_then(|loaded| Ok((loaded.problem()?, loaded)));
+        match checked {
+            Ok((problem, loaded)) => print(&mut io::stdout().lock(), &loaded, &problem)?,
+            Err(error) => code = worse(code, report(&error.into()).max(USAGE)),
+        }
+    }
+    Ok(code)
+}
+
+fn print(out: &mut impl Write, loaded: &Loaded, problem: &Problem) -> io::Result<()> {
+    let h = &problem.hamiltonian;
+    let scales = Scales::of_terms(h);
+    writeln!(out, "{}: valid", loaded.text.file)?;
+    let mut row = |key: &str, value: String| writeln!(out, "  {key:<12}{value}");
+    row("name", loaded.name.clone())?;
+    row("material", material(loaded))?;
+    row("lattice", lattice(loaded))?;
+    let states = [problem.initial.as_slice(), problem.final_state.as_slice()].map(|m| h.energies_mev(m));
+    let numbers = |x: f64| format!("{x:>16.6}");
+    row("energies", format!("{:<20}{:>16}{:>16}", "as given (meV)", "initial", "final"))?;
+    for ((term, a), (_, b)) in states[0].iter().zip(&states[1]) {
+        row("", format!("{term:<20}{}{}", numbers(*a), numbers(*b)))?;
+    }
+    let total = |k: usize| numbers(states[k].iter().map(|(_, e)| e).sum());
+    row("", format!("{:<20}{}{}", "total", total(0), total(1)))?;
+    row("stiffness", format!("{:.6} meV (softest mode of a stable spin)", scales.stiffness_mev))?;
+    row("exchange", format!("{:.6} meV a bond", scales.exchange_mev))?;
+    row("wall width", wall(loaded, &scales))?;
+    row("ends", if problem.relax_ends { "relaxed to minima first" } else { "kept as given" }.into())?;
+    row("guess", problem.guess.as_ref().map_or("all natural ones".into(), |g| g.name().into()))?;
+    row("images", images(problem, &scales))?;
+    row("optimiser", format!("{} to {:e} rad", problem.neb.optimiser.name(), problem.neb.tolerance))?;
+    row("memory", format!("about {}", memory::shown(needed_bytes(problem, &scales))))?;
+    for kind in loaded.config.output.left_out() {
+        row("warning", format!("output.formats: \"{kind}\" cannot be written by this version and is left out"))?;
+    }
+    Ok(())
+}
+
+fn material(loaded: &Loaded) -> String {
+    let name = &loaded.material.name;
+    match &loaded.material_text {
+        Some(text) => format!("{name} ({})", text.file),
+        None => name.clone(),
+    }
+}
+
+fn lattice(loaded: &Loaded) -> String {
+    let chain = loaded.chain();
+    let kind = if chain.periodic { "ring" } else { "open chain" };
+    let spacing = chain.spacing.map_or(String::new(), |a| format!(", {a} apart"));
+    let frozen = match chain.frozen.len() {
+        0 => String::new(),
+        _ => ", some frozen".to_string(),
+    };
+    format!("{kind} of {} sites{spacing}{frozen}", chain.sites)
+}
+
+fn wall(loaded: &Loaded, scales: &Scales) -> String {
+    let sites = scales.wall_width_sites;
+    let nm = loaded.chain().spacing.map_or(String::new(), |a| format!(", {:.4} nm", sites * a.0));
+    format!("{sites:.4} sites{nm} (√(exchange/stiffness))")
+}
+
+fn images(problem: &Problem, scales: &Scales) -> String {
+    let n = expected_images(problem, scales);
+    match problem.images {
+        Images::Count(_) => format!("{n}, both ends counted"),
+        Images::Auto => format!("auto: {n} to begin with, then as many as the path needs"),
+    }
+}

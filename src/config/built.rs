@@ -1,0 +1,216 @@
+//! From a config to the problem that the drive is given, with every check on the way.
+
+use super::{Loaded, memory};
+use crate::drive::{Images, Problem, Scales};
+use crate::energy::{EnergyTerm, Hamiltonian, Medium, TermSpec};
+use crate::error::{Error, Result};
+use crate::field::{Components, ComponentsMut};
+use crate::geometry::{Direction, Vector, angle};
+use crate::lattice::{Chain, Lattice};
+use crate::linalg::slab;
+use crate::path::guess::GuessContext;
+use crate::path::largest_angle;
+use crate::spins::Spins;
+use crate::state::{StateContext, StateSpec};
+
+/// Largest torque on a site (meV) that is taken for meant: 1e20 meV is 16 mJ.
+const LARGEST_MEV: f64 = 1e20;
+/// States closer than this are the same (rad, any spin).
+const SAME: f64 = 1e-9;
+/// Frozen spins closer than this agree, such as the tails of two walls (rad).
+const AGREE: f64 = 1e-3;
+
+impl Loaded {
+    /// Where the spins are.
+    pub fn chain(&self) -> &Chain {
+        let Lattice::Chain(chain) = &self.config.lattice;
+        chain
+    }
+
+    /// The problem that the config states; an error, with its place, where something cannot be.
+    pub fn problem(&self) -> Result<Problem> {
+        let config = &self.config;
+        let here = |e: Error| self.text.locate(e);
+        let chain = self.chain();
+        chain.validate().map_err(|e| here(e.within("lattice.chain")))?;
+        self.affordable(memory::hamiltonian_bytes(chain.sites, 1, self.specs().count()), None)?;
+        let terms = self.terms(chain)?;
+        let hamiltonian = Hamiltonian::new(chain, terms).map_err(|e| here(e.within("lattice.chain")))?;
+        let scales = Scales::of_terms(&hamiltonian);
+        let context = StateContext { chain, wall_width_sites: scales.wall_width_sites };
+        let state = |spec: &StateSpec, key: &str| -> Result<Spins> {
+            spec.build(&context).map_err(|e| here(e.within(&format!("{key}.{}", spec.name()))))
+        };
+        let initial = state(&config.initial, "initial")?;
+        let final_state = frozen(chain, &initial, state(&config.final_state, "final")?).map_err(here)?;
+        if largest_angle(initial.as_slice(), final_state.as_slice()) < SAME {
+            let message = "the initial and the final state are identical: there is no path between them";
+            return Err(here(Error::invalid("final", message)));
+        }
+        let mut problem = Problem::new(chain.clone(), hamiltonian, initial, final_state);
+        problem.relax_ends = config.relax_ends;
+        problem.images = config.path.images.0;
+        problem.guess = config.path.guess.clone();
+        problem.noise = config.path.noise;
+        problem.smooth = config.path.smooth;
+        problem.refine = config.saddle.refine;
+        problem.neb = config.neb.settings();
+        self.affordable(needed_bytes(&problem, &scales), Some(expected_images(&problem, &scales)))?;
+        guess(&problem, &scales).map_err(here)?;
+        Ok(problem)
+    }
+
+    /// All term specs: the material's, then the config's, each with the place where it stands.
+    fn specs(&self) -> impl Iterator<Item = (&TermSpec, bool, String)> {
+        let own = self.material_text.is_some();
+        let material = if own { "energy" } else { "material.energy" };
+        let place = |list: &str, k: usize, spec: &TermSpec| format!("{list}[{k}].{}", spec.name());
+        let first = self.material.energy.iter().enumerate().map(move |(k, t)| (t, own, place(material, k, t)));
+        first.chain(self.config.energy.iter().enumerate().map(move |(k, t)| (t, false, place("energy", k, t))))
+    }
+
+    /// The material's terms and the config's, with numbers a site.
+    fn terms(&self, chain: &Chain) -> Result<Vec<Box<dyn EnergyTerm>>> {
+        let medium = Medium { chain, moment: self.material.moment, saturation: self.material.Ms };
+        let mut terms = Vec::new();
+        let mut largest = 0.0f64;
+        for (spec, own, place) in self.specs() {
+            let text = self.material_text.as_ref().filter(|_| own).unwrap_or(&self.text);
+            let built = shells_fit(spec, chain).and_then(|()| spec.member().build(&medium)).and_then(|term| {
+                largest = largest.max(torque(term.as_ref(), chain.sites)?);
+                Ok(term)
+            });
+            terms.push(built.map_err(|e| text.locate(e.within(&place)))?);
+        }
+        let nothing = match terms.is_empty() {
+            true => {
+                "there is no energy term, neither of the material nor here: without energy there is no path to find"
+            }
+            false if largest == 0.0 => "all energies are zero: without energy there is no path to find",
+            false => return Ok(terms),
+        };
+        Err(self
+            .text
+            .locate(Error::invalid(if self.config.energy.is_empty() { "material" } else { "energy" }, nothing)))
+    }
+
+    /// Refuses what no memory can hold; `images` are the path's, where it has come to them.
+    fn affordable(&self, bytes: f64, images: Option<usize>) -> Result<()> {
+        if bytes <= memory::machine_bytes() {
+            return Ok(());
+        }
+        let sites = self.chain().sites;
+        let automatic = self.config.path.images.0 == Images::Auto;
+        let (place, what, way_out) = match images {
+            None => ("lattice.chain.sites", format!("{sites} sites"), ""),
+            Some(n) if automatic => {
+                let what = format!("{sites} sites with the {n} images that an automatic path begins with");
+                ("lattice.chain.sites", what, ": give fewer as \"images\" of \"path\"")
+            }
+            Some(n) => ("path.images", format!("{sites} sites and {n} images"), ""),
+        };
+        let size = memory::shown(bytes);
+        let message = format!("{what} need about {size} of memory, more than this machine has{way_out}");
+        Err(self.text.locate(Error::invalid(place, message)))
+    }
+}
+
+/// Images that the path of a problem will have, or start with where their number is found on the way.
+pub fn expected_images(problem: &Problem, scales: &Scales) -> usize {
+    match problem.images {
+        Images::Count(n) => n,
+        Images::Auto => scales.images_between(problem.chain.sites) + 2,
+    }
+}
+
+/// Memory that a run needs (bytes), roughly.
+pub fn needed_bytes(problem: &Problem, scales: &Scales) -> f64 {
+    let h = &problem.hamiltonian;
+    memory::run_bytes(h.sites(), expected_images(problem, scales), h.reach(), h.terms().len(), h.periodic())
+}
+
+/// No shell may reach beyond the chain.
+fn shells_fit(spec: &TermSpec, chain: &Chain) -> Result<()> {
+    let most = chain.sites.saturating_sub(1).max(1);
+    match spec {
+        TermSpec::Exchange(exchange) if exchange.J.as_ref().is_some_and(|j| j.len() > most) => {
+            let message = format!("shell {} reaches further than the chain of {} sites is long", most + 1, chain.sites);
+            Err(Error::invalid(format!("J[{most}]"), message))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Largest derivative of a term by a component (meV) where no two neighbours are alike; an error where it is absurd.
+fn torque(term: &dyn EnergyTerm, sites: usize) -> Result<f64> {
+    let directions: [Vector; 3] = [[0.8, 0.48, 0.36], [-0.48, 0.36, 0.8], [0.36, -0.8, -0.48]];
+    let m: Vec<f64> = (0..3).flat_map(|c| (0..sites).map(move |i| directions[i % 3][c])).collect();
+    let mut g = vec![0.0; 3 * sites];
+    let energy = term.add_gradient(Components::new(&m), ComponentsMut::new(&mut g), 0..sites);
+    let largest = slab::max_abs(&g);
+    let finite = energy.is_finite() && term.reference_mev().is_finite() && g.iter().all(|x| x.is_finite());
+    match finite && largest <= LARGEST_MEV {
+        true => Ok(largest),
+        false => {
+            let size =
+                if finite { format!("about {largest:.0e} meV") } else { "more than can be computed with".into() };
+            let message =
+                format!("the energy of a site is {size}: is a quantity, or the lattice's cell, absurdly large?");
+            Err(Error::invalid("", message))
+        }
+    }
+}
+
+/// The final state with frozen spins just where the initial state has them; an error where it has them elsewhere.
+fn frozen(chain: &Chain, initial: &Spins, final_state: Spins) -> Result<Spins> {
+    if chain.frozen.is_empty() {
+        return Ok(final_state);
+    }
+    let (n, from) = (chain.sites, initial.as_slice());
+    let mut m = final_state.as_slice().to_vec();
+    let mut entry: Vec<Option<usize>> = vec![None; chain.sites];
+    for (k, f) in chain.frozen.iter().enumerate() {
+        let place = format!("lattice.chain.frozen[{k}]");
+        for i in f.sites.indices(chain.sites, "site").map_err(|e| e.within(&format!("{place}.sites")))? {
+            if let Some(first) = entry[i].replace(k) {
+                return Err(Error::invalid(place, format!("site {i} is frozen already, in frozen[{first}]")));
+            }
+            let apart = angle(initial.get(i), final_state.get(i));
+            if apart > AGREE {
+                let message = format!(
+                    "site {i} is frozen, but the final state has it {:.3} degrees away from where the initial state has \
+                     it: give it a \"direction\" or make the two states agree there",
+                    apart.to_degrees()
+                );
+                return Err(Error::invalid(place, message));
+            }
+            for c in 0..3 {
+                m[c * n + i] = from[c * n + i];
+            }
+        }
+    }
+    Ok(Spins::from_unit_components(&m))
+}
+
+/// Whether the first path can be made; noise and smoothing need one that is named.
+fn guess(problem: &Problem, scales: &Scales) -> Result<()> {
+    let Some(guess) = &problem.guess else {
+        let act_on = |key: &str| {
+            let message = "acts on a guess that is named: add a \"guess\", such as {\"geodesic\": {}}";
+            Err(Error::invalid(format!("path.{key}"), message))
+        };
+        return match (&problem.noise, problem.smooth) {
+            (Some(_), _) => act_on("noise"),
+            (_, Some(_)) => act_on("smooth"),
+            _ => Ok(()),
+        };
+    };
+    let states = StateContext { chain: &problem.chain, wall_width_sites: scales.wall_width_sites };
+    let context = GuessContext { states, default_axis: Direction::X };
+    let images = match problem.images {
+        Images::Count(n) => n.min(5),
+        Images::Auto => 5,
+    };
+    let made = guess.member().path(&problem.initial, &problem.final_state, images, &context);
+    made.map(|_| ()).map_err(|e| e.within(&format!("path.guess.{}", guess.name())))
+}

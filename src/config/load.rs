@@ -1,0 +1,164 @@
+//! From a config file to everything that it says, ready to be built.
+
+use super::material::{Material, MaterialChoice};
+use super::text::{apply_set, at_place, decode, nearest, parse};
+use super::{Config, Name};
+use crate::error::{Error, Result};
+use crate::words::quoted;
+use serde_json::{Map, Value};
+use sha2::{Digest, Sha256};
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+
+/// Longest text that is read (bytes).
+const LONGEST: u64 = 1 << 30;
+
+/// A text and the file it is from, for messages.
+#[derive(Clone, Debug)]
+pub struct Text {
+    /// The file as messages name it.
+    pub file: String,
+    /// Its content.
+    pub text: String,
+}
+
+impl Text {
+    /// The error with the file, line and column of its place here.
+    pub fn locate(&self, error: Error) -> Error {
+        at_place(&self.file, &self.text, error)
+    }
+}
+
+/// A config with everything it names.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    /// The config file, with `--set` carried out.
+    pub text: Text,
+    /// What it says.
+    pub config: Config,
+    /// Name of the run.
+    pub name: String,
+    /// Its material.
+    pub material: Material,
+    /// The material's own file, if it has one.
+    pub material_text: Option<Text>,
+    /// The config as run: with `--set` carried out, the material and the name written out, keys in order. It runs by itself.
+    pub as_run: String,
+    /// SHA-256 of [`as_run`](Self::as_run) in hexadecimal.
+    pub sha256: String,
+}
+
+/// Reads a config, changed by `sets` (`KEY.PATH=JSON`), and the material it names.
+pub fn load(path: &Path, sets: &[String]) -> Result<Loaded> {
+    let file = path.display().to_string();
+    let text = apply_set(&file, &read(path)?, sets)?;
+    // An array would do for serde's structs, whose keys then go unsaid.
+    parse::<Map<String, Value>>(&file, &text)?;
+    let config: Config = parse(&file, &text)?;
+    let text = Text { file, text };
+    let name = name(path, &config).map_err(|e| text.locate(e))?;
+    let (material, material_text) = match &config.material {
+        MaterialChoice::Inline(material) => ((**material).clone(), None),
+        MaterialChoice::Named(named) => {
+            let from = material_file(path, named).map_err(|e| text.locate(e))?;
+            parse::<Map<String, Value>>(&from.file, &from.text)?;
+            (parse(&from.file, &from.text)?, Some(from))
+        }
+    };
+    material.validate().map_err(|e| match &material_text {
+        Some(own) => own.locate(e),
+        None => text.locate(e.within("material")),
+    })?;
+    let as_run = as_run(&text, material_text.as_ref(), &name)?;
+    let sha256 = Sha256::digest(as_run.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect();
+    Ok(Loaded { text, config, name, material, material_text, as_run, sha256 })
+}
+
+fn read(path: &Path) -> Result<String> {
+    let bytes = bytes(path).map_err(|source| Error::Io { path: path.into(), source })?;
+    decode(&path.display().to_string(), bytes)
+}
+
+fn bytes(path: &Path) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    File::open(path)?.take(LONGEST + 1).read_to_end(&mut bytes)?;
+    match bytes.len() as u64 > LONGEST {
+        true => {
+            Err(io::Error::new(io::ErrorKind::FileTooLarge, "the file is larger than 1 GiB, too large for a config"))
+        }
+        false => Ok(bytes),
+    }
+}
+
+/// The name given, or the file's without its ending.
+fn name(path: &Path, config: &Config) -> Result<String> {
+    if let Some(name) = &config.name {
+        return Ok(name.to_string());
+    }
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    Name::new(&stem).map(|name| name.to_string()).map_err(|_| {
+        let message =
+            format!("the file's name {} cannot name the run: give a \"name\" of A-Z a-z 0-9 . _ -", quoted(&stem));
+        Error::invalid("", message)
+    })
+}
+
+/// The text of a material's file, looked for beside the config.
+fn material_file(config: &Path, named: &str) -> Result<Text> {
+    let path = config.parent().unwrap_or(Path::new("")).join(named);
+    let file = path.display().to_string();
+    match bytes(&path) {
+        Ok(bytes) => decode(&file, bytes).map(|text| Text { file, text }),
+        Err(e) => {
+            let (what, said) = (quoted(named), e.kind());
+            let message = match e.kind() {
+                io::ErrorKind::NotFound => format!(
+                    "no material {what}: there is no file {file}{}, and no library material of this name",
+                    neighbours(&path)
+                ),
+                _ => format!("the material's file {file} cannot be read: {said}"),
+            };
+            Err(Error::invalid("material", message))
+        }
+    }
+}
+
+/// What the folder of a missing file holds instead.
+fn neighbours(path: &Path) -> String {
+    let folder = match path.parent() {
+        Some(parent) if parent.as_os_str().is_empty() => PathBuf::from("."),
+        Some(parent) => parent.into(),
+        None => return String::new(),
+    };
+    let Ok(entries) = folder.read_dir() else { return format!(" (and no folder {})", folder.display()) };
+    let mut names: Vec<String> = entries.flatten().map(|e| e.file_name().to_string_lossy().into_owned()).collect();
+    names.retain(|name| name.ends_with(".json"));
+    names.sort();
+    let wanted = path.file_name().unwrap_or_default().to_string_lossy();
+    match nearest(&wanted, names.iter().map(String::as_str)) {
+        Some(near) => format!(" (did you mean {}?)", quoted(near)),
+        None => String::new(),
+    }
+}
+
+/// The config as run, in one form: keys in order, two spaces deep, the material written out.
+fn as_run(text: &Text, material: Option<&Text>, name: &str) -> Result<String> {
+    let mut value: Value = parse(&text.file, &text.text)?;
+    if let Some(config) = value.as_object_mut() {
+        if let Some(own) = material {
+            let mut material: Value = parse(&own.file, &own.text)?;
+            if let Some(keys) = material.as_object_mut() {
+                keys.remove("$schema");
+            }
+            config.insert("material".into(), material);
+        }
+        config.insert("name".into(), name.into());
+        config.remove("$schema");
+    }
+    let pretty = serde_json::to_string_pretty(&value).map_err(|e| Error::Numerical(e.to_string()))?;
+    Ok(pretty + "\n")
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,67 @@
+//! What a run writes.
+
+use crate::output::{Group, KINDS};
+use crate::words::{nearest, quoted};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer};
+
+/// Kinds of files that have a name and no writer: asked for, they are left out with a warning.
+const NOT_WRITTEN: &[&str] = &["npz", "ovf"];
+
+/// `"output": {"formats": ["csv"], "plots": ["svg", "png"]}`; everything if absent.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct OutputConfig {
+    /// Kinds of data files.
+    #[serde(deserialize_with = "formats")]
+    pub formats: Vec<String>,
+    /// Kinds of figures.
+    #[serde(deserialize_with = "plots")]
+    pub plots: Vec<String>,
+}
+
+impl Default for OutputConfig {
+    fn default() -> Self {
+        let all = |group| names(group).map(String::from).collect();
+        OutputConfig { formats: all(Group::Formats), plots: all(Group::Plots) }
+    }
+}
+
+impl OutputConfig {
+    /// Kinds that were asked for and are left out.
+    pub fn left_out(&self) -> Vec<&'static str> {
+        let written: Vec<&str> = names(Group::Formats).collect();
+        let asked = |name: &&str| self.formats.iter().any(|f| f == name) && !written.contains(name);
+        NOT_WRITTEN.iter().copied().filter(asked).collect()
+    }
+}
+
+fn names(group: Group) -> impl Iterator<Item = &'static str> {
+    KINDS.iter().filter(move |kind| kind.group == group).map(|kind| kind.name)
+}
+
+fn formats<'de, D: Deserializer<'de>>(d: D) -> Result<Vec<String>, D::Error> {
+    let mut known: Vec<&str> = names(Group::Formats).collect();
+    known.extend(NOT_WRITTEN.iter().filter(|name| names(Group::Formats).all(|n| n != **name)));
+    checked(d, &known)
+}
+
+fn plots<'de, D: Deserializer<'de>>(d: D) -> Result<Vec<String>, D::Error> {
+    checked(d, &names(Group::Plots).collect::<Vec<_>>())
+}
+
+/// A list of known names, each once.
+fn checked<'de, D: Deserializer<'de>>(d: D, known: &[&str]) -> Result<Vec<String>, D::Error> {
+    let list = Vec::<String>::deserialize(d)?;
+    for (k, name) in list.iter().enumerate() {
+        if !known.contains(&name.as_str()) {
+            let hint = nearest(name, known.iter().copied()).map(|n| format!(": did you mean \"{n}\"?"));
+            let (shown, hint) = (quoted(name), hint.unwrap_or_default());
+            return Err(D::Error::custom(format!("unknown name {shown}{hint} (known names: {})", known.join(", "))));
+        }
+        if list[..k].contains(name) {
+            return Err(D::Error::custom(format!("{} is listed twice", quoted(name))));
+        }
+    }
+    Ok(list)
+}

@@ -1,0 +1,70 @@
+//! The first path of a config: how many images, from which guess.
+
+use crate::drive::Images;
+use crate::path::guess::{GuessSpec, NoiseSpec};
+use crate::words::{number, quoted};
+use serde::de::{self, Visitor};
+use serde::{Deserialize, Deserializer};
+use std::fmt;
+
+/// `"path": {"images": 20, "guess": {"geodesic": {}}, "noise": {…}, "smooth": 0.3}`.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct PathConfig {
+    /// How many images, both ends counted.
+    pub images: ImageCount,
+    /// The first path; all natural ones are tried if absent.
+    pub guess: Option<GuessSpec>,
+    /// Noise on the guess.
+    pub noise: Option<NoiseSpec>,
+    /// Smoothing of the guess, 0 (none) to 1.
+    #[serde(deserialize_with = "smooth")]
+    pub smooth: Option<f64>,
+}
+
+/// `"auto"` or a whole number from 3.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ImageCount(pub Images);
+
+impl Default for ImageCount {
+    fn default() -> Self {
+        ImageCount(Images::Auto)
+    }
+}
+
+impl<'de> Deserialize<'de> for ImageCount {
+    fn deserialize<D: Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
+        struct Seen;
+        impl Visitor<'_> for Seen {
+            type Value = ImageCount;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("\"auto\" or a whole number from 3, both ends counted")
+            }
+            fn visit_str<E: de::Error>(self, word: &str) -> Result<ImageCount, E> {
+                match word {
+                    "auto" => Ok(ImageCount::default()),
+                    _ => Err(E::custom(format!("found {}, expected \"auto\" or a whole number from 3", quoted(word)))),
+                }
+            }
+            fn visit_u64<E: de::Error>(self, n: u64) -> Result<ImageCount, E> {
+                match usize::try_from(n) {
+                    Ok(n @ 3..) => Ok(ImageCount(Images::Count(n))),
+                    Ok(n) => Err(E::custom(format!(
+                        "found {n}, but a path has at least 3 images: its two ends, which are counted, and one between"
+                    ))),
+                    Err(_) => Err(E::custom(format!("found {n}, which is too large"))),
+                }
+            }
+        }
+        d.deserialize_any(Seen)
+    }
+}
+
+fn smooth<'de, D: Deserializer<'de>>(d: D) -> Result<Option<f64>, D::Error> {
+    match Option::<f64>::deserialize(d)? {
+        Some(x) if !(0.0..=1.0).contains(&x) => {
+            Err(de::Error::custom(format!("found {}, but smoothing goes from 0 (none) to 1", number(x))))
+        }
+        x => Ok(x),
+    }
+}

@@ -1,0 +1,135 @@
+//! The shipped configs run and give the barriers they are known for; the bad ones are refused in the words beside them.
+
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// The shipped configs with their forward and backward barriers (meV) and a relative tolerance.
+///
+/// J = 10 meV and K = 0.5 meV unless said otherwise. Chain values are 50-digit Newton solutions of the exact gradient in
+/// units of J; the others are closed forms.
+const SHIPPED: &[(&str, f64, f64, f64)] = &[
+    ("antiferromagnet", 6.297777507200488, 6.297777507200488, 1e-6),
+    ("chirality_reversal", 1.3985869842388868, 1.3985869842388868, 1e-6),
+    // N K for a chain that is too short for a wall.
+    ("coherent_reversal", 4.5, 4.5, 1e-9),
+    ("dmi_chain", 3.5050521158925413, 3.5050521158925413, 1e-6),
+    ("wall_depinning", 0.170008526447, 0.170008526447, 1e-6),
+    ("wall_nucleation", 6.297777507200488, 6.297777507200488, 1e-6),
+];
+
+fn spinneb(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_spinneb")).current_dir(folder).args(arguments).output().unwrap()
+}
+
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Names of the files with this ending in a folder.
+fn names(folder: &Path, ending: &str) -> BTreeSet<String> {
+    let entries = fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap());
+    entries.filter_map(|name| name.strip_suffix(ending).map(String::from)).collect()
+}
+
+/// Runs a shipped config; its line of JSON.
+fn shipped(name: &str) -> Value {
+    let out = tempfile::tempdir().unwrap();
+    let config = format!("configs/{name}.json");
+    let done = spinneb(&root(), &["run", &config, "--out", out.path().to_str().unwrap(), "--json", "--quiet"]);
+    let said = String::from_utf8_lossy(&done.stderr).into_owned();
+    assert_eq!(done.status.code(), Some(0), "{name}: {said}");
+    assert_eq!(said, "", "{name}: --quiet");
+    let files = ["summary.json", "config.json", "path.csv", "profile.csv", "history.csv"];
+    for file in files.iter().chain(&["energy_path.svg", "energy_path.png", "spins.svg", "spins.png"]) {
+        assert!(out.path().join(file).metadata().is_ok_and(|m| m.len() > 0), "{name}: {file}");
+    }
+    serde_json::from_slice(&done.stdout).unwrap()
+}
+
+fn barriers(line: &Value) -> (f64, f64) {
+    let number = |way: &str| line["barrier_meV"][way].as_f64().unwrap();
+    (number("forward"), number("backward"))
+}
+
+#[test]
+fn shipped_configs_give_the_barriers_they_are_known_for() {
+    for &(name, forward, backward, tolerance) in SHIPPED {
+        let found = barriers(&shipped(name));
+        for (found, known) in [(found.0, forward), (found.1, backward)] {
+            assert!((found - known).abs() <= tolerance * known, "{name}: {found} instead of {known}");
+        }
+    }
+}
+
+#[test]
+fn a_nucleus_on_a_ring_has_the_barrier_of_the_continuum_but_for_a_thousandth() {
+    // H.-B. Braun, Phys. Rev. B 50, 16501 (1994): 4 √(2JK) (tanh R − R sech² R), sech² R = h = μB/2K.
+    let (j, k) = (10.0f64, 0.1);
+    let h: f64 = 2.0 * 5.7883817982e-2 * 0.8 / (2.0 * k);
+    let tanh = (1.0 - h).sqrt();
+    let forward = 4.0 * (2.0 * j * k).sqrt() * (tanh - tanh.atanh() * h);
+    // The two uniform states differ by 2 μB a site, 4 K h.
+    let backward = forward + 200.0 * 4.0 * k * h;
+    let found = barriers(&shipped("ring_nucleus"));
+    assert!((found.0 - forward).abs() < 1e-3 * forward, "{found:?}, {forward}");
+    assert!((found.1 - backward).abs() < 1e-3 * forward, "{found:?}, {backward}");
+}
+
+#[test]
+fn a_wall_in_a_nanowire_leaves_its_pinning_region_over_less_than_the_region_s_depth() {
+    // Wall energy 4 S √(A K); the region lowers it by no more than the factor √(0.4/0.6); the field helps.
+    let wall = 4.0 * 20e-18 * (15e-12f64 * 0.6e6).sqrt() / 1.602176634e-22;
+    let depth = wall * (1.0 - (0.4f64 / 0.6).sqrt());
+    let (forward, backward) = barriers(&shipped("nanowire_pinning"));
+    assert!(0.4 * depth < forward && forward < depth, "{forward}, {depth}");
+    assert!(backward > forward);
+}
+
+#[test]
+fn every_shipped_config_is_tested_and_checks() {
+    let configs = root().join("configs");
+    let mut tested: BTreeSet<String> = SHIPPED.iter().map(|(name, ..)| name.to_string()).collect();
+    tested.extend(["ring_nucleus".into(), "nanowire_pinning".into()]);
+    assert_eq!(names(&configs, ".json"), tested);
+    for name in tested {
+        let done = spinneb(&configs, &["check", &format!("{name}.json")]);
+        assert_eq!(done.status.code(), Some(0), "{name}");
+        assert!(String::from_utf8_lossy(&done.stdout).starts_with(&format!("{name}.json: valid\n")), "{name}");
+    }
+}
+
+#[test]
+fn bad_configs_are_refused_in_the_words_beside_them_before_anything_is_written() {
+    let folder = root().join("tests/configs/bad");
+    let configs = names(&folder, ".json");
+    assert!(configs.len() >= 30);
+    assert_eq!(configs, names(&folder, ".expected"), "every config has its expected message");
+    let others = fs::read_dir(&folder).unwrap().filter(|e| e.as_ref().unwrap().file_type().unwrap().is_file()).count();
+    assert_eq!(others, 2 * configs.len(), "nothing else is there");
+    let temporary = tempfile::tempdir().unwrap();
+    let out = temporary.path().join("out");
+    let wrong: Vec<String> = configs.iter().filter_map(|name| refused(&folder, name, &out).err()).collect();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Whether both commands refuse a config as expected.
+fn refused(folder: &Path, name: &str, out: &Path) -> Result<(), String> {
+    let config = format!("{name}.json");
+    let expected = fs::read_to_string(folder.join(format!("{name}.expected"))).unwrap();
+    for arguments in [&["run", &config, "--out", out.to_str().unwrap()][..], &["check", &config]] {
+        let done = spinneb(folder, arguments);
+        // Windows writes paths the other way.
+        let said = String::from_utf8(done.stderr).unwrap().replace('\\', "/");
+        if done.status.code() != Some(2) || said != expected.replace('\\', "/") || !done.stdout.is_empty() {
+            let (code, what) = (done.status, arguments[0]);
+            return Err(format!("{what} {config}: {code}\n  said     {said}  expected {expected}"));
+        }
+        if out.exists() || folder.join("results").exists() {
+            return Err(format!("{config}: a folder was made"));
+        }
+    }
+    Ok(())
+}
