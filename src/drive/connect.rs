@@ -3,7 +3,7 @@
 //! A saddle's two descents either end in the ends of its stretch of path, or in minima on the way; there the stretch is split,
 //! and the parts are treated alike.
 
-use super::climb::{Found, conclude};
+use super::climb::{Found, ZOOMS, conclude, zoomed};
 use super::minimum::{Link, Minimum};
 use super::relaxation::{Goal, Relaxation};
 use crate::band::Band;
@@ -37,7 +37,14 @@ struct Stretch {
 }
 
 /// Follows a relaxed path from `a` to `b`; `saddle` is its highest saddle.
-pub fn follow(relaxation: &mut Relaxation, band: &Band, a: Minimum, b: Minimum, saddle: Found, context: &GuessContext) -> Result<Sequence> {
+pub fn follow(
+    relaxation: &mut Relaxation,
+    band: &Band,
+    a: Minimum,
+    b: Minimum,
+    saddle: Found,
+    context: &GuessContext,
+) -> Result<Sequence> {
     let h = band.hamiltonian();
     let c = relaxation.scales.stiffness_mev;
     let mut sequence = Sequence::default();
@@ -56,14 +63,19 @@ pub fn follow(relaxation: &mut Relaxation, band: &Band, a: Minimum, b: Minimum, 
             None => top_of(relaxation, h, &stretch.path, c),
         };
         let Some(found) = found.filter(|f| f.is_saddle(c)) else {
-            sequence.gap = Some("a stretch of the path between two minima shows no saddle that could be refined".into());
+            sequence.gap =
+                Some("a stretch of the path between two minima shows no saddle that could be refined".into());
             close(&mut sequence, &mut open, &stretch.b, h);
             continue;
         };
-        let link = Link::of(h, found, c)?;
+        let mut link = Link::of(h, found, c)?;
+        if link.before.is_same(h, &stretch.b) || link.after.is_same(h, &stretch.a) {
+            link.reverse();
+        }
         let left_done = link.before.is_same(h, &stretch.a);
         let right_done = link.after.is_same(h, &stretch.b);
-        let astray = (!left_done && link.before.is_same(h, &stretch.b)) || (!right_done && link.after.is_same(h, &stretch.a));
+        let astray =
+            (!left_done && link.before.is_same(h, &stretch.b)) || (!right_done && link.after.is_same(h, &stretch.a));
         if astray {
             sequence.gap = Some("a descent from a saddle leads back to where it came from".into());
         }
@@ -103,13 +115,20 @@ fn close(sequence: &mut Sequence, open: &mut Vec<(Minimum, Link)>, reached: &Min
 fn top_of(relaxation: &mut Relaxation, h: &crate::energy::Hamiltonian, path: &Path, c: f64) -> Option<Found> {
     let mut band = Band::new(h, path.clone());
     relaxation.run(&mut band, Goal::Loose, EVALUATIONS);
+    for _ in 0..ZOOMS {
+        let Some(path) = zoomed(&band, band.images() + 4) else { break };
+        band = Band::new(h, path);
+        relaxation.run(&mut band, Goal::Loose, EVALUATIONS);
+    }
     conclude(&band, c)
 }
 
 /// The part of a path between two states on it; a wall that moves if the part has too few images.
 fn between(path: &Path, a: &Spins, b: &Spins, from_start: bool, context: &GuessContext) -> Result<Path> {
     let inner = path.images();
-    let nearest = |m: &[f64]| (0..inner).min_by(|&i, &j| distance(path.image(i), m).total_cmp(&distance(path.image(j), m))).unwrap_or(0);
+    let nearest = |m: &[f64]| {
+        (0..inner).min_by(|&i, &j| distance(path.image(i), m).total_cmp(&distance(path.image(j), m))).unwrap_or(0)
+    };
     let (first, last) = if from_start { (0, nearest(b.as_slice())) } else { (nearest(a.as_slice()), inner - 1) };
     if last >= first + 5 {
         let mut row = vec![a.clone()];

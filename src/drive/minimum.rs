@@ -111,6 +111,12 @@ impl Link {
         Ok(Link { spectrum, before, after, fallen_mev: [f, g], found })
     }
 
+    /// Exchanges its two sides: which of them the path comes from is not always plain at the saddle itself.
+    pub fn reverse(&mut self) {
+        std::mem::swap(&mut self.before, &mut self.after);
+        self.fallen_mev.reverse();
+    }
+
     /// Why this is not a proven saddle of index one between two proven minima; nothing if it is.
     pub fn doubt(&self, h: &Hamiltonian) -> Option<String> {
         let state = &self.found.refined.state;
@@ -123,7 +129,9 @@ impl Link {
         }
         let rounding = 16.0 * f64::EPSILON * (state.energy_mev.abs() + h.stiffness_mev());
         if self.fallen_mev.iter().any(|f| *f <= rounding) {
-            return Some(format!("the energy does not fall on both sides of the saddle by more than its rounding error of {rounding:.1e} meV"));
+            return Some(format!(
+                "the energy does not fall on both sides of the saddle by more than its rounding error of {rounding:.1e} meV"
+            ));
         }
         if s.negative == 0 && s.flat == 0 {
             return Some("the saddle has no negative mode".into());

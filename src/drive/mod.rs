@@ -8,6 +8,7 @@ mod minimum;
 mod outcome;
 mod problem;
 mod relaxation;
+mod report;
 mod run;
 mod scales;
 mod stop;
