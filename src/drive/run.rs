@@ -163,8 +163,8 @@ impl<'a, 'o> Run<'a, 'o> {
             }
         }
         let found = self.all_saddles(&candidate);
-        if self.problem.neb.climb {
-            seat(&mut candidate.band, &found);
+        if self.problem.neb.climb && seat(&mut candidate.band, &found) {
+            self.relax(&mut candidate, Goal::Tight, usize::MAX);
         }
         let proof = self.prove(&candidate, &found)?;
         Ok(report::outcome(self.summary(), candidate, &found, proof, rejected))
@@ -375,22 +375,23 @@ impl<'a, 'o> Run<'a, 'o> {
     }
 }
 
-/// Puts refined saddles in the place of the images nearest to them, where they fit between the neighbours.
-fn seat(band: &mut Band, found: &[Found]) {
-    let slab_size = 3 * band.path().sites();
+/// Puts refined saddles in the place of the images nearest to them, where they fit between the neighbours; says whether any did.
+fn seat(band: &mut Band, found: &[Found]) -> bool {
     let last = band.images() - 1;
+    let mut seated = false;
     for f in found {
-        let k = f.top.image.clamp(1, last - 1);
         let saddle = &f.refined.state.m;
+        let k = (1..last)
+            .min_by(|&i, &j| distance(band.path().image(i), saddle).total_cmp(&distance(band.path().image(j), saddle)))
+            .unwrap_or(1);
         let gap = distance(band.path().image(k - 1), band.path().image(k + 1));
         let fits = [k - 1, k + 1].iter().all(|&j| distance(band.path().image(j), saddle) < gap);
-        if fits {
-            band.path_mut().as_mut_slice()[k * slab_size..(k + 1) * slab_size].copy_from_slice(saddle);
+        if fits && !band.is_held(k) {
+            band.hold(k, saddle);
+            seated = true;
         }
     }
-    if !found.is_empty() {
-        band.evaluate();
-    }
+    seated
 }
 
 /// Why a path was not the one.
