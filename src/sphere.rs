@@ -22,5 +22,5 @@ pub fn move_points(points: &mut [f64], v: &[f64], slab: usize, s: f64) {
 pub fn rotation_of(v: &[f64]) -> f64 {
     let v = Components::new(v);
     let squares = (0..v.sites()).map(|i| vector::dot(v.get(i), v.get(i)));
-    squares.fold(0.0, |m: f64, x| if x.is_nan() { f64::NAN } else { m.max(x) }).sqrt()
+    squares.fold(0.0, |m: f64, x| if m.is_nan() || x.is_nan() { f64::NAN } else { m.max(x) }).sqrt()
 }

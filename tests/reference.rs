@@ -2,9 +2,28 @@
 
 mod common;
 
-use common::{Build, cases, forward, number, solve};
+use common::{Build, cases, forward, number};
+use spinneb::drive::{Outcome, Problem};
 use spinneb::geometry::Direction;
 use spinneb::spins::Spins;
+
+/// A run that must be certified, with one negative mode (or a valley flat to rounding) at each saddle.
+fn solve(problem: &Problem) -> Outcome {
+    let outcome = common::solve(problem);
+    let (w, warnings) = (outcome.work, &outcome.warnings);
+    println!(
+        "{} saddles, {} evaluations, {:.3} s, certified {} {warnings:?}",
+        outcome.saddles.len(),
+        w.force_evaluations,
+        w.seconds,
+        outcome.certified
+    );
+    assert!(outcome.certified, "{warnings:?}");
+    for s in &outcome.saddles {
+        assert!(s.negative_modes == Some(1) || (s.negative_modes == Some(0) && s.zero_modes > Some(0)), "{s:?}");
+    }
+    outcome
+}
 
 /// The section's cases, each with the relative tolerance stated in the file.
 fn section(name: &str) -> Vec<(serde_json::Value, f64)> {
@@ -39,7 +58,6 @@ fn open_chains_reverse_over_the_lowest_saddle() {
         let n = case["N"].as_u64().expect("N") as usize;
         let outcome = solve(&Build::open(n).easy(number(&case, "K")).reversal());
         check("open_chain_reversal", &case, forward(&outcome), number(&case, "barrier"), tolerance);
-        assert!(outcome.saddles.iter().all(|s| s.negative_modes == Some(1)), "{case}: {:?}", outcome.saddles);
     }
 }
 

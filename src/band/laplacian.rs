@@ -26,7 +26,7 @@ impl Laplacian {
         let (sites, reach) = (h.sites(), h.reach());
         let rim = if h.periodic() { reach } else { 0 };
         let mut m = Banded::zeros(sites - rim, reach, rim);
-        let spread = blocks.site.iter().map(|b| spread(b)).fold(0.0, f64::max);
+        let spread = blocks.site.iter().map(spread).fold(0.0, f64::max);
         m.shift(c.max(spread));
         for (k, bonds) in blocks.bond.iter().enumerate() {
             let n = k + 1;

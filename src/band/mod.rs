@@ -39,6 +39,7 @@ pub struct Band<'h> {
     along: Vec<f64>,
     uphill: Vec<Option<usize>>,
     spacing: Vec<f64>,
+    held: Vec<bool>,
     evaluations: usize,
 }
 
@@ -55,6 +56,7 @@ impl<'h> Band<'h> {
             along: vec![0.0; images],
             uphill: vec![None; images],
             spacing: vec![0.0; images - 1],
+            held: vec![false; images],
             evaluations: 0,
             path,
         };
@@ -89,6 +91,7 @@ impl<'h> Band<'h> {
     fn tangents(&mut self) {
         let (slab, images) = (3 * self.path.sites(), self.path.images());
         let (h, path, energy, gradient) = (self.hamiltonian, &self.path, &self.energy, &self.gradient);
+        let held = &self.held;
         let inner = slab..(images - 1) * slab;
         let tangent = self.tangent[inner.clone()].par_chunks_mut(slab);
         let across = self.perpendicular[inner].par_chunks_mut(slab);
@@ -102,6 +105,9 @@ impl<'h> Band<'h> {
                 h.force(path.image(k), &gradient[k * slab..(k + 1) * slab], f);
                 let along = slab::dot(f, t);
                 slab::add_scaled(f, -along, t);
+                if held[k] {
+                    f.fill(0.0);
+                }
                 along
             })
             .collect();
@@ -122,6 +128,18 @@ impl<'h> Band<'h> {
     /// The images, to be turned as wholes.
     pub(crate) fn path_mut(&mut self) -> &mut Path {
         &mut self.path
+    }
+
+    /// Puts a saddle in the place of image k, where it stays: the stretches on its two sides relax on their own.
+    pub fn hold(&mut self, k: usize, saddle: &[f64]) {
+        let n = saddle.len();
+        self.path.as_mut_slice()[k * n..(k + 1) * n].copy_from_slice(saddle);
+        self.held[k] = true;
+    }
+
+    /// Whether image k is a saddle that stays.
+    pub fn is_held(&self, k: usize) -> bool {
+        self.held[k]
     }
 
     /// The images, given back.

@@ -14,13 +14,21 @@ impl Band<'_> {
         self.spacing[k] - self.spacing[k - 1]
     }
 
-    /// Shifts along τ (rad) of all images to equal distances.
+    /// Shifts along τ (rad) of all images to equal distances between the ends and the held images; 0 for those.
     pub fn equal_shifts(&self) -> Vec<f64> {
         let last = self.images() - 1;
         let mut s = vec![0.0];
         for l in &self.spacing {
             s.push(s[s.len() - 1] + l);
         }
-        (0..=last).map(|k| s[last] * k as f64 / last as f64 - s[k]).collect()
+        let stops: Vec<usize> = (0..=last).filter(|&k| k == 0 || k == last || self.held[k]).collect();
+        let mut shift = vec![0.0; last + 1];
+        for pair in stops.windows(2) {
+            let (a, b) = (pair[0], pair[1]);
+            for k in a + 1..b {
+                shift[k] = s[a] + (s[b] - s[a]) * (k - a) as f64 / (b - a) as f64 - s[k];
+            }
+        }
+        shift
     }
 }

@@ -76,7 +76,7 @@ impl Sweep {
         order.sort_by(|&a, &b| band.energies_mev()[b].total_cmp(&band.energies_mev()[a]).then(a.cmp(&b)));
         let mut step = SweepStep { moves: Vec::new(), rotation: 0.0, factorisations: 0 };
         let mut pushed = vec![0.0; slab];
-        for k in order {
+        for k in order.into_iter().filter(|&k| !band.is_held(k)) {
             let solver = &solvers[k - 1];
             pushed.copy_from_slice(band.perpendicular(k));
             if let Some(u) = band.uphill(k).filter(|u| (1..images - 1).contains(u)) {

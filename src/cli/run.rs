@@ -148,7 +148,7 @@ impl Stored {
     }
 
     fn exit_code(&self) -> u8 {
-        if self.converged { 0 } else { UNFINISHED }
+        if self.converged && self.certified { 0 } else { UNFINISHED }
     }
 }
 

@@ -54,6 +54,7 @@ impl Loaded {
         problem.noise = config.path.noise;
         problem.smooth = config.path.smooth;
         problem.refine = config.saddle.refine;
+        problem.certify = config.saddle.certify;
         problem.neb = config.neb.settings();
         self.affordable(needed_bytes(&problem, &scales), Some(expected_images(&problem, &scales)))?;
         guess(&problem, &scales).map_err(here)?;

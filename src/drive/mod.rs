@@ -1,11 +1,14 @@
 //! From two states to a barrier: relax the ends, make a first path, relax the band, read off what it found.
 
 mod climb;
+mod connect;
 mod ends;
 mod explore;
+mod minimum;
 mod outcome;
 mod problem;
 mod relaxation;
+mod report;
 mod run;
 mod scales;
 mod stop;
@@ -13,6 +16,7 @@ mod top;
 
 pub use ends::{Relaxed, relax_to_minimum};
 pub use explore::natural_guesses;
+pub use minimum::{Link, Minimum};
 pub use outcome::*;
 pub use problem::{Images, NebSettings, Problem};
 pub use relaxation::{Goal, Relaxation, image_levels, prominent_maxima, refined};

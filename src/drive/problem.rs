@@ -29,6 +29,8 @@ pub struct Problem {
     pub smooth: Option<f64>,
     /// Refine the saddles to machine precision.
     pub refine: bool,
+    /// Prove what kind of saddle each is, and where the descents from it lead.
+    pub certify: bool,
     /// How the band is relaxed.
     pub neb: NebSettings,
 }
@@ -48,6 +50,7 @@ impl Problem {
             noise: None,
             smooth: None,
             refine: true,
+            certify: true,
             neb,
         }
     }

@@ -103,7 +103,7 @@ impl Relaxation<'_> {
             }
             return Look { direction: y, rotation };
         }
-        for k in 1..band.images() - 1 {
+        for k in (1..band.images() - 1).filter(|&k| !band.is_held(k)) {
             let f = &mut y[(k - 1) * slab..k * slab];
             f.copy_from_slice(band.perpendicular(k));
             let along = if climbing.contains(&k) { -band.along(k) } else { c * band.spring_pull(k) };

@@ -1,12 +1,15 @@
 //! A whole run.
 
-use super::climb::{Found, conclude, escapes, same};
+use super::climb::{Found, ZOOMS, conclude, escapes, same, zoomed};
+use super::connect::{Sequence, follow};
 use super::ends::{Relaxed, relax_to_minimum};
 use super::explore::{natural_guesses, turning_axis};
+use super::minimum::{Link, Minimum};
 use super::outcome::*;
-use super::relaxation::{Goal, Relaxation, height, image_levels, needs_laplacian, prominent_maxima, refined};
-use super::top::{highest, tops};
-use super::{Images, Observer, Problem, Scales, Stop};
+use super::relaxation::{Goal, Relaxation, height, image_levels, needs_laplacian, refined};
+use super::report::{self, Proof};
+use super::top::tops;
+use super::{Images, Observer, Problem, Scales, Silent, Stop};
 use crate::band::{Band, Laplacian, align_rotations};
 use crate::error::Result;
 use crate::geometry::{Direction, Vector};
@@ -40,12 +43,17 @@ pub fn run(problem: &Problem, observer: &mut dyn Observer) -> Result<Outcome> {
 }
 
 /// A first path on its way.
-struct Candidate<'a> {
-    name: String,
-    band: Band<'a>,
-    stop: Stop,
-    history: Vec<HistoryRow>,
-    found: Option<Found>,
+pub struct Candidate<'a> {
+    /// What it started from.
+    pub name: String,
+    /// Where it is.
+    pub band: Band<'a>,
+    /// How its last relaxation ended.
+    pub stop: Stop,
+    /// Its iterations.
+    pub history: Vec<HistoryRow>,
+    /// Its refined top.
+    pub found: Option<Found>,
     /// Saddles of higher index that were left: energy above the first image (meV) and index.
     escapes: Vec<(f64, usize)>,
 }
@@ -83,6 +91,7 @@ struct Run<'a, 'o> {
     axis: Direction,
     warnings: Vec<String>,
     lowest_top: f64,
+    silent: Silent,
 }
 
 impl<'a, 'o> Run<'a, 'o> {
@@ -118,6 +127,7 @@ impl<'a, 'o> Run<'a, 'o> {
             axis: Direction::X,
             warnings,
             lowest_top: f64::INFINITY,
+            silent: Silent,
         };
         run.axis = turning_axis(problem, &run.ends[0].spins, &run.ends[1].spins, &run.context());
         Ok(run)
@@ -133,7 +143,7 @@ impl<'a, 'o> Run<'a, 'o> {
     fn finish(mut self) -> Result<Outcome> {
         let (a, b) = (self.ends[0].spins.as_slice(), self.ends[1].spins.as_slice());
         if distance(a, b) < 1e-6 * (self.problem.chain.sites as f64).sqrt() {
-            return Ok(self.same_minimum());
+            return Ok(report::same_minimum(self.summary()));
         }
         let (mut candidate, rejected) = match &self.problem.guess {
             Some(guess) => {
@@ -152,11 +162,64 @@ impl<'a, 'o> Run<'a, 'o> {
                 break;
             }
         }
-        let found = self.all_saddles(&mut candidate);
-        if self.problem.neb.climb {
-            seat(&mut candidate.band, &found);
+        let found = self.all_saddles(&candidate);
+        if self.problem.neb.climb && seat(&mut candidate.band, &found) {
+            self.relax(&mut candidate, Goal::Tight, usize::MAX);
         }
-        Ok(self.outcome(candidate, found, rejected))
+        let proof = self.prove(&candidate, &found)?;
+        Ok(report::outcome(self.summary(), candidate, &found, proof, rejected))
+    }
+
+    /// Follows the path from its highest saddle down to both ends, and says what was proven on the way.
+    fn prove(&mut self, c: &Candidate<'a>, found: &[Found]) -> Result<Proof> {
+        let h = &self.problem.hamiltonian;
+        let ends = [0, 1].map(|k| Minimum::examine(h, &self.ends[k].spins));
+        let highest = found.iter().max_by(|p, q| p.refined.state.energy_mev.total_cmp(&q.refined.state.energy_mev));
+        let Some(highest) = highest.filter(|_| self.problem.certify) else {
+            let doubt = match (self.problem.certify, self.problem.seeks_saddles()) {
+                (false, _) => "certification was not asked for (saddle.certify is false)",
+                (_, false) => "the saddles were not refined (saddle.refine and neb.climb are false)",
+                _ => "no saddle could be refined to machine precision",
+            };
+            return Ok(Proof { ends, links: Vec::new(), doubts: vec![doubt.into()] });
+        };
+        self.observer.stage("proving the saddles");
+        let scale = self.scales.stiffness_mev;
+        let mut sequence = Sequence::default();
+        if self.problem.relax_ends {
+            let context = self.context();
+            let mut relaxation = self.relaxation(Vec::new(), true);
+            sequence = follow(&mut relaxation, &c.band, ends[0].clone(), ends[1].clone(), highest.clone(), &context)?;
+        } else {
+            sequence.links.push(Link::of(h, highest.clone(), scale)?);
+        }
+        let mut doubts: Vec<String> = sequence.links.iter().filter_map(|l| l.doubt(h)).collect();
+        doubts.extend(sequence.gap);
+        if self.problem.relax_ends {
+            for (end, which) in ends.iter().zip(["initial", "final"]) {
+                if !end.is_proven() {
+                    doubts.push(format!("the {which} state is not proven to be a minimum"));
+                }
+            }
+        }
+        doubts.dedup();
+        Ok(Proof { ends, links: sequence.links, doubts })
+    }
+
+    fn relaxation(&mut self, history: Vec<HistoryRow>, quiet: bool) -> Relaxation<'_> {
+        Relaxation {
+            settings: &self.problem.neb,
+            climb: self.problem.neb.climb && !self.problem.refine,
+            scales: self.scales,
+            axes: &self.axes,
+            laplacian: self.laplacian.as_ref(),
+            history,
+            observer: if quiet { &mut self.silent } else { &mut *self.observer },
+        }
+    }
+
+    fn summary(self) -> report::Summary<'a> {
+        report::Summary { problem: self.problem, started: self.started, ends: self.ends, warnings: self.warnings }
     }
 
     /// The lowest of the natural first paths, and what became of the others: a few evaluations each, the best two finished.
@@ -220,27 +283,19 @@ impl<'a, 'o> Run<'a, 'o> {
 
     /// A top inside the first or last interval is not resolved: the part of the path around it becomes finer.
     fn zoom(&mut self, c: &mut Candidate<'a>) {
-        for _ in 0..4 {
-            let last = c.band.images() - 1;
-            let Some(top) = highest(&c.band) else { return };
-            let s = c.band.path().reaction_coordinate();
-            let (left, right) = (s[1], s[last - 1]);
-            if top.s > left && top.s < right {
-                return;
-            }
+        for _ in 0..ZOOMS {
             let images = match self.problem.images {
                 Images::Count(n) => n,
                 Images::Auto => c.band.images() + 8,
             };
-            let places = condensed(&s, if top.s <= left { 0 } else { last }, images);
-            let path = c.band.path().at_places(&s, &places);
+            let Some(path) = zoomed(&c.band, images) else { return };
             c.band = Band::continued(&self.problem.hamiltonian, path, c.band.evaluations());
             self.relax(c, Goal::Loose, c.band.evaluations() + 24);
         }
     }
 
     /// Every maximum within a tenth of the highest, refined; saddles found twice count once.
-    fn all_saddles(&mut self, c: &mut Candidate<'a>) -> Vec<Found> {
+    fn all_saddles(&self, c: &Candidate<'a>) -> Vec<Found> {
         let scale = self.scales.stiffness_mev;
         if !self.problem.seeks_saddles() {
             return Vec::new();
@@ -313,161 +368,30 @@ impl<'a, 'o> Run<'a, 'o> {
     }
 
     fn relax(&mut self, c: &mut Candidate<'a>, goal: Goal, limit: usize) {
-        let mut relaxation = Relaxation {
-            settings: &self.problem.neb,
-            climb: self.problem.neb.climb && !self.problem.refine,
-            scales: self.scales,
-            axes: &self.axes,
-            laplacian: self.laplacian.as_ref(),
-            history: std::mem::take(&mut c.history),
-            observer: self.observer,
-        };
-        c.stop = relaxation.run(&mut c.band, goal, limit.min(self.problem.neb.max_evaluations));
+        let limit = limit.min(self.problem.neb.max_evaluations);
+        let mut relaxation = self.relaxation(std::mem::take(&mut c.history), false);
+        c.stop = relaxation.run(&mut c.band, goal, limit);
         c.history = relaxation.history;
-    }
-
-    fn outcome(self, c: Candidate<'a>, found: Vec<Found>, rejected_paths: Vec<RejectedPath>) -> Outcome {
-        let h = &self.problem.hamiltonian;
-        let band = &c.band;
-        let path = band.path().clone();
-        let profile = band.profile();
-        let (first, last) = (path.image(0), path.image(path.images() - 1));
-        let saddles = if found.is_empty() { self.saddles(band) } else { refined_saddles(h, band, &found) };
-        let above_final = h.difference_mev(last, first);
-        let mut warnings = self.warnings;
-        let top = saddles.iter().map(|s| s.above_initial_mev).fold(f64::NEG_INFINITY, f64::max);
-        let seen = band.energies_mev()[band.highest()] - band.energies_mev()[0];
-        let missed = seen > top + 1e-6 * height(band) && seen > above_final.max(0.0) + 1e-9 * height(band);
-        if missed && !found.is_empty() {
-            warnings.push(
-                "an image of the path lies above every refined saddle: the barrier is that image's energy".into(),
-            );
-        }
-        let top = if missed { seen } else { top };
-        let mut stop_reason = c.stop.to_string();
-        let top = if top > above_final.max(0.0) {
-            top
-        } else {
-            stop_reason
-                .push_str("; the path rises to no maximum between its ends: there is no barrier beyond the higher end");
-            above_final.max(0.0)
-        };
-        let barrier = Barrier { forward_mev: top, backward_mev: top - above_final };
-        warnings.push("the barrier is the band's; its saddle is not refined yet and not certified".into());
-        let rotation = c.history.last().map_or(0.0, |r| r.largest_predicted_rotation_rad);
-        Outcome {
-            converged: c.stop.is_converged(),
-            certified: false,
-            stop_reason,
-            warnings,
-            barrier: Some(barrier),
-            initial: end_point(h, &self.ends[0]),
-            final_state: end_point(h, &self.ends[1]),
-            intermediate_minima: minima(h, band),
-            rejected_paths,
-            images: image_table(h, band),
-            profile: profile
-                .samples(16)
-                .into_iter()
-                .map(|(s, e)| ProfilePoint { reaction_coordinate_rad: s, above_initial_mev: e })
-                .collect(),
-            work: Work {
-                iterations: band.evaluations(),
-                force_evaluations: h.evaluations(),
-                seconds: self.started.elapsed().as_secs_f64(),
-                threads: rayon::current_num_threads(),
-            },
-            max_perpendicular_torque_mev: band.max_perpendicular_mev(),
-            largest_predicted_rotation_rad: rotation,
-            history: c.history,
-            saddles,
-            path,
-        }
-    }
-
-    /// The prominent maxima: the climbing images, or without them the maxima of the interpolated energy.
-    fn saddles(&self, band: &Band) -> Vec<SaddlePoint> {
-        let h = &self.problem.hamiltonian;
-        let first = band.path().image(0);
-        let profile = band.profile();
-        let peak = |k: usize| {
-            let near = |x: &&crate::band::Extremum| x.is_maximum && (x.interval == k || x.interval + 1 == k);
-            let between = profile.extrema().iter().filter(near).copied().max_by(|p, q| p.energy.total_cmp(&q.energy));
-            let image = h.difference_mev(band.path().image(k), first);
-            match between.filter(|_| !self.problem.neb.climb) {
-                Some(x) => (x.s, x.energy.max(image), None),
-                None => (profile.s[k], image, Some(torque(band, k))),
-            }
-        };
-        let reference = h.energy_mev(first);
-        prominent_maxima(band.energies_mev(), 1e-6 * height(band))
-            .into_iter()
-            .map(|k| {
-                let (s, above, max_torque_mev) = peak(k);
-                SaddlePoint {
-                    energy_mev: reference + above,
-                    above_initial_mev: above,
-                    reaction_coordinate_rad: s,
-                    image: k,
-                    max_torque_mev,
-                    negative_modes: None,
-                    zero_modes: None,
-                    lowest_eigenvalues_mev: Vec::new(),
-                }
-            })
-            .collect()
-    }
-
-    /// Both ends relaxed to one minimum: a result without a path.
-    fn same_minimum(self) -> Outcome {
-        let h = &self.problem.hamiltonian;
-        let path = Path::new(&[self.ends[0].spins.clone(), self.ends[1].spins.clone()]);
-        let band = Band::new(h, path.clone());
-        let mut warnings = self.warnings;
-        warnings.push("there is no path between a minimum and itself".into());
-        Outcome {
-            converged: false,
-            certified: false,
-            stop_reason: "the initial and the final state relaxed to the same minimum".into(),
-            warnings,
-            barrier: None,
-            saddles: Vec::new(),
-            initial: end_point(h, &self.ends[0]),
-            final_state: end_point(h, &self.ends[1]),
-            intermediate_minima: Vec::new(),
-            rejected_paths: Vec::new(),
-            images: image_table(h, &band),
-            profile: Vec::new(),
-            history: Vec::new(),
-            work: Work {
-                iterations: 0,
-                force_evaluations: h.evaluations(),
-                seconds: self.started.elapsed().as_secs_f64(),
-                threads: rayon::current_num_threads(),
-            },
-            max_perpendicular_torque_mev: 0.0,
-            largest_predicted_rotation_rad: 0.0,
-            path,
-        }
     }
 }
 
-/// Puts refined saddles in the place of the images nearest to them, where they fit between the neighbours.
-fn seat(band: &mut Band, found: &[Found]) {
-    let slab_size = 3 * band.path().sites();
+/// Puts refined saddles in the place of the images nearest to them, where they fit between the neighbours; says whether any did.
+fn seat(band: &mut Band, found: &[Found]) -> bool {
     let last = band.images() - 1;
+    let mut seated = false;
     for f in found {
-        let k = f.top.image.clamp(1, last - 1);
         let saddle = &f.refined.state.m;
+        let k = (1..last)
+            .min_by(|&i, &j| distance(band.path().image(i), saddle).total_cmp(&distance(band.path().image(j), saddle)))
+            .unwrap_or(1);
         let gap = distance(band.path().image(k - 1), band.path().image(k + 1));
         let fits = [k - 1, k + 1].iter().all(|&j| distance(band.path().image(j), saddle) < gap);
-        if fits {
-            band.path_mut().as_mut_slice()[k * slab_size..(k + 1) * slab_size].copy_from_slice(saddle);
+        if fits && !band.is_held(k) {
+            band.hold(k, saddle);
+            seated = true;
         }
     }
-    if !found.is_empty() {
-        band.evaluate();
-    }
+    seated
 }
 
 /// Why a path was not the one.
@@ -483,46 +407,6 @@ fn rejection(c: &Candidate, best: &Candidate) -> RejectedPath {
         ),
     };
     RejectedPath { guess: c.name.clone(), barrier_mev, negative_modes, reason }
-}
-
-/// Places of `images` images, four times as dense within two intervals of image k as elsewhere.
-fn condensed(s: &[f64], k: usize, images: usize) -> Vec<f64> {
-    let weight = |i: usize| if i + 1 >= k.saturating_sub(1) && i < k + 2 { 4.0 } else { 1.0 };
-    let mut warped = vec![0.0];
-    for i in 0..s.len() - 1 {
-        warped.push(warped[i] + weight(i) * (s[i + 1] - s[i]));
-    }
-    let total = warped[s.len() - 1];
-    let place = |j: usize| {
-        let x = total * j as f64 / (images - 1) as f64;
-        let i = warped.partition_point(|w| *w <= x).clamp(1, s.len() - 1) - 1;
-        s[i] + (x - warped[i]) / weight(i)
-    };
-    (0..images).map(place).collect()
-}
-
-/// Refined saddles in path order.
-fn refined_saddles(h: &crate::energy::Hamiltonian, band: &Band, found: &[Found]) -> Vec<SaddlePoint> {
-    let first = band.path().image(0);
-    let reference = h.energy_mev(first);
-    let mut saddles: Vec<SaddlePoint> = found
-        .iter()
-        .map(|f| {
-            let above = h.difference_mev(&f.refined.state.m, first);
-            SaddlePoint {
-                energy_mev: reference + above,
-                above_initial_mev: above,
-                reaction_coordinate_rad: f.top.s,
-                image: f.top.image,
-                max_torque_mev: Some(f.refined.state.max_torque_mev()),
-                negative_modes: Some(f.refined.index),
-                zero_modes: Some(f.refined.state.zeros.len()),
-                lowest_eigenvalues_mev: Vec::new(),
-            }
-        })
-        .collect();
-    saddles.sort_by(|p, q| p.reaction_coordinate_rad.total_cmp(&q.reaction_coordinate_rad));
-    saddles
 }
 
 /// The config fragment of a guess, for people.
@@ -565,57 +449,4 @@ fn judge_end(r: &Relaxed, which: &str) -> Vec<String> {
             .push(format!("the {which} state did not relax fully: a torque of {:.1e} meV remains", r.max_torque_mev));
     }
     warnings
-}
-
-fn end_point(h: &crate::energy::Hamiltonian, r: &Relaxed) -> EndPoint {
-    EndPoint {
-        energy_mev: h.energy_mev(r.spins.as_slice()),
-        max_torque_mev: r.max_torque_mev,
-        negative_modes: None,
-        zero_modes: None,
-    }
-}
-
-/// Largest component of the whole force on image k (meV).
-fn torque(band: &Band, k: usize) -> f64 {
-    let mut f = band.perpendicular(k).to_vec();
-    slab::add_scaled(&mut f, band.along(k), band.tangent(k));
-    slab::max_abs(&f)
-}
-
-/// Interior images that are prominent minima of the path.
-fn minima(h: &crate::energy::Hamiltonian, band: &Band) -> Vec<IntermediateMinimum> {
-    let upside_down: Vec<f64> = band.energies_mev().iter().map(|e| -e).collect();
-    let s = band.path().reaction_coordinate();
-    let state = |k: usize| EndPoint {
-        energy_mev: h.energy_mev(band.path().image(k)),
-        max_torque_mev: torque(band, k),
-        negative_modes: None,
-        zero_modes: None,
-    };
-    prominent_maxima(&upside_down, 1e-3 * height(band))
-        .into_iter()
-        .map(|k| IntermediateMinimum { image: k, reaction_coordinate_rad: s[k], state: state(k) })
-        .collect()
-}
-
-fn image_table(h: &crate::energy::Hamiltonian, band: &Band) -> ImageTable {
-    let path = band.path();
-    let images = path.images();
-    let mut terms_mev: Vec<(String, Vec<f64>)> = Vec::new();
-    for k in 0..images {
-        for (j, (name, e)) in h.energies_mev(path.image(k)).into_iter().enumerate() {
-            if k == 0 {
-                terms_mev.push((name.to_string(), Vec::with_capacity(images)));
-            }
-            terms_mev[j].1.push(e);
-        }
-    }
-    ImageTable {
-        reaction_coordinate_rad: path.reaction_coordinate(),
-        energy_mev: (0..images).map(|k| h.energy_mev(path.image(k))).collect(),
-        above_initial_mev: (0..images).map(|k| h.difference_mev(path.image(k), path.image(0))).collect(),
-        terms_mev,
-        max_perpendicular_torque_mev: (0..images).map(|k| slab::max_abs(band.perpendicular(k))).collect(),
-    }
 }

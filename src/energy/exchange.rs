@@ -136,7 +136,7 @@ impl Exchange {
     /// Gradient and energy of one site near an end, where partners wrap or are missing.
     fn edge(j: &[f64], n: usize, m: &Components, i: usize) -> (Vector, f64) {
         let sites = j.len();
-        let (next, previous) = ((i + n) % sites, (i + sites - n) % sites);
+        let (next, previous) = ((i + n) % sites, (i + sites - n % sites) % sites);
         let (mut g, mut e) = ([0.0; 3], 0.0);
         if j[i] != 0.0 {
             let d = Exchange::deviation(m, j[i], i, next);

@@ -61,7 +61,7 @@ pub fn scale(y: &mut [f64], s: f64) {
 
 /// The largest |a_k|; NaN if any entry is NaN.
 pub fn max_abs(a: &[f64]) -> f64 {
-    a.iter().fold(0.0, |m: f64, x| if x.is_nan() { f64::NAN } else { m.max(x.abs()) })
+    a.iter().fold(0.0, |m: f64, x| if m.is_nan() || x.is_nan() { f64::NAN } else { m.max(x.abs()) })
 }
 
 #[cfg(test)]

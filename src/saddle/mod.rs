@@ -3,10 +3,14 @@
 //! A wall that can slide gives a chain's Hessian one eigenvalue of either sign that may be 1e-12 of the others. Plain Newton
 //! oscillates there; so the soft mode is split off (Lyapunov–Schmidt): Newton across it, a safeguarded search along it.
 
+mod descent;
 mod pinned;
+mod spectrum;
 mod state;
 mod valley;
 
+pub use descent::{Descent, descend};
 pub use pinned::Pinned;
+pub use spectrum::Spectrum;
 pub use state::State;
 pub use valley::{Refined, Verdict, refine};

@@ -39,7 +39,7 @@ pub enum Verdict {
 }
 
 /// A refined saddle.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Refined {
     /// How it ended.
     pub verdict: Verdict,
@@ -288,7 +288,7 @@ impl Search<'_> {
         if !self.frozen.is_empty() && step > 0 {
             let mut rest = g.to_vec();
             remove(&mut rest, p.zeros());
-            if slab::max_abs(&rest) <= 4.0 * tolerance && torque < 1e-7 * self.c {
+            if slab::max_abs(&rest) <= 4.0 * tolerance && torque <= 1e2 * tolerance {
                 return Some(Verdict::Flat);
             }
         }
@@ -331,7 +331,7 @@ impl Search<'_> {
         let history = &self.torques;
         let n = history.len();
         let before = history.last().copied().unwrap_or(f64::INFINITY);
-        let tiny = predicted < 1e-13 * scale && n >= 2 && torque < 1e-9 * self.c;
+        let tiny = predicted < 1e-13 * scale && n >= 2 && torque <= 1e2 * tolerance;
         if tiny && (self.shift > 0.0 || torque > 0.1 * before || across > 1e3 * torque / self.c) {
             return Next::Stop(Verdict::Flat);
         }

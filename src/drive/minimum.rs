@@ -1,0 +1,144 @@
+//! Minima: what a descent ends in, and whether two of them are the same.
+
+use super::climb::Found;
+use super::ends::relax_to_minimum;
+use crate::energy::Hamiltonian;
+use crate::error::Result;
+use crate::field::{Components, ComponentsMut};
+use crate::geometry::{Direction, rotate, vector};
+use crate::path::guess::best_turn;
+use crate::path::largest_angle;
+use crate::saddle::{Spectrum, State, descend};
+use crate::spins::Spins;
+
+/// Spins of two states of one minimum differ by less (rad).
+const SAME: f64 = 1e-3;
+
+/// A stationary state with its spectrum.
+#[derive(Clone, Debug)]
+pub struct Minimum {
+    /// The spins.
+    pub spins: Spins,
+    /// Total energy (meV).
+    pub energy_mev: f64,
+    /// Largest component of the Riemannian gradient (meV).
+    pub max_torque_mev: f64,
+    /// Its modes.
+    pub spectrum: Spectrum,
+}
+
+impl Minimum {
+    /// A relaxed state, examined.
+    pub fn examine(h: &Hamiltonian, spins: &Spins) -> Minimum {
+        let state = State::at(h, spins.as_slice().to_vec());
+        Minimum {
+            energy_mev: h.energy_mev(&state.m),
+            max_torque_mev: state.max_torque_mev(),
+            spectrum: Spectrum::of(h, &state),
+            spins: spins.clone(),
+        }
+    }
+
+    /// Stationary, and without a negative direction.
+    pub fn is_proven(&self) -> bool {
+        self.spectrum.negative == 0 && self.spectrum.is_stationary(self.max_torque_mev)
+    }
+
+    /// Whether `other` is this minimum: the same spins after the best rotation about the symmetry axes, or, where the energy is
+    /// flat, the same energy.
+    pub fn is_same(&self, h: &Hamiltonian, other: &Minimum) -> bool {
+        let a = self.spins.as_slice();
+        if largest_angle(a, other.spins.as_slice()) < SAME {
+            return true;
+        }
+        let axes = h.symmetry_axes_at(a);
+        let mut turned = other.spins.clone();
+        for _ in 0..4 {
+            for axis in &axes {
+                let Ok(axis) = Direction::new(*axis) else { continue };
+                let (angle, _) = best_turn(&turned, &self.spins, axis);
+                turned = rotated(&turned, axis, angle);
+            }
+        }
+        if !axes.is_empty() && largest_angle(a, turned.as_slice()) < SAME {
+            return true;
+        }
+        let noise = 1e-12 * h.stiffness_mev();
+        let both_flat = self.spectrum.flat > 0 && other.spectrum.flat > 0;
+        both_flat && h.difference_mev(a, other.spins.as_slice()).abs() < noise
+    }
+}
+
+fn rotated(spins: &Spins, axis: Direction, angle: f64) -> Spins {
+    let m = Components::new(spins.as_slice());
+    let mut out = vec![0.0; 3 * m.sites()];
+    for i in 0..m.sites() {
+        let v = rotate(m.get(i), axis, angle);
+        ComponentsMut::new(&mut out).set(i, vector::unit_or(v, v));
+    }
+    Spins::from_unit_components(&out)
+}
+
+/// A saddle with the minima on its two sides.
+#[derive(Debug)]
+pub struct Link {
+    /// The saddle.
+    pub found: Found,
+    /// Its modes.
+    pub spectrum: Spectrum,
+    /// The minimum that the descent against the path's direction reaches.
+    pub before: Minimum,
+    /// The minimum that the descent along the path's direction reaches.
+    pub after: Minimum,
+    /// How far the energy fell on either side (meV).
+    pub fallen_mev: [f64; 2],
+}
+
+impl Link {
+    /// Descends from a saddle on both sides.
+    pub fn of(h: &Hamiltonian, found: Found, c: f64) -> Result<Link> {
+        let state = &found.refined.state;
+        let along = crate::linalg::slab::dot(&found.refined.valley, &found.top.tau);
+        let sign = if along < 0.0 { -1.0 } else { 1.0 };
+        let side = |direction: f64| -> Result<(Minimum, f64)> {
+            let valley: Vec<f64> = found.refined.valley.iter().map(|v| direction * sign * v).collect();
+            let d = descend(h, state, &valley, c);
+            let relaxed = relax_to_minimum(h, &Spins::from_unit_components(&d.m), 1e-14 * h.stiffness_mev())?;
+            Ok((Minimum::examine(h, &relaxed.spins), d.fallen_mev))
+        };
+        let (sides, spectrum) = rayon::join(|| rayon::join(|| side(-1.0), || side(1.0)), || Spectrum::of(h, state));
+        let ((before, f), (after, g)) = (sides.0?, sides.1?);
+        Ok(Link { spectrum, before, after, fallen_mev: [f, g], found })
+    }
+
+    /// Exchanges its two sides: which of them the path comes from is not always plain at the saddle itself.
+    pub fn reverse(&mut self) {
+        std::mem::swap(&mut self.before, &mut self.after);
+        self.fallen_mev.reverse();
+    }
+
+    /// Why this is not a proven saddle of index one between two proven minima; nothing if it is.
+    pub fn doubt(&self, h: &Hamiltonian) -> Option<String> {
+        let state = &self.found.refined.state;
+        let s = &self.spectrum;
+        if !s.is_stationary(state.max_torque_mev()) {
+            return Some(format!("a torque of {:.1e} meV remains on the saddle", state.max_torque_mev()));
+        }
+        if s.negative > 1 {
+            return Some(format!("the saddle has {} negative modes", s.negative));
+        }
+        let rounding = 16.0 * f64::EPSILON * (state.energy_mev.abs() + h.stiffness_mev());
+        if self.fallen_mev.iter().any(|f| *f <= rounding) {
+            return Some(format!(
+                "the energy does not fall on both sides of the saddle by more than its rounding error of {rounding:.1e} meV"
+            ));
+        }
+        if s.negative == 0 && s.flat == 0 {
+            return Some("the saddle has no negative mode".into());
+        }
+        if !self.before.is_proven() || !self.after.is_proven() {
+            return Some("a descent from the saddle ended in a state that is not proven to be a minimum".into());
+        }
+        None
+    }
+}

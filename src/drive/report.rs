@@ -1,0 +1,325 @@
+//! From a finished run to its outcome: tables, barrier, warnings.
+
+use super::Problem;
+use super::climb::Found;
+use super::ends::Relaxed;
+use super::minimum::{Link, Minimum};
+use super::outcome::*;
+use super::relaxation::{height, prominent_maxima};
+use super::run::Candidate;
+use crate::band::{Band, Extremum};
+use crate::energy::Hamiltonian;
+use crate::linalg::slab;
+use crate::path::{Path, distance};
+use std::time::Instant;
+
+/// Points of the profile in every interval.
+const PROFILE: usize = 16;
+
+/// What a run knew before its path.
+pub struct Summary<'a> {
+    pub problem: &'a Problem,
+    pub started: Instant,
+    pub ends: [Relaxed; 2],
+    pub warnings: Vec<String>,
+}
+
+/// What was proven of a path.
+pub struct Proof {
+    /// The two ends, examined.
+    pub ends: [Minimum; 2],
+    /// Saddles in path order, with the minima beside them.
+    pub links: Vec<Link>,
+    /// What stands against a certificate; nothing if it is given.
+    pub doubts: Vec<String>,
+}
+
+impl Summary<'_> {
+    fn work(&self, iterations: usize) -> Work {
+        Work {
+            iterations,
+            force_evaluations: self.problem.hamiltonian.evaluations(),
+            seconds: self.started.elapsed().as_secs_f64(),
+            threads: rayon::current_num_threads(),
+        }
+    }
+}
+
+/// The outcome of a path.
+pub fn outcome(
+    run: Summary,
+    c: Candidate,
+    found: &[Found],
+    proof: Proof,
+    rejected_paths: Vec<RejectedPath>,
+) -> Outcome {
+    let h = &run.problem.hamiltonian;
+    let band = &c.band;
+    let path = band.path().clone();
+    let above_final = h.difference_mev(path.image(path.images() - 1), path.image(0));
+    let saddles = if !proof.links.is_empty() {
+        sorted(proof.links.iter().map(|l| saddle_of_link(h, band, l)).collect())
+    } else if !found.is_empty() {
+        sorted(found.iter().map(|f| saddle_of(h, band, f)).collect())
+    } else {
+        band_saddles(run.problem, band)
+    };
+    let mut warnings = run.warnings.clone();
+    let mut stop_reason = c.stop.to_string();
+    let mut doubts = proof.doubts;
+    let barrier = barrier(run.problem, band, &saddles, above_final, &c, &mut doubts, &mut stop_reason);
+    let converged = c.stop.is_converged() && barrier.is_some();
+    if !converged {
+        doubts.push("the band did not converge".into());
+    }
+    let certified = doubts.is_empty();
+    warnings.extend(doubts.into_iter().map(|d| format!("not certified: {d}")));
+    warnings.extend(flat_warnings(&proof.ends, &proof.links));
+    let work = run.work(band.evaluations());
+    let minima = if proof.links.len() > 1 { link_minima(band, &proof.links) } else { band_minima(h, band) };
+    Outcome {
+        converged,
+        certified,
+        stop_reason,
+        warnings,
+        barrier,
+        initial: end_of(&proof.ends[0]),
+        final_state: end_of(&proof.ends[1]),
+        intermediate_minima: minima,
+        rejected_paths,
+        images: image_table(h, band),
+        profile: profile(band),
+        work,
+        max_perpendicular_torque_mev: band.max_perpendicular_mev(),
+        largest_predicted_rotation_rad: c.history.last().map_or(0.0, |r| r.largest_predicted_rotation_rad),
+        history: c.history,
+        saddles,
+        path,
+    }
+}
+
+/// Energy to climb, from the highest saddle or, where the path has an image above all of them, from that.
+fn barrier(
+    problem: &Problem,
+    band: &Band,
+    saddles: &[SaddlePoint],
+    above_final: f64,
+    c: &Candidate,
+    doubts: &mut Vec<String>,
+    stop_reason: &mut String,
+) -> Option<Barrier> {
+    let top = saddles.iter().map(|s| s.above_initial_mev).fold(f64::NEG_INFINITY, f64::max);
+    let seen = band.energies_mev()[band.highest()] - band.energies_mev()[0];
+    let ends = above_final.max(0.0);
+    if problem.seeks_saddles()
+        && c.found.as_ref().is_some_and(|f| f.refined.index > 1)
+        && saddles.iter().all(|s| s.negative_modes != Some(1))
+    {
+        stop_reason.push_str("; only a saddle of higher index was found, which is no barrier");
+        doubts.push("the path passes a saddle of higher index".into());
+        return None;
+    }
+    let mut highest = top;
+    if seen > top + 1e-6 * height(band) && seen > ends + 1e-9 * height(band) {
+        highest = seen;
+        if problem.seeks_saddles() {
+            doubts.push(
+                "an image of the path lies above every refined saddle; the barrier is that image's energy".into(),
+            );
+        }
+    }
+    if highest <= ends {
+        highest = ends;
+        stop_reason
+            .push_str("; the path rises to no maximum between its ends, so there is no barrier beyond the higher end");
+    }
+    Some(Barrier { forward_mev: highest, backward_mev: highest - above_final })
+}
+
+/// Both ends relaxed to one minimum: a result without a path.
+pub fn same_minimum(run: Summary) -> Outcome {
+    let h = &run.problem.hamiltonian;
+    let path = Path::new(&[run.ends[0].spins.clone(), run.ends[1].spins.clone()]);
+    let band = Band::new(h, path.clone());
+    let ends = [0, 1].map(|k| Minimum::examine(h, &run.ends[k].spins));
+    let mut warnings = run.warnings.clone();
+    warnings.push("there is no path between a minimum and itself".into());
+    let work = run.work(0);
+    Outcome {
+        converged: false,
+        certified: false,
+        stop_reason: "the initial and the final state relaxed to the same minimum".into(),
+        warnings,
+        barrier: None,
+        saddles: Vec::new(),
+        initial: end_of(&ends[0]),
+        final_state: end_of(&ends[1]),
+        intermediate_minima: Vec::new(),
+        rejected_paths: Vec::new(),
+        images: image_table(h, &band),
+        profile: Vec::new(),
+        history: Vec::new(),
+        work,
+        max_perpendicular_torque_mev: 0.0,
+        largest_predicted_rotation_rad: 0.0,
+        path,
+    }
+}
+
+/// Modes under the noise floor are said, not guessed.
+fn flat_warnings(ends: &[Minimum; 2], links: &[Link]) -> Vec<String> {
+    let say = |what: &str, flat: usize, floor: f64| {
+        format!("{what}: {flat} mode(s) flat to {floor:.1e} meV, counted with the zero modes")
+    };
+    let mut warnings = Vec::new();
+    for (end, which) in ends.iter().zip(["initial state", "final state"]) {
+        if end.spectrum.flat > 0 {
+            warnings.push(say(which, end.spectrum.flat, end.spectrum.floor_mev));
+        }
+    }
+    for (k, link) in links.iter().enumerate().filter(|(_, l)| l.spectrum.flat > 0) {
+        warnings.push(say(&format!("saddle {k}"), link.spectrum.flat, link.spectrum.floor_mev));
+    }
+    warnings
+}
+
+fn end_of(m: &Minimum) -> EndPoint {
+    EndPoint {
+        energy_mev: m.energy_mev,
+        max_torque_mev: m.max_torque_mev,
+        negative_modes: Some(m.spectrum.negative),
+        zero_modes: Some(m.spectrum.zero_and_flat()),
+    }
+}
+
+fn sorted(mut saddles: Vec<SaddlePoint>) -> Vec<SaddlePoint> {
+    saddles.sort_by(|p, q| p.reaction_coordinate_rad.total_cmp(&q.reaction_coordinate_rad));
+    saddles
+}
+
+/// The place on the path nearest to a state: reaction coordinate (rad) and image.
+fn nearest(band: &Band, m: &[f64]) -> (f64, usize) {
+    let path = band.path();
+    let s = path.reaction_coordinate();
+    let far: Vec<f64> = (0..path.images()).map(|k| distance(path.image(k), m)).collect();
+    let k = (0..far.len()).fold(0, |best, k| if far[k] < far[best] { k } else { best });
+    let (a, b) = if k + 1 < far.len() && (k == 0 || far[k + 1] < far[k - 1]) {
+        (k, k + 1)
+    } else {
+        (k.saturating_sub(1), k.max(1).min(far.len() - 1))
+    };
+    let share = far[a] / (far[a] + far[b]).max(f64::MIN_POSITIVE);
+    (s[a] + share * (s[b] - s[a]), k)
+}
+
+fn saddle_of(h: &Hamiltonian, band: &Band, f: &Found) -> SaddlePoint {
+    let first = band.path().image(0);
+    let above = h.difference_mev(&f.refined.state.m, first);
+    let (s, image) = nearest(band, &f.refined.state.m);
+    SaddlePoint {
+        energy_mev: h.energy_mev(first) + above,
+        above_initial_mev: above,
+        reaction_coordinate_rad: s,
+        image,
+        max_torque_mev: Some(f.refined.state.max_torque_mev()),
+        negative_modes: Some(f.refined.index),
+        zero_modes: Some(f.refined.state.zeros.len()),
+        lowest_eigenvalues_mev: Vec::new(),
+    }
+}
+
+fn saddle_of_link(h: &Hamiltonian, band: &Band, link: &Link) -> SaddlePoint {
+    SaddlePoint {
+        negative_modes: Some(link.spectrum.negative),
+        zero_modes: Some(link.spectrum.zero_and_flat()),
+        lowest_eigenvalues_mev: link.spectrum.lowest_mev.clone(),
+        ..saddle_of(h, band, &link.found)
+    }
+}
+
+/// The prominent maxima as the band shows them: the interpolated ones beside the highest images.
+fn band_saddles(problem: &Problem, band: &Band) -> Vec<SaddlePoint> {
+    let h = &problem.hamiltonian;
+    let first = band.path().image(0);
+    let profile = band.profile();
+    let peak = |k: usize| {
+        let near = |x: &&Extremum| x.is_maximum && (x.interval == k || x.interval + 1 == k);
+        let image = h.difference_mev(band.path().image(k), first);
+        let extrema = profile.extrema();
+        let between = extrema.iter().filter(near).max_by(|p, q| p.energy.total_cmp(&q.energy));
+        between.map_or((profile.s[k], image), |x| (x.s, x.energy.max(image)))
+    };
+    let reference = h.energy_mev(first);
+    let point = |k: usize| {
+        let (s, above) = peak(k);
+        SaddlePoint {
+            energy_mev: reference + above,
+            above_initial_mev: above,
+            reaction_coordinate_rad: s,
+            image: k,
+            max_torque_mev: None,
+            negative_modes: None,
+            zero_modes: None,
+            lowest_eigenvalues_mev: Vec::new(),
+        }
+    };
+    prominent_maxima(band.energies_mev(), 1e-6 * height(band)).into_iter().map(point).collect()
+}
+
+/// The minima between consecutive saddles.
+fn link_minima(band: &Band, links: &[Link]) -> Vec<IntermediateMinimum> {
+    let one = |l: &Link| {
+        let (s, image) = nearest(band, l.after.spins.as_slice());
+        IntermediateMinimum { image, reaction_coordinate_rad: s, state: end_of(&l.after) }
+    };
+    links[..links.len() - 1].iter().map(one).collect()
+}
+
+/// Largest component of the whole force on image k (meV).
+fn torque(band: &Band, k: usize) -> f64 {
+    let mut f = band.perpendicular(k).to_vec();
+    slab::add_scaled(&mut f, band.along(k), band.tangent(k));
+    slab::max_abs(&f)
+}
+
+/// Interior images that are prominent minima of the path.
+fn band_minima(h: &Hamiltonian, band: &Band) -> Vec<IntermediateMinimum> {
+    let upside_down: Vec<f64> = band.energies_mev().iter().map(|e| -e).collect();
+    let s = band.path().reaction_coordinate();
+    let state = |k: usize| EndPoint {
+        energy_mev: h.energy_mev(band.path().image(k)),
+        max_torque_mev: torque(band, k),
+        negative_modes: None,
+        zero_modes: None,
+    };
+    prominent_maxima(&upside_down, 1e-3 * height(band))
+        .into_iter()
+        .map(|k| IntermediateMinimum { image: k, reaction_coordinate_rad: s[k], state: state(k) })
+        .collect()
+}
+
+fn image_table(h: &Hamiltonian, band: &Band) -> ImageTable {
+    let path = band.path();
+    let images = path.images();
+    let mut terms_mev: Vec<(String, Vec<f64>)> = Vec::new();
+    for k in 0..images {
+        for (j, (name, e)) in h.energies_mev(path.image(k)).into_iter().enumerate() {
+            if k == 0 {
+                terms_mev.push((name.to_string(), Vec::with_capacity(images)));
+            }
+            terms_mev[j].1.push(e);
+        }
+    }
+    ImageTable {
+        reaction_coordinate_rad: path.reaction_coordinate(),
+        energy_mev: (0..images).map(|k| h.energy_mev(path.image(k))).collect(),
+        above_initial_mev: (0..images).map(|k| h.difference_mev(path.image(k), path.image(0))).collect(),
+        terms_mev,
+        max_perpendicular_torque_mev: (0..images).map(|k| slab::max_abs(band.perpendicular(k))).collect(),
+    }
+}
+
+fn profile(band: &Band) -> Vec<ProfilePoint> {
+    let point = |(s, e)| ProfilePoint { reaction_coordinate_rad: s, above_initial_mev: e };
+    band.profile().samples(PROFILE).into_iter().map(point).collect()
+}

@@ -1,0 +1,63 @@
+//! Counting negative, flat and positive directions of a Hessian, zero modes apart.
+//!
+//! A sign is told only above the noise floor 8·eps·‖H‖₁. The counts come from the inertia of H ± floor with the zero modes
+//! pinned (see [`super::Pinned`]), so they hold for all eigenvalues, not just the few that are computed.
+
+use super::pinned::pin;
+use super::state::State;
+use crate::energy::Hamiltonian;
+use crate::linalg::lowest_modes;
+
+/// How many eigenvalues are reported.
+const REPORTED: usize = 6;
+
+/// What kind of stationary point a state is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spectrum {
+    /// Eigenvalues below −floor.
+    pub negative: usize,
+    /// Eigenvalues within the floor.
+    pub flat: usize,
+    /// Exact zero modes: rotations about symmetry axes.
+    pub zero: usize,
+    /// The floor 8·eps·‖H‖₁ (meV).
+    pub floor_mev: f64,
+    /// ‖H‖₁ (meV).
+    pub norm_mev: f64,
+    /// The lowest eigenvalues (meV), ascending, zero modes and frozen spins apart.
+    pub lowest_mev: Vec<f64>,
+}
+
+impl Spectrum {
+    /// Of a state.
+    pub fn of(h: &Hamiltonian, state: &State) -> Spectrum {
+        let norm_mev = state.hessian.norm1();
+        let floor_mev = 8.0 * f64::EPSILON * norm_mev;
+        let below = |shift: f64| {
+            let mut matrix = state.hessian.clone();
+            let mut used = Vec::new();
+            for z in &state.zeros {
+                pin(&mut matrix, z, &mut used, h.stiffness_mev());
+            }
+            matrix.shift(shift);
+            matrix.factor().negatives()
+        };
+        let negative = below(floor_mev);
+        let flat = below(-floor_mev).saturating_sub(negative);
+        let frozen = (0..h.sites()).filter(|&i| h.is_frozen(i)).count();
+        let free = state.hessian.order() - 2 * frozen - state.zeros.len().min(state.hessian.order() - 2 * frozen);
+        let modes = lowest_modes(&state.hessian, REPORTED.min(free), &state.zeros);
+        let lowest_mev = modes.into_iter().map(|m| m.value).collect();
+        Spectrum { negative, flat, zero: state.zeros.len(), floor_mev, norm_mev, lowest_mev }
+    }
+
+    /// Zero modes and flat ones together, as results report them.
+    pub fn zero_and_flat(&self) -> usize {
+        self.zero + self.flat
+    }
+
+    /// Whether a torque is zero as far as double precision tells: |grad|∞ ≤ 1e-12·‖H‖₁.
+    pub fn is_stationary(&self, torque_mev: f64) -> bool {
+        torque_mev <= 1e-12 * self.norm_mev
+    }
+}
