@@ -1,4 +1,19 @@
-//! Minimum-energy paths and barriers of spin chains.
+#![doc = include_str!("../README.md")]
+//!
+//! # The modules
+//!
+//! Each imports only modules of the rows below its own, those of the last row also one another.
+//!
+//! | | |
+//! |---|---|
+//! | [`config`] | the JSON of a run |
+//! | [`output`] | files and figures |
+//! | [`drive`] | a whole run: ends, first paths, band, saddles, proof |
+//! | [`band`], [`saddle`] | the force on a path; saddles to machine precision |
+//! | [`energy`], [`path`], [`optimise`] | energy terms; first paths; methods that move spins |
+//! | [`state`] | spin states |
+//! | [`spins`], [`sphere`] | configurations and the product of spheres they live on |
+//! | [`lattice`], [`geometry`], [`units`], [`field`], [`linalg`], [`registry`], [`words`], [`error`] | the ground |
 
 pub mod band;
 pub mod config;
