@@ -6,9 +6,11 @@ use crate::energy::Hamiltonian;
 use crate::field::project;
 use crate::linalg::{lowest_modes, slab};
 use crate::path::{Path, largest_angle};
-use crate::saddle::{Refined, Verdict, refine};
+use crate::saddle::{Refined, Spectrum, Verdict, refine};
 use crate::sphere::{move_points, rotation_of};
 
+/// A mode of less than this part of c is shallow.
+const SHALLOW: f64 = 1e-3;
 /// How often a part of the path is made finer.
 pub const ZOOMS: usize = 4;
 /// How far a path is pushed off a saddle of higher index (rad).
@@ -26,10 +28,37 @@ pub struct Found {
 }
 
 impl Found {
-    /// Refines a top.
-    pub fn at(h: &Hamiltonian, top: Top, c: f64) -> Found {
+    /// Refines a top. A saddle that is also a maximum of a shallow mode (a wall halfway between two sites) is left along that
+    /// mode by `hop` (rad), for the one beside it.
+    pub fn at(h: &Hamiltonian, top: Top, c: f64, hop: f64) -> Found {
         let refined = refine(h, &top.m, &top.tau, c);
-        Found { top, refined }
+        let found = Found { top, refined };
+        if !found.is_stationary(c) {
+            return found;
+        }
+        let spectrum = Spectrum::of(h, &found.refined.state);
+        let shallow = spectrum.negative == 2 && spectrum.lowest_mev.get(1).is_some_and(|l| l.abs() < SHALLOW * c);
+        if !shallow {
+            return found;
+        }
+        [hop, -hop].into_iter().find_map(|far| found.beside(h, c, far)).unwrap_or(found)
+    }
+
+    /// The saddle of index one a little along the second-lowest mode.
+    fn beside(&self, h: &Hamiltonian, c: f64, far: f64) -> Option<Found> {
+        let state = &self.refined.state;
+        let along = state.basis.coordinates(&self.refined.valley);
+        let modes = lowest_modes(&state.hessian, 2, &state.zeros);
+        let other = modes
+            .iter()
+            .min_by(|p, q| slab::dot(&p.vector, &along).abs().total_cmp(&slab::dot(&q.vector, &along).abs()))?;
+        let mut v = state.field(&other.vector);
+        let size = rotation_of(&v);
+        slab::scale(&mut v, far / size);
+        let refined = refine(h, &state.moved(&v), &self.refined.valley, c);
+        let found = Found { top: self.top.clone(), refined };
+        let better = found.is_stationary(c) && Spectrum::of(h, &found.refined.state).negative <= 1;
+        better.then_some(found)
     }
 
     /// Stationary to machine precision, and still the start's saddle.
@@ -45,8 +74,8 @@ impl Found {
 }
 
 /// The refined top of a band, if it has one.
-pub fn conclude(band: &Band, c: f64) -> Option<Found> {
-    highest(band).map(|top| Found::at(band.hamiltonian(), top, c))
+pub fn conclude(band: &Band, c: f64, hop: f64) -> Option<Found> {
+    highest(band).map(|top| Found::at(band.hamiltonian(), top, c, hop))
 }
 
 /// The path with more of its images in the first or last interval, if its top is there: or, if none shows, at its higher end

@@ -120,7 +120,7 @@ fn top_of(relaxation: &mut Relaxation, h: &crate::energy::Hamiltonian, path: &Pa
         band = Band::new(h, path);
         relaxation.run(&mut band, Goal::Loose, EVALUATIONS);
     }
-    conclude(&band, c)
+    conclude(&band, c, relaxation.scales.half_site_rad())
 }
 
 /// The part of a path between two states on it; a wall that moves if the part has too few images.

@@ -72,7 +72,7 @@ impl Progress {
         if rotation < 0.9 * self.best {
             (self.best, self.since) = (rotation, 0);
         }
-        if self.damps && self.since > 0 && self.since % 12 == 0 {
+        if self.damps && self.since > 0 && self.since.is_multiple_of(12) {
             self.damping = (0.6 * self.damping).max(0.1);
         }
         (self.since >= self.patience).then_some(self.since)

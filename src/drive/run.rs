@@ -258,7 +258,7 @@ impl<'a, 'o> Run<'a, 'o> {
                 return;
             }
             self.zoom(c);
-            c.found = conclude(&c.band, scale);
+            c.found = conclude(&c.band, scale, self.scales.half_site_rad());
             let Some(found) = c.found.as_ref() else { return };
             if found.is_saddle(scale) || round + 1 == ESCAPES {
                 return;
@@ -303,7 +303,7 @@ impl<'a, 'o> Run<'a, 'o> {
         let h = &self.problem.hamiltonian;
         let mut found: Vec<Found> = Vec::new();
         for top in tops(&c.band, WINDOW * height(&c.band)) {
-            let f = Found::at(h, top, scale);
+            let f = Found::at(h, top, scale, self.scales.half_site_rad());
             if f.is_saddle(scale) && !found.iter().any(|g| same(&g.refined.state.m, &f.refined.state.m)) {
                 found.push(f);
             }

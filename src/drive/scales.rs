@@ -35,6 +35,11 @@ impl Scales {
         Scales { stiffness_mev: c, exchange_mev: exchange, wall_width_sites: width }
     }
 
+    /// Largest rotation of a spin (rad) when a wall moves by half a site.
+    pub fn half_site_rad(&self) -> f64 {
+        0.5 / self.wall_width_sites.max(0.5)
+    }
+
     /// Images between the ends that resolve a wall sweeping through `sites` sites: 2 rad a spin between neighbours.
     pub fn images_between(&self, sites: usize) -> usize {
         let n = sites as f64;
