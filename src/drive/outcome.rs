@@ -1,6 +1,7 @@
 //! What a run found: everything that is written to disk is a function of an [`Outcome`].
 
 use crate::path::Path;
+use crate::spins::Spins;
 
 /// A finished run.
 #[derive(Clone, Debug)]
@@ -61,6 +62,8 @@ pub struct SaddlePoint {
     pub reaction_coordinate_rad: f64,
     /// Nearest image.
     pub image: usize,
+    /// The spins, as far as they are known: refined, or those of the nearest image.
+    pub spins: Spins,
     /// Largest component of the gradient on the spheres (meV); `None` if the saddle was only interpolated.
     pub max_torque_mev: Option<f64>,
     /// Negative eigenvalues, where counted.

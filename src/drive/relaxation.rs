@@ -47,15 +47,48 @@ struct Look {
     rotation: f64,
 }
 
+/// Watches the predicted rotation: a sweep that runs in circles is damped, and what makes no progress ends.
+struct Progress {
+    best: f64,
+    since: usize,
+    patience: usize,
+    damps: bool,
+    damping: f64,
+}
+
+impl Progress {
+    fn new(follows: Follows) -> Progress {
+        let patience = match follows {
+            Follows::Sweep => 80,
+            Follows::Preconditioned => 400,
+            Follows::Springs => 4000,
+        };
+        Progress { best: f64::INFINITY, since: 0, patience, damps: follows == Follows::Sweep, damping: 1.0 }
+    }
+
+    /// The evaluations since the last progress, if they are too many.
+    fn stalled(&mut self, rotation: f64) -> Option<usize> {
+        self.since += 1;
+        if rotation < 0.9 * self.best {
+            (self.best, self.since) = (rotation, 0);
+        }
+        if self.damps && self.since > 0 && self.since % 12 == 0 {
+            self.damping = (0.6 * self.damping).max(0.1);
+        }
+        (self.since >= self.patience).then_some(self.since)
+    }
+}
+
 impl Relaxation<'_> {
     /// Relaxes the band of `path` with at most `limit` evaluations.
     pub fn run<'h>(&mut self, band: &mut Band<'h>, goal: Goal, limit: usize) -> Stop {
         let h = band.hamiltonian();
-        let slab = 3 * h.sites();
+        let size = 3 * h.sites();
         let method = self.settings.optimiser.member();
         let mut optimiser = method.start(h.stiffness_mev());
         let mut sweep = Sweep::new(self.scales.stiffness_mev);
         let tolerance = self.settings.tolerance;
+        let mut progress = Progress::new(method.follows());
         loop {
             self.align(band);
             band.evaluate();
@@ -77,7 +110,12 @@ impl Relaxation<'_> {
             if band.evaluations() >= limit {
                 return Stop::MaxEvaluations { evaluations: band.evaluations(), rotation: look.rotation, tolerance };
             }
-            optimiser.advance(band.inner_mut(), slab, &look.direction);
+            if let Some(evaluations) = progress.stalled(look.rotation) {
+                return Stop::Stalled { evaluations, rotation: look.rotation, tolerance };
+            }
+            let mut direction = look.direction;
+            slab::scale(&mut direction, progress.damping);
+            optimiser.advance(band.inner_mut(), size, &direction);
         }
     }
 

@@ -11,6 +11,7 @@ use crate::band::{Band, Extremum};
 use crate::energy::Hamiltonian;
 use crate::linalg::slab;
 use crate::path::{Path, distance};
+use crate::spins::Spins;
 use std::time::Instant;
 
 /// Points of the profile in every interval.
@@ -69,10 +70,7 @@ pub fn outcome(
     let mut doubts = proof.doubts;
     let barrier = barrier(run.problem, band, &saddles, above_final, &c, &mut doubts, &mut stop_reason);
     let converged = c.stop.is_converged() && barrier.is_some();
-    if !converged {
-        doubts.push("the band did not converge".into());
-    }
-    let certified = doubts.is_empty();
+    let certified = doubts.is_empty() && barrier.is_some();
     warnings.extend(doubts.into_iter().map(|d| format!("not certified: {d}")));
     warnings.extend(flat_warnings(&proof.ends, &proof.links));
     let work = run.work(band.evaluations());
@@ -221,6 +219,7 @@ fn saddle_of(h: &Hamiltonian, band: &Band, f: &Found) -> SaddlePoint {
         above_initial_mev: above,
         reaction_coordinate_rad: s,
         image,
+        spins: Spins::from_unit_components(&f.refined.state.m),
         max_torque_mev: Some(f.refined.state.max_torque_mev()),
         negative_modes: Some(f.refined.index),
         zero_modes: Some(f.refined.state.zeros.len()),
@@ -257,6 +256,7 @@ fn band_saddles(problem: &Problem, band: &Band) -> Vec<SaddlePoint> {
             above_initial_mev: above,
             reaction_coordinate_rad: s,
             image: k,
+            spins: band.path().spins(k),
             max_torque_mev: None,
             negative_modes: None,
             zero_modes: None,

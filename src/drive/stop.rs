@@ -21,6 +21,15 @@ pub enum Stop {
         /// The goal (rad).
         tolerance: f64,
     },
+    /// No more progress.
+    Stalled {
+        /// Evaluations since the last progress.
+        evaluations: usize,
+        /// Largest predicted rotation (rad).
+        rotation: f64,
+        /// The goal (rad).
+        tolerance: f64,
+    },
     /// Numbers that are not finite appeared.
     NotFinite,
 }
@@ -44,6 +53,10 @@ impl fmt::Display for Stop {
             Stop::MaxEvaluations { evaluations, rotation, tolerance } => write!(
                 f,
                 "not converged: all {evaluations} band evaluations were used; a spin is still predicted to turn by {rotation:.1e} rad (tolerance {tolerance:.1e} rad)"
+            ),
+            Stop::Stalled { evaluations, rotation, tolerance } => write!(
+                f,
+                "not converged: no progress in {evaluations} band evaluations; a spin is still predicted to turn by {rotation:.1e} rad (tolerance {tolerance:.1e} rad)"
             ),
             Stop::NotFinite => f.write_str("not converged: the forces are no longer finite numbers"),
         }

@@ -1,0 +1,233 @@
+//! What physics knows beforehand: symmetries, limits, and that nothing depends on the number of threads.
+
+mod common;
+
+use common::{Build, forward, solve};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use spinneb::drive::{Outcome, Problem};
+use spinneb::energy::{Anisotropy, Dmi, Exchange, Hamiltonian, Medium, TangentBasis, TermSpec, Zeeman, assemble};
+use spinneb::geometry::Direction;
+use spinneb::lattice::Chain;
+use spinneb::linalg::eigenvalues_symmetric;
+use spinneb::spins::Spins;
+use spinneb::units::{Length, Magnetisation, Moment};
+
+fn staggered(n: usize, s: f64) -> Spins {
+    let vectors: Vec<_> = (0..n).map(|i| [0.0, 0.0, if i % 2 == 1 { -s } else { s }]).collect();
+    Spins::from_vectors(&vectors).expect("unit vectors")
+}
+
+#[test]
+fn an_antiferromagnet_has_the_barrier_of_its_ferromagnetic_mirror() {
+    for (ring, shells, d) in
+        [(false, [1.0, 0.0], 0.0), (false, [1.0, -0.2], 0.05), (true, [1.0, 0.1], 0.0), (true, [1.0, -0.1], 0.04)]
+    {
+        let n = 30;
+        let build = |sign: f64| {
+            let mut build = if ring { Build::ring(n) } else { Build::open(n) };
+            let chain = build.chain.clone();
+            build.terms = vec![Box::new(Exchange::uniform(&chain, &[sign * shells[0], shells[1]]))];
+            build.easy(0.05).with(Dmi::uniform(&chain, sign * d, Direction::Y))
+        };
+        let ferro = solve(&build(1.0).reversal());
+        let antiferro = solve(&build(-1.0).problem(staggered(n, 1.0), staggered(n, -1.0)));
+        let (f, a) = (forward(&ferro), forward(&antiferro));
+        for (n, o) in [("F", &ferro), ("A", &antiferro)] {
+            println!(
+                "{n} {} {:?} {:?} {:?}",
+                forward(o),
+                o.saddles
+                    .iter()
+                    .map(|s| (s.above_initial_mev, s.reaction_coordinate_rad, s.negative_modes))
+                    .collect::<Vec<_>>(),
+                o.rejected_paths,
+                o.warnings
+            );
+        }
+        assert!((f - a).abs() < 1e-11 * f, "ring {ring}, J {shells:?}, D {d}: {f} {a}");
+    }
+}
+
+#[test]
+fn the_same_chain_told_in_continuum_terms_has_the_same_barrier() {
+    let cell = [1.5, 4.0, 2.0];
+    let chain = Chain {
+        spacing: Some(Length(cell[0])),
+        cross_section: Some([Length(cell[1]), Length(cell[2])]),
+        ..Chain::open(40)
+    };
+    let micro = [
+        r#"{"exchange": {"A": "10 pJ/m"}}"#,
+        r#"{"anisotropy": {"K": "0.4 MJ/m^3", "axis": [0, 0, 1]}}"#,
+        r#"{"dmi": {"D": "0.8 mJ/m^2", "direction": [0, 1, 0]}}"#,
+        r#"{"zeeman": {"B": ["0 T", "0 T", "-20 mT"]}}"#,
+    ];
+    // J = 2 A S/a, K V, D S, Ms V in meV and μ_B
+    let e = 1.602176634e-22;
+    let (section, volume) = (cell[1] * cell[2] * 1e-18, cell[0] * cell[1] * cell[2] * 1e-27);
+    let atomic = [
+        format!(r#"{{"exchange": {{"J": ["{} meV"]}}}}"#, 2.0 * 10e-12 * section / (cell[0] * 1e-9) / e),
+        format!(r#"{{"anisotropy": {{"K": "{} meV", "axis": [0, 0, 1]}}}}"#, 0.4e6 * volume / e),
+        format!(r#"{{"dmi": {{"D": "{} meV", "direction": [0, 1, 0]}}}}"#, 0.8e-3 * section / e),
+        r#"{"zeeman": {"B": ["0 T", "0 T", "-20 mT"]}}"#.to_string(),
+    ];
+    let moment = Moment(1e6 * volume / (5.7883817982e-5 * 1.602176634e-19));
+    let barrier = |texts: &[&str], medium: Medium| {
+        let term = |t: &&str| serde_json::from_str::<TermSpec>(t).expect(t).member().build(&medium).expect(t);
+        let h = Hamiltonian::new(&chain, texts.iter().map(term).collect()).expect("a chain");
+        let up = Spins::uniform(40, Direction::Z);
+        forward(&solve(&Problem::new(chain.clone(), h, up, Spins::uniform(40, Direction::Z.reversed()))))
+    };
+    let si = barrier(&micro, Medium { chain: &chain, moment: None, saturation: Some(Magnetisation(1e6)) });
+    let texts: Vec<&str> = atomic.iter().map(String::as_str).collect();
+    let atomistic = barrier(&texts, Medium { chain: &chain, moment: Some(moment), saturation: None });
+    assert!((si - atomistic).abs() < 1e-12 * si, "{si} {atomistic}");
+}
+
+#[test]
+fn results_are_the_same_to_the_bit_in_every_run_and_for_any_number_of_threads() {
+    let problem = || Build::open(60).easy(0.05).hard(0.02).field([0.01, 0.0, -0.03]).reversal();
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+        pool.install(|| solve(&problem()))
+    };
+    let print = |o: &Outcome| {
+        format!("{:?} {:?} {:?} {:?} {:?}", o.path, o.barrier, o.saddles, o.history, o.work.force_evaluations)
+    };
+    let first = print(&on(1));
+    assert_eq!(first, print(&on(1)));
+    assert_eq!(first, print(&on(2)));
+    assert_eq!(first, print(&on(3)));
+}
+
+#[test]
+fn a_wall_hops_in_the_peierls_regime_by_one_and_by_several_sites() {
+    // barriers of one hop in long chains, to 16 digits, by Newton's method on the exact gradient
+    for (k, expected) in
+        [(0.5, 0.03758763335845837), (0.8, 0.3722670355367258), (1.0, 0.6379634091095359), (1.5, 1.237367479663958)]
+    {
+        for sites in [1, 3, 5] {
+            let build = Build::open(40).easy(k);
+            let width = (0.5f64 / k).sqrt();
+            let wall = |center: f64| build.wall(center, width, Direction::X);
+            let (a, b) = (wall(17.5), wall(17.5 + sites as f64));
+            let outcome = solve(&build.problem(a, b));
+            assert!(outcome.certified, "K = {k}, {sites} sites: {:?}", outcome.warnings);
+            assert_eq!(outcome.saddles.len(), sites, "K = {k}");
+            assert_eq!(outcome.intermediate_minima.len(), sites - 1, "K = {k}");
+            assert!((forward(&outcome) - expected).abs() < 1e-9, "K = {k}, {sites} sites: {}", forward(&outcome));
+        }
+    }
+}
+
+#[test]
+fn without_a_barrier_the_barrier_is_zero_and_the_reason_is_said() {
+    // an easy plane: turning within it costs nothing
+    let outcome =
+        solve(&Build::open(8).hard(0.1).problem(Spins::uniform(8, Direction::Z), Spins::uniform(8, Direction::Y)));
+    assert!(forward(&outcome).abs() < 1e-12);
+    assert!(
+        !outcome.certified && outcome.stop_reason.contains("no barrier"),
+        "{} {:?}",
+        outcome.stop_reason,
+        outcome.warnings
+    );
+}
+
+#[test]
+fn ends_that_relax_to_one_minimum_give_no_barrier_but_the_reason() {
+    let tilted = Spins::uniform(5, Direction::new([0.3, 0.0, 1.0]).expect("a direction"));
+    let outcome = solve(&Build::open(5).easy(0.1).problem(Spins::uniform(5, Direction::Z), tilted));
+    assert!(outcome.barrier.is_none() && !outcome.converged);
+    assert!(outcome.stop_reason.contains("same minimum"), "{}", outcome.stop_reason);
+}
+
+/// A random chain: open or ring, ferro- or antiferromagnetic, with disorder, DMI and fields of any kind.
+fn random_chain(r: &mut ChaCha8Rng) -> (Problem, String) {
+    let n = r.random_range(5..=60);
+    let ring = r.random_range(0..3) == 0;
+    let mut build = if ring { Build::ring(n) } else { Build::open(n) };
+    let chain = build.chain.clone();
+    let antiferro = r.random_range(0..4) == 0 && (!ring || n % 2 == 0);
+    let k: f64 = libm::exp(r.random_range(-4.6..-0.5));
+    let mut exchange = Exchange::uniform(&chain, &[if antiferro { -1.0 } else { 1.0 }]);
+    let mut easy = Anisotropy::uniform(n, k, Direction::Z);
+    let mut dmi = Dmi::uniform(&chain, 0.0, Direction::Y);
+    let kind = r.random_range(0..6);
+    if kind % 2 == 1 {
+        exchange.shells[0].iter_mut().for_each(|j| *j *= r.random_range(0.4..1.6));
+        easy.k.iter_mut().for_each(|k| *k *= r.random_range(0.3..1.7));
+    }
+    if kind >= 3 {
+        let scale = 0.5 * 4.0 / std::f64::consts::PI * (0.5 * k).sqrt();
+        for i in 0..chain.bonds(1) {
+            dmi.d[i] = scale * r.random_range(0.0..1.0);
+        }
+    }
+    let mut field = [0.0; 3];
+    if kind == 2 || kind == 5 {
+        field = [0; 3].map(|_| 0.3 * k * r.random_range(-1.0..1.0));
+    }
+    build.terms = vec![Box::new(exchange), Box::new(easy), Box::new(dmi), Box::new(Zeeman::uniform(n, field))];
+    let text = format!("N {n} ring {ring} antiferro {antiferro} K {k:.4} kind {kind}");
+    let problem = match antiferro {
+        true => build.problem(staggered(n, 1.0), staggered(n, -1.0)),
+        false => build.reversal(),
+    };
+    (problem, text)
+}
+
+/// Eigenvalues of the Riemannian Hessian of image k, by a dense solver.
+fn dense_eigenvalues(problem: &Problem, m: &[f64]) -> (Vec<f64>, f64) {
+    let h = &problem.hamiltonian;
+    let mut g = vec![0.0; m.len()];
+    h.energy_gradient(m, &mut g);
+    let matrix = assemble(h, m, &g, &TangentBasis::at(m));
+    let n = matrix.order();
+    let full: Vec<f64> = (0..n * n).map(|k| matrix.get(k / n, k % n)).collect();
+    (eigenvalues_symmetric(&full, n), matrix.norm1())
+}
+
+#[test]
+fn two_hundred_random_chains_give_no_nan_and_no_wrong_claim() {
+    let mut r = ChaCha8Rng::seed_from_u64(2026);
+    let mut certified = 0;
+    for _ in 0..200 {
+        let (problem, text) = random_chain(&mut r);
+        let outcome = solve(&problem);
+        println!(
+            "{text}: {} {:.2} s, {} evaluations, {} saddles, {}",
+            outcome.certified,
+            outcome.work.seconds,
+            outcome.work.force_evaluations,
+            outcome.saddles.len(),
+            outcome.stop_reason
+        );
+        for m in outcome.path.to_image_site_xyz().rows() {
+            assert!((m.dot(&m) - 1.0).abs() < 1e-14, "{text}: a spin of length {}", m.dot(&m).sqrt());
+        }
+        let finite = outcome.barrier.is_none_or(|b| b.forward_mev.is_finite() && b.backward_mev.is_finite());
+        assert!(finite, "{text}");
+        if !outcome.certified {
+            println!("{text}: {} {:?}", outcome.stop_reason, outcome.warnings);
+            continue;
+        }
+        certified += 1;
+        let reference = problem.hamiltonian.energy_mev(outcome.path.image(0));
+        for s in &outcome.saddles {
+            let (values, norm) = dense_eigenvalues(&problem, s.spins.as_slice());
+            // a dense solver finds exact zero modes to some eps·‖H‖ only
+            let floor = 1e-13 * norm;
+            let negative = values.iter().filter(|v| **v < -floor).count();
+            assert!(negative <= 1, "{text}: {negative} negative modes {:?}", &values[..3]);
+            assert!(s.max_torque_mev.expect("a torque") <= 1e-12 * norm, "{text}");
+            let energy = problem.hamiltonian.energy_mev(s.spins.as_slice());
+            assert!((energy - reference - s.above_initial_mev).abs() < 1e-11, "{text}");
+        }
+        let top = outcome.saddles.iter().map(|s| s.above_initial_mev).fold(f64::MIN, f64::max);
+        assert!((top - forward(&outcome)).abs() < 1e-12, "{text}");
+    }
+    println!("{certified} of 200 certified");
+    assert!(certified >= 190, "only {certified} of 200 were certified");
+}
