@@ -6,14 +6,17 @@
 //! ```text
 //! cargo run --release --example 01_slerp_versus_nlerp
 //! ```
-//! prints a table and writes `results/gallery/01_slerp_versus_nlerp/angular_velocity.csv`.
+//! prints a table and writes `results/gallery/01_slerp_versus_nlerp/angular_velocity.csv`, `.svg` and `.png`.
 
 use spinneb::geometry::{Direction, Vector, angular_velocity, lerp, nlerp, slerp, unevenness, vector::norm};
+use spinneb::output::canvas::{BLACK, LinePlot, ORANGE, SKY, Series, VERMILLION};
 use std::fmt::Write;
 use std::path::Path;
 
 const ANGLES_DEG: [f64; 4] = [30.0, 90.0, 150.0, 179.0];
 const STEPS: usize = 1000;
+/// Only every so many steps are drawn and written.
+const EVERY: usize = 20;
 const FOLDER: &str = "results/gallery/01_slerp_versus_nlerp";
 
 /// One way from one spin to the other.
@@ -32,7 +35,10 @@ fn main() -> anyhow::Result<()> {
     std::fs::create_dir_all(FOLDER)?;
     let file = Path::new(FOLDER).join("angular_velocity.csv");
     std::fs::write(&file, csv(&curves))?;
-    println!("\nwritten: {}", file.display());
+    let canvas = figure(&curves).draw()?;
+    std::fs::write(file.with_extension("svg"), canvas.svg()?)?;
+    std::fs::write(file.with_extension("png"), canvas.png()?)?;
+    println!("\nwritten: {}, .svg and .png", file.display());
     Ok(())
 }
 
@@ -66,6 +72,30 @@ fn curve(method: &'static str, angle_deg: f64, at: impl Fn(f64) -> Vector) -> Cu
     }
 }
 
+/// slerp and nlerp; lerp turns as nlerp does. The largest angle is left to the table: its peak would dwarf the rest.
+fn figure(curves: &[Curve]) -> LinePlot {
+    let colours = [SKY, ORANGE, VERMILLION];
+    let mut plot = LinePlot::new("Fraction t of the way", "Angular velocity / mean").x_range(0.0, 1.0);
+    let drawn = curves.iter().filter(|c| c.angle_deg < 179.0 && c.method != "lerp");
+    for c in drawn {
+        let points: Vec<(f64, f64)> = c
+            .relative_velocity
+            .iter()
+            .enumerate()
+            .step_by(EVERY)
+            .map(|(k, v)| ((k as f64 + 0.5) / STEPS as f64, *v))
+            .collect();
+        let index = ANGLES_DEG.iter().position(|a| *a == c.angle_deg).unwrap_or(0);
+        let series = Series::line(points);
+        if c.method == "nlerp" {
+            plot = plot.with(series.colour(colours[index]).label(format!("nlerp, {:.0}°", c.angle_deg)));
+        } else if index == 0 {
+            plot = plot.with(series.colour(BLACK).label("slerp, any angle").dash(6.0, 4.0));
+        }
+    }
+    plot
+}
+
 fn table(curves: &[Curve]) -> String {
     let mut text =
         String::from("angle   method   ω/mean, first step   in the middle    max/min − 1   shortest vector\n");
@@ -89,7 +119,7 @@ fn csv(curves: &[Curve]) -> String {
     for c in curves {
         let _ = write!(text, ",{}_{}deg", c.method, c.angle_deg);
     }
-    for k in 0..STEPS {
+    for k in (0..STEPS).step_by(EVERY) {
         let _ = write!(text, "\n{}", (k as f64 + 0.5) / STEPS as f64);
         for c in curves {
             let _ = write!(text, ",{:.6}", c.relative_velocity[k]);
