@@ -15,7 +15,9 @@ use std::path::Path;
 
 const ANGLES_DEG: [f64; 4] = [30.0, 90.0, 150.0, 179.0];
 const STEPS: usize = 1000;
-/// Only every so many steps are drawn and written.
+/// Every so many steps are drawn,
+const DRAWN: usize = 4;
+/// and written to the table.
 const EVERY: usize = 20;
 const FOLDER: &str = "results/gallery/01_slerp_versus_nlerp";
 
@@ -82,7 +84,7 @@ fn figure(curves: &[Curve]) -> LinePlot {
             .relative_velocity
             .iter()
             .enumerate()
-            .step_by(EVERY)
+            .step_by(DRAWN)
             .map(|(k, v)| ((k as f64 + 0.5) / STEPS as f64, *v))
             .collect();
         let index = ANGLES_DEG.iter().position(|a| *a == c.angle_deg).unwrap_or(0);

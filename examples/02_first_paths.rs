@@ -136,7 +136,9 @@ fn row(case: &Case, start: &'static str, guess: GuessSpec, a: &Spins, b: &Spins)
     let (low, high) = spacing.iter().fold((f64::MAX, 0.0f64), |(l, h), s| (l.min(*s), h.max(*s)));
     let h = &of.hamiltonian;
     let energies: Vec<f64> = (0..IMAGES).map(|k| h.difference_mev(path.image(k), path.image(0))).collect();
-    let profile = path.reaction_coordinate().into_iter().zip(energies.iter().copied()).collect();
+    let fine: Path = guess.member().path(a, b, 129, &context)?;
+    let energy = |k: usize| h.difference_mev(fine.image(k), fine.image(0));
+    let profile = fine.reaction_coordinate().into_iter().enumerate().map(|(k, s)| (s, energy(k))).collect();
     let shortest = if start == "lerp" { component_sag(a, b) } else { 1.0 };
     Ok(Row {
         problem: case.name,
@@ -208,7 +210,7 @@ fn table(rows: &[Row]) -> String {
 
 /// First energies along the path; nlerp and lerp pass through the slerp's points at other paces.
 fn figure(rows: &[Row]) -> LinePlot {
-    let mut plot = LinePlot::new("Reaction coordinate (rad)", "First E − E_initial (meV)");
+    let mut plot = LinePlot::new("Reaction coordinate (rad)", "First energy (meV)");
     for (r, colour) in rows.iter().filter(|r| ["slerp", "rotation"].contains(&r.start)).zip([BLUE, VERMILLION]) {
         plot = plot.with(Series::line(r.profile.clone()).colour(colour).label(r.start));
     }

@@ -5,6 +5,7 @@ use spinneb::drive::{
     Work,
 };
 use spinneb::error::{Error, Result};
+use spinneb::geometry::Direction;
 use spinneb::output::disk::{self, Destination, File};
 use spinneb::output::{
     EnergyPath, EnergyPathPlot, Format, HistoryCsv, KINDS, PathCsv, Picture, ProfileCsv, RunReport, SpinsPlot, Summary,
@@ -49,6 +50,7 @@ fn outcome(path: Path, length: f64, energy: impl Fn(f64) -> f64) -> Outcome {
     let top = saddles.iter().map(|s| s.above_initial_mev).max_by(f64::total_cmp);
     let end = |e: f64| EndPoint {
         energy_mev: e - 500.0,
+
         max_torque_mev: 1e-13,
         negative_modes: Some(0),
         zero_modes: Some(1),
@@ -86,6 +88,7 @@ fn saddle(p: ProfilePoint, images: usize, length: f64) -> SaddlePoint {
         above_initial_mev: p.above_initial_mev,
         reaction_coordinate_rad: p.reaction_coordinate_rad,
         image: (p.reaction_coordinate_rad / length * (images - 1) as f64).round() as usize,
+        spins: Spins::uniform(1, Direction::Z),
         max_torque_mev: Some(1e-13),
         negative_modes: Some(1),
         zero_modes: Some(0),
@@ -105,6 +108,7 @@ fn tiny() -> Outcome {
         above_initial_mev: 0.5,
         reaction_coordinate_rad: 1.0,
         image: 1,
+        spins: Spins::uniform(1, Direction::Z),
         max_torque_mev: None,
         negative_modes: Some(1),
         zero_modes: None,
