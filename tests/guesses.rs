@@ -283,6 +283,13 @@ fn only_spins_that_move_make_the_way_of_a_swept_wall() {
     let middle = p.spins(4).vectors();
     assert!((0..20).all(|i| middle[i][2] == 1.0) && (40..100).all(|i| middle[i][2] == -1.0));
     assert!(middle[21][2] > 0.99 && middle[38][2] < -0.99, "the wall is not halfway: {middle:?}");
+    // the center is that of the spins that move
+    let p = path(r#"{"sweep": {"from": "center", "width": 4}}"#, &a, &b, 9);
+    let middle = p.spins(4).vectors();
+    assert!(
+        middle[29][2] > 0.99 && middle[30][2] > 0.99 && middle[20][2] < -0.99 && middle[39][2] < -0.99,
+        "{middle:?}"
+    );
 }
 
 #[test]
