@@ -3,8 +3,10 @@
 //! ```text
 //! φ_i = Φ (2/π) atan exp((i − center)/δ)      from the left direction (φ = 0) to the right one (φ = Φ)
 //! ```
-//! the profile of a wall in a uniaxial chain, δ = √(J/2K) sites (Landau, Lifshitz 1935). The spins turn in the plane of
-//! `left` and `through`; the right direction lies in that plane or is reached on its own great circle.
+//! the profile of a wall in a uniaxial chain, δ = √(J/2K) sites (L. Landau, E. Lifshitz, Phys. Z. Sowjetunion 8, 153 (1935)).
+//! The spins turn on the great circle of the two directions, the way on which `through` lies (the shorter one if absent).
+//! Opposite directions, 3 rad apart or more, have no great circle of their own: there the spins turn by way of the part of
+//! `through` normal to them.
 
 use super::{StateBuilder, StateContext};
 use crate::error::{Error, Result};
@@ -12,6 +14,12 @@ use crate::geometry::{Arc, Direction, Vector, vector};
 use crate::registry::Described;
 use serde::Deserialize;
 use std::f64::consts::FRAC_PI_2;
+
+/// Domains farther apart than this (rad) are opposite.
+const OPPOSITE: f64 = 3.0;
+
+/// The least sine between the domains' line and a direction across it.
+const ACROSS: f64 = 1e-6;
 
 /// `{"domain_wall": {"center": 39.5}}`.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -28,7 +36,7 @@ pub struct DomainWall {
     /// Right of the wall; −z if absent.
     #[serde(default)]
     pub right: Option<Direction>,
-    /// Where the wall passes between opposite domains; +x if absent.
+    /// Where the wall passes; between opposite domains +x if absent, or +y where they lie along x.
     #[serde(default)]
     pub through: Option<Direction>,
     /// Reverse odd sites.
@@ -53,8 +61,7 @@ impl StateBuilder for DomainWall {
         }
         let left = self.left.unwrap_or(Direction::Z).vector();
         let right = self.right.unwrap_or(Direction::Z.reversed()).vector();
-        let through = self.through.unwrap_or(Direction::X).vector();
-        let arc = Arc::new(left, right, turning_axis(left, right, through)?);
+        let ways = turn(left, right, self.through.map(Direction::vector))?;
         let fraction = |i: usize| {
             let x = i as f64 - self.center;
             if width == 0.0 {
@@ -68,7 +75,7 @@ impl StateBuilder for DomainWall {
             }
             libm::atan(libm::exp((x / width).clamp(-700.0, 700.0))) / FRAC_PI_2
         };
-        Ok((0..context.chain.sites).map(|i| arc.at(fraction(i))).collect())
+        Ok((0..context.chain.sites).map(|i| at(&ways, fraction(i))).collect())
     }
 
     fn staggered(&self) -> bool {
@@ -76,14 +83,34 @@ impl StateBuilder for DomainWall {
     }
 }
 
-/// The axis left × through about which a spin turns from left through `through` towards right.
-fn turning_axis(left: Vector, right: Vector, through: Vector) -> Result<Direction> {
-    let axis = vector::cross(left, through);
-    if vector::norm(axis) > 1e-9 {
-        return Direction::new(axis);
-    }
-    if vector::norm(vector::add(left, right)) > 1e-6 {
-        return Ok(Direction::X);
-    }
-    Err(Error::invalid("through", "the wall is to pass through a domain's own direction: give a direction across it"))
+/// The two halves of the turn from left to right.
+fn turn(left: Vector, right: Vector, through: Option<Vector>) -> Result<[Arc; 2]> {
+    let short = Arc::new(left, right, Direction::X);
+    let middle = if short.angle() < OPPOSITE {
+        let behind = through.is_some_and(|t| vector::dot(t, short.middle()) < 0.0);
+        vector::scale(if behind { -1.0 } else { 1.0 }, short.middle())
+    } else {
+        let line = vector::unit_or(vector::sub(left, right), left);
+        let across = |v: Vector| vector::normal_part(v, line);
+        let default = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(across);
+        let default = if vector::norm(default[0]) > 0.1 { default[0] } else { default[1] };
+        let middle = through.map_or(default, across);
+        if vector::norm(middle) < ACROSS {
+            return Err(along_a_domain());
+        }
+        vector::unit_or(middle, line)
+    };
+    let halves = [Arc::new(left, middle, Direction::X), Arc::new(middle, right, Direction::X)];
+    // a wall all the way round, between equal domains, has no plane
+    if halves[0].angle() >= OPPOSITE { Err(along_a_domain()) } else { Ok(halves) }
+}
+
+/// The spin at a fraction of the turn.
+fn at(halves: &[Arc; 2], fraction: f64) -> Vector {
+    if fraction <= 0.5 { halves[0].at(2.0 * fraction) } else { halves[1].at(2.0 * fraction - 1.0) }
+}
+
+fn along_a_domain() -> Error {
+    let message = "the wall is to pass through a domain's own direction: give a direction across it";
+    Error::invalid("through", message)
 }

@@ -14,7 +14,7 @@ pub use spiral::Spiral;
 pub use uniform::Uniform;
 pub use vectors::Vectors;
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::geometry::{Vector, vector};
 use crate::lattice::Chain;
 use crate::registry::family;
@@ -68,20 +68,4 @@ impl StateSpec {
         }
         Spins::from_vectors(&vectors)
     }
-}
-
-/// An error unless every frozen spin is the same in both states.
-pub fn frozen_agree(chain: &Chain, initial: &Spins, final_state: &Spins) -> Result<()> {
-    for (k, f) in chain.frozen.iter().enumerate() {
-        for i in f.sites.indices(chain.sites, "site")? {
-            let (a, b) = (initial.get(i), final_state.get(i));
-            if vector::norm(vector::sub(a, b)) > 1e-12 {
-                let message = format!(
-                    "site {i} is frozen, but it is {a:?} in the initial and {b:?} in the final state: give it a \"direction\" or let the states agree"
-                );
-                return Err(Error::invalid(format!("lattice.chain.frozen[{k}]"), message));
-            }
-        }
-    }
-    Ok(())
 }

@@ -1,43 +1,123 @@
-//! Paths on which every spin moves along its own great circle, each by its own clock.
+//! Paths on which every spin goes its own way from a to b, each by its own clock.
+//!
+//! The way is the great circle. Where the ends are (nearly) opposite its plane is undefined, or decided by a canting of the
+//! ends that means nothing; all such spins turn about one axis instead, right-handed, so that neighbours stay together:
+//! parallel ones parallel, antiparallel ones antiparallel.
 
-use crate::geometry::{Arc, Direction, vector};
+use crate::field::ComponentsMut;
+use crate::geometry::{Arc, Direction, Vector, angle, vector};
 use crate::path::Path;
 use crate::spins::Spins;
+use rayon::prelude::*;
 
-/// Ends whose spins are farther apart than this (rad) turn in the sense of the axis, not in their own plane.
-const NEARLY_OPPOSITE: f64 = 3.0;
+/// Ends farther apart than this (rad) are nearly opposite: they turn about the common axis, not in their own plane.
+pub const NEARLY_OPPOSITE: f64 = 3.0;
 
-/// The arc of each spin from a to b. A spin that is nearly reversed goes by the waypoint that a turn about `axis` gives, so that
-/// neighbours with slightly different ends turn together.
-pub fn arcs(a: &Spins, b: &Spins, axis: Direction) -> Vec<[Arc; 2]> {
-    let one = |i: usize| {
-        let (p, q) = (a.get(i), b.get(i));
-        let direct = Arc::new(p, q, axis);
-        if direct.angle() < NEARLY_OPPOSITE {
-            let middle = direct.middle();
-            return [Arc::new(p, middle, axis), Arc::new(middle, q, axis)];
-        }
-        // the middle of a turn about the axis between the exactly opposite ends nearest to these
-        let line = vector::unit_or(vector::sub(p, q), p);
-        let middle = Arc::new(line, line.map(|c| -c), axis).middle();
-        [Arc::new(p, middle, axis), Arc::new(middle, q, axis)]
-    };
-    (0..a.sites()).map(one).collect()
+/// An axis serves spins whose line has at least this sine with it; the sense of those along it would be left to chance.
+const ACROSS: f64 = 0.1;
+
+/// The way of one spin.
+#[derive(Clone, Copy, Debug)]
+pub enum Way {
+    /// It stays.
+    Rest(Vector),
+    /// Along its great circle.
+    Direct(Arc),
+    /// In two halves, by the middle of a turn about the common axis.
+    Around([Arc; 2]),
 }
 
-/// The path with spin i at fraction `clock(t, i)` of its way, t from 0 to 1 over the images; ends exact.
-pub fn clocked(a: &Spins, b: &Spins, images: usize, axis: Direction, clock: impl Fn(f64, usize) -> f64 + Sync) -> Path {
-    let arcs = arcs(a, b, axis);
-    let last = images - 1;
+impl Way {
+    /// From p to q; nearly opposite ones turn right-handed about `axis`.
+    pub fn new(p: Vector, q: Vector, axis: Direction) -> Way {
+        if p == q {
+            return Way::Rest(p);
+        }
+        if angle(p, q) < NEARLY_OPPOSITE {
+            return Way::Direct(Arc::new(p, q, axis));
+        }
+        let line = line(p, q);
+        let middle = Arc::new(line, line.map(|c| -c), axis).middle();
+        Way::Around([Arc::new(p, middle, axis), Arc::new(middle, q, axis)])
+    }
+
+    /// The spin at fraction u of its way, 0 to 1, at constant angular velocity; the ends are exact.
+    pub fn at(&self, u: f64) -> Vector {
+        match self {
+            Way::Rest(p) => *p,
+            Way::Direct(arc) => arc.at(u),
+            Way::Around([first, _]) if u <= 0.5 => first.at(2.0 * u),
+            Way::Around([_, second]) => second.at(2.0 * u - 1.0),
+        }
+    }
+
+    /// Its length (rad), up to 2π − 3 where it goes around.
+    pub fn length(&self) -> f64 {
+        match self {
+            Way::Rest(_) => 0.0,
+            Way::Direct(arc) => arc.angle(),
+            Way::Around([first, second]) => first.angle() + second.angle(),
+        }
+    }
+}
+
+/// The direction halfway between p and −q: that of p where the two are opposite.
+fn line(p: Vector, q: Vector) -> Vector {
+    vector::unit_or(vector::sub(p, q), p)
+}
+
+/// The ways of all spins, the nearly opposite ones about one axis: [`common_axis`].
+pub fn ways(a: &Spins, b: &Spins, axis: Direction) -> Vec<Way> {
+    let axis = common_axis(a, b, axis);
+    (0..a.sites()).into_par_iter().map(|i| Way::new(a.get(i), b.get(i), axis)).collect()
+}
+
+/// The axis about which all nearly opposite spins turn: the given one, unless one of these spins lies along it. Then it is the
+/// next Cartesian axis (x → y → z → x) across all of them, or else the one that stays farthest from them.
+pub fn common_axis(a: &Spins, b: &Spins, axis: Direction) -> Direction {
+    let opposite = |i: &usize| angle(a.get(*i), b.get(*i)) >= NEARLY_OPPOSITE;
+    let lines: Vec<Vector> =
+        (0..a.sites()).into_par_iter().filter(opposite).map(|i| line(a.get(i), b.get(i))).collect();
+    let closest = |k: Direction| {
+        let sine = |l: &Vector| vector::norm(vector::cross(*l, k.vector()));
+        lines.iter().map(sine).fold(f64::INFINITY, f64::min)
+    };
+    let candidates = [axis, next_axis(axis), next_axis(next_axis(axis))];
+    let mut best = (axis, closest(axis));
+    for k in candidates {
+        let sine = closest(k);
+        if sine >= ACROSS {
+            return k;
+        }
+        if sine > best.1 {
+            best = (k, sine);
+        }
+    }
+    best.0
+}
+
+/// The Cartesian axis after the one the given axis is nearest to, with its sign.
+pub(super) fn next_axis(axis: Direction) -> Direction {
+    let d = axis.vector();
+    let nearest = (1..3).fold(0, |n, c| if d[c].abs() > d[n].abs() { c } else { n });
+    let next = [Direction::X, Direction::Y, Direction::Z][(nearest + 1) % 3];
+    if d[nearest] < 0.0 { next.reversed() } else { next }
+}
+
+/// The path with spin i at fraction `clock(k, i)` of its way in image k, 0 to 1; ends exact.
+pub fn clocked(a: &Spins, b: &Spins, images: usize, ways: &[Way], clock: impl Fn(usize, usize) -> f64 + Sync) -> Path {
     Path::build(images, a.sites(), |k, out| {
-        if k == 0 || k == last {
+        if k == 0 || k + 1 == images {
             return out.copy_from_slice(if k == 0 { a.as_slice() } else { b.as_slice() });
         }
-        let t = k as f64 / last as f64;
-        let mut out = crate::field::ComponentsMut::new(out);
-        for (i, [first, second]) in arcs.iter().enumerate() {
-            let u = clock(t, i);
-            out.set(i, if u <= 0.5 { first.at(2.0 * u) } else { second.at(2.0 * u - 1.0) });
+        let mut out = ComponentsMut::new(out);
+        for (i, way) in ways.iter().enumerate() {
+            out.set(i, way.at(clock(k, i)));
         }
     })
+}
+
+/// Image k's fraction of a path of `images` images, from 0 to 1.
+pub(super) fn fraction(k: usize, images: usize) -> f64 {
+    k as f64 / images.saturating_sub(1).max(1) as f64
 }

@@ -1,6 +1,8 @@
-//! Every spin along its great circle, all at the same pace: the shortest path in the product of spheres.
+//! Every spin along its great circle (slerp), each at a constant pace: the shortest path in the product of spheres, of length
+//! √Σθ². K. Shoemake, SIGGRAPH 1985, doi:10.1145/325334.325242. Nearly opposite spins (3 rad apart or more) turn about one
+//! axis, which makes their way longer by 2(π − θ) at the most.
 
-use super::clock::clocked;
+use super::clock::{clocked, fraction, ways};
 use super::{FirstGuess, GuessContext};
 use crate::error::Result;
 use crate::geometry::Direction;
@@ -26,6 +28,7 @@ impl Described for Geodesic {
 
 impl FirstGuess for Geodesic {
     fn path(&self, a: &Spins, b: &Spins, images: usize, context: &GuessContext) -> Result<Path> {
-        Ok(clocked(a, b, images, self.axis.unwrap_or(context.default_axis), |t, _| t))
+        let ways = ways(a, b, self.axis.unwrap_or(context.default_axis));
+        Ok(clocked(a, b, images, &ways, |k, _| fraction(k, images)))
     }
 }

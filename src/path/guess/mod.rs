@@ -12,7 +12,7 @@ mod smooth;
 mod sweep;
 mod waypoints;
 
-pub use clock::arcs;
+pub use clock::{NEARLY_OPPOSITE, Way, common_axis, ways};
 pub use geodesic::Geodesic;
 pub use nlerp::{Nlerp, component_sag};
 pub use noise::{NoiseSpec, add_noise};
@@ -24,6 +24,7 @@ pub use waypoints::Waypoints;
 use super::Path;
 use crate::error::Result;
 use crate::geometry::Direction;
+use crate::lattice::Chain;
 use crate::registry::family;
 use crate::spins::Spins;
 use crate::state::StateContext;
@@ -50,6 +51,17 @@ pub struct GuessContext<'a> {
 
 /// A first path.
 pub trait FirstGuess {
-    /// A path of `images` images (at least two) from a to b, both kept exactly.
+    /// A path of `images` images (at least two) from a to b, states of the same chain; both are kept exactly.
     fn path(&self, a: &Spins, b: &Spins, images: usize, context: &GuessContext) -> Result<Path>;
+}
+
+/// Which sites are frozen.
+fn frozen(chain: &Chain) -> Vec<bool> {
+    let mut frozen = vec![false; chain.sites];
+    for f in &chain.frozen {
+        for i in f.sites.indices(chain.sites, "site").unwrap_or_default() {
+            frozen[i] = true;
+        }
+    }
+    frozen
 }

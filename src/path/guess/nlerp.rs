@@ -1,12 +1,19 @@
 //! Normalised component-wise interpolation, to compare with: the geodesic's points at uneven speed.
+//!
+//! ```text
+//! ((1−t) a + t b)/|…| is the great circle's point at fraction ½ − atan((1 − 2t) tan h)/2h,   h = θ/2
+//! ```
+//! h = π/2 where a spin goes around by a common axis: it waits at one end, then at the other.
 
+use super::clock::{clocked, fraction, ways};
 use super::{FirstGuess, GuessContext};
 use crate::error::Result;
-use crate::geometry::{Direction, lerp, nlerp, vector};
+use crate::geometry::{Direction, lerp, vector};
 use crate::path::Path;
 use crate::registry::Described;
 use crate::spins::Spins;
 use serde::Deserialize;
+use std::f64::consts::FRAC_PI_2;
 
 /// `{"nlerp": {}}`.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
@@ -25,18 +32,18 @@ impl Described for Nlerp {
 
 impl FirstGuess for Nlerp {
     fn path(&self, a: &Spins, b: &Spins, images: usize, context: &GuessContext) -> Result<Path> {
-        let axis = self.axis.unwrap_or(context.default_axis);
-        let last = images - 1;
-        Ok(Path::build(images, a.sites(), |k, out| {
-            if k == 0 || k == last {
-                return out.copy_from_slice(if k == 0 { a.as_slice() } else { b.as_slice() });
-            }
-            let mut out = crate::field::ComponentsMut::new(out);
-            for i in 0..a.sites() {
-                out.set(i, nlerp(a.get(i), b.get(i), k as f64 / last as f64, axis));
-            }
-        }))
+        let ways = ways(a, b, self.axis.unwrap_or(context.default_axis));
+        Ok(clocked(a, b, images, &ways, |k, i| uneven(fraction(k, images), 0.5 * ways[i].length())))
     }
+}
+
+/// The fraction of an arc of half-angle h that the normalised lerp has reached at t.
+fn uneven(t: f64, h: f64) -> f64 {
+    let h = h.min(FRAC_PI_2);
+    if h < 1e-4 || t == 0.5 {
+        return t;
+    }
+    0.5 - libm::atan((1.0 - 2.0 * t) * libm::tan(h)) / (2.0 * h)
 }
 
 /// The shortest vector |m| that component-wise interpolation without normalising passes through: 1 is on the sphere, 0 its

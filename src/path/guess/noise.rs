@@ -1,11 +1,18 @@
-//! Smooth seeded noise on a path: sin πs along it, a few cosines along the chain, tangent to the spheres.
+//! Smooth seeded noise on a path, tangent to the spheres.
+//!
+//! ```text
+//! v_i(t) = sin πt Σ_j w_j cos(π j (i + ½)/N),  j = 0 … 4,      m ← Exp_m(v − (v·m) m)
+//! ```
+//! with w_j normally distributed: G. E. P. Box, M. E. Muller, Ann. Math. Statist. 29, 610 (1958), doi:10.1214/aoms/1177706645.
 
+use super::clock::fraction;
 use crate::field::{Components, ComponentsMut};
-use crate::geometry::{exp, vector};
+use crate::geometry::{Vector, exp, vector};
 use crate::lattice::Chain;
 use crate::path::Path;
 use crate::units::Angle;
 use rand::{RngExt, SeedableRng};
+use rayon::prelude::*;
 use serde::Deserialize;
 use std::f64::consts::{PI, TAU};
 
@@ -29,27 +36,28 @@ pub fn add_noise(path: &Path, noise: &NoiseSpec, chain: &Chain) -> Path {
         let (u, v): (f64, f64) = (r.random_range(f64::MIN_POSITIVE..1.0), r.random_range(0.0..TAU));
         (-2.0 * libm::log(u)).sqrt() * libm::cos(v)
     };
-    let weights: Vec<[f64; 3]> = (0..MODES).map(|_| [0; 3].map(|_| noise.amplitude.0 * gaussian())).collect();
-    let mut frozen = vec![false; path.sites()];
-    for f in &chain.frozen {
-        for i in f.sites.indices(chain.sites, "site").unwrap_or_default() {
-            frozen[i] = true;
-        }
-    }
-    let last = path.images() - 1;
-    Path::build(path.images(), path.sites(), |k, out| {
+    let weights: Vec<Vector> = (0..MODES).map(|_| [0; 3].map(|_| noise.amplitude.0 * gaussian())).collect();
+    let n = path.sites();
+    let frozen = super::frozen(chain);
+    let field: Vec<Vector> = (0..n)
+        .into_par_iter()
+        .map(|i| {
+            let x = (i as f64 + 0.5) / n as f64;
+            let mode = |(j, w): (usize, &Vector)| vector::scale(libm::cos(PI * j as f64 * x), *w);
+            if frozen[i] { [0.0; 3] } else { weights.iter().enumerate().map(mode).fold([0.0; 3], vector::add) }
+        })
+        .collect();
+    let images = path.images();
+    Path::build(images, n, |k, out| {
         out.copy_from_slice(path.image(k));
-        if k == 0 || k == last {
+        if k == 0 || k + 1 == images {
             return;
         }
-        let swell = libm::sin(PI * k as f64 / last as f64);
+        let swell = libm::sin(PI * fraction(k, images));
         let m = Components::new(path.image(k));
         let mut out = ComponentsMut::new(out);
-        for i in (0..m.sites()).filter(|&i| !frozen[i]) {
-            let x = (i as f64 + 0.5) / m.sites() as f64;
-            let modes = weights.iter().enumerate();
-            let v = modes
-                .fold([0.0; 3], |v, (j, w)| vector::add(v, vector::scale(swell * libm::cos(PI * j as f64 * x), *w)));
+        for i in (0..n).filter(|i| field[*i] != [0.0; 3]) {
+            let v = vector::scale(swell, field[i]);
             out.set(i, exp(m.get(i), vector::normal_part(v, m.get(i))));
         }
     })

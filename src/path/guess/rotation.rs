@@ -1,13 +1,19 @@
-//! The whole configuration turned rigidly, by quaternion slerp.
+//! The whole configuration turned rigidly: quaternion slerp from no rotation to the one that brings the states together.
 //!
-//! About a given axis the angle is the one that brings the initial state nearest to the final one,
-//! φ = atan2(Σ k·(a × b), Σ a·b − (k·a)(k·b)); where no angle is better than another it is a half turn. What the turn leaves over is closed evenly
-//! along the way by every spin's own geodesic. The sense is that of the axis (right-handed) for a half turn.
+//! ```text
+//! m_i(t) = R(t φ, k) r_i(t)      r_i: spin i's own geodesic from a_i to R(−φ, k) b_i, what the turn leaves over
+//! φ = atan2(Σ k·(a_i × b_i), Σ a_i·b_i − (k·a_i)(k·b_i))      maximises Σ b_i·R a_i about a given axis k
+//! ```
+//! Without an axis, R is the best rotation of all: the eigenvector of the largest eigenvalue of the 4 × 4 matrix of
+//! B. K. P. Horn, J. Opt. Soc. Am. A 4, 629 (1987), doi:10.1364/JOSAA.4.000629; where several are as good, the one nearest to a
+//! turn about the axis for opposite spins. A half turn is right-handed about the axis. Frozen spins stay.
 
-use super::{FirstGuess, GuessContext};
+use super::clock::{fraction, next_axis, ways};
+use super::{FirstGuess, GuessContext, frozen};
 use crate::error::Result;
 use crate::field::ComponentsMut;
-use crate::geometry::{Arc, Direction, Quaternion, vector};
+use crate::geometry::{Direction, Quaternion, Vector, vector};
+use crate::linalg::eigen_symmetric;
 use crate::path::Path;
 use crate::registry::Described;
 use crate::spins::Spins;
@@ -18,7 +24,7 @@ use std::f64::consts::PI;
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Rotation {
-    /// Axis of the turn; of x, y and z the one that brings the states nearest together if absent.
+    /// Axis of the turn; that of the best rotation if absent.
     #[serde(default)]
     pub axis: Option<Direction>,
 }
@@ -29,51 +35,101 @@ impl Described for Rotation {
     const EXAMPLE: &'static str = r#"{"rotation": {"axis": [0, 0, 1]}}"#;
 }
 
-/// The angle of the turn about an axis that brings a nearest to b (rad, −π to π), and Σ b·R a after it.
+/// Turns and eigenvalues that differ by less, relative to what they are made of, are as good as one another.
+const AS_GOOD: f64 = 1e-9;
+
+/// The angle of the turn about an axis that brings a nearest to b (rad, −π to π), and Σ b·R a after it. Where no angle is better
+/// than another it is a half turn, or none if no spin has a part normal to the axis.
 pub fn best_turn(a: &Spins, b: &Spins, axis: Direction) -> (f64, f64) {
+    turn((0..a.sites()).map(|i| (a.get(i), b.get(i))), axis)
+}
+
+fn turn(pairs: impl Iterator<Item = (Vector, Vector)>, axis: Direction) -> (f64, f64) {
     let k = axis.vector();
-    let (mut sine, mut cosine, mut fixed) = (0.0, 0.0, 0.0);
-    for i in 0..a.sites() {
-        let (p, q) = (a.get(i), b.get(i));
+    let (mut sine, mut cosine, mut fixed, mut lever, mut count) = (0.0, 0.0, 0.0, 0.0, 0);
+    for (p, q) in pairs {
         let along = vector::dot(k, p) * vector::dot(k, q);
         sine += vector::dot(k, vector::cross(p, q));
         cosine += vector::dot(p, q) - along;
         fixed += along;
+        lever += vector::norm(vector::cross(k, p)) * vector::norm(vector::cross(k, q));
+        count += 1;
     }
-    let size = sine.hypot(cosine);
-    let angle = if size < 1e-9 * a.sites() as f64 { PI } else { libm::atan2(sine, cosine) };
+    let size = (sine * sine + cosine * cosine).sqrt();
+    let angle = if lever < AS_GOOD * count as f64 {
+        0.0
+    } else if size < AS_GOOD * lever {
+        PI
+    } else {
+        libm::atan2(sine, cosine)
+    };
     // a half turn that rounding made −π is right-handed
-    let angle = if angle < -PI + 1e-9 { angle + 2.0 * PI } else { angle };
-    (angle, size + fixed)
+    (if angle < AS_GOOD - PI { PI } else { angle }, size + fixed)
+}
+
+/// Axis and angle of the rotation that brings a nearest to b; of several as good, one near a turn about `axis`.
+fn best_rotation(pairs: &[(Vector, Vector)], axis: Direction) -> (Direction, f64) {
+    let mut s = [[0.0; 3]; 3];
+    for (p, q) in pairs {
+        for (row, x) in s.iter_mut().zip(p) {
+            *row = vector::add(*row, vector::scale(*x, *q));
+        }
+    }
+    let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = s;
+    let horn = [
+        [xx + yy + zz, yz - zy, zx - xz, xy - yx],
+        [yz - zy, xx - yy - zz, xy + yx, zx + xz],
+        [zx - xz, xy + yx, yy - xx - zz, yz + zy],
+        [xy - yx, zx + xz, yz + zy, zz - xx - yy],
+    ];
+    let (values, vectors) = eigen_symmetric(&horn.concat(), 4);
+    let tolerance = AS_GOOD * pairs.len() as f64;
+    let best: Vec<&Vec<f64>> =
+        values.iter().zip(&vectors).filter(|(v, _)| **v >= values[3] - tolerance).map(|(_, q)| q).collect();
+    let mut rotation = [0.0; 4];
+    for k in [axis, next_axis(axis), next_axis(next_axis(axis))] {
+        let wanted = Quaternion::from_axis_angle(k, turn(pairs.iter().copied(), k).0).components();
+        rotation = [0.0; 4];
+        for q in &best {
+            let overlap: f64 = q.iter().zip(&wanted).map(|(x, y)| x * y).sum();
+            (0..4).for_each(|c| rotation[c] += overlap * q[c]);
+        }
+        if rotation.iter().map(|x| x * x).sum::<f64>() > 0.01 {
+            break;
+        }
+    }
+    let [w, x, y, z] = rotation;
+    let sign = if w < -AS_GOOD { -1.0 } else { 1.0 };
+    match Direction::new([sign * x, sign * y, sign * z]) {
+        Ok(k) => (k, 2.0 * libm::atan2(vector::norm([x, y, z]), (sign * w).max(0.0))),
+        Err(_) => (axis, 0.0),
+    }
 }
 
 impl FirstGuess for Rotation {
     fn path(&self, a: &Spins, b: &Spins, images: usize, context: &GuessContext) -> Result<Path> {
-        let axis = self.axis.unwrap_or_else(|| {
-            let better =
-                |p: Direction, q: Direction| if best_turn(a, b, q).1 > best_turn(a, b, p).1 + 1e-9 { q } else { p };
-            [Direction::X, Direction::Y, Direction::Z].into_iter().fold(context.default_axis, better)
-        });
-        let (angle, _) = best_turn(a, b, axis);
-        // a quarter at a time: quaternion slerp goes the short way
-        let half = Quaternion::from_axis_angle(axis, 0.5 * angle);
+        let frozen = frozen(context.states.chain);
+        let free: Vec<(Vector, Vector)> =
+            (0..a.sites()).filter(|i| !frozen[*i]).map(|i| (a.get(i), b.get(i))).collect();
+        let (axis, angle) = match self.axis {
+            Some(axis) => (axis, turn(free.iter().copied(), axis).0),
+            None => best_rotation(&free, context.default_axis),
+        };
         let back = Quaternion::from_axis_angle(axis, -angle);
-        let rests: Vec<Arc> = (0..a.sites()).map(|i| Arc::new(a.get(i), back.rotate(b.get(i)), axis)).collect();
-        let last = images - 1;
+        let unturned: Vec<Vector> = (0..a.sites()).map(|i| back.rotate(b.get(i))).collect();
+        let rests = ways(a, &Spins::from_vectors(&unturned)?, context.default_axis);
         Ok(Path::build(images, a.sites(), |k, out| {
-            if k == 0 || k == last {
-                return out.copy_from_slice(if k == 0 { a.as_slice() } else { b.as_slice() });
+            out.copy_from_slice(if k + 1 == images { b.as_slice() } else { a.as_slice() });
+            if k == 0 || k + 1 == images {
+                return;
             }
-            let t = k as f64 / last as f64;
-            let q = if t <= 0.5 {
-                Quaternion::IDENTITY.slerp(half, 2.0 * t)
-            } else {
-                half.mul(Quaternion::IDENTITY.slerp(half, 2.0 * t - 1.0))
-            };
+            let t = fraction(k, images);
+            // the slerp from no rotation: the same axis, a part of the angle
+            let part = Quaternion::from_axis_angle(axis, t * angle);
             let mut out = ComponentsMut::new(out);
-            for (i, rest) in rests.iter().enumerate() {
-                let p = rest.at(t);
-                out.set(i, vector::unit_or(q.rotate(p), p));
+            for i in (0..rests.len()).filter(|i| !frozen[*i]) {
+                let p = rests[i].at(t);
+                out.set(i, vector::unit_or(part.rotate(p), p));
             }
         }))
     }

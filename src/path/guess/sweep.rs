@@ -1,22 +1,30 @@
 //! A wall that enters: each spin's geodesic, delayed along the chain.
 //!
 //! ```text
-//! u_i(t) = clip((t (L + w) − x_i)/w, 0, 1)      x_i: distance from where the wall enters, L the largest, w its width
+//! u_i(T) = clip((T − x_i)/w, 0, 1)      x_i: distance from where the wall enters, w the wall's width, 0 ≤ T ≤ max x + w
 //! ```
-//! then resampled to equal distances. Only sites that move by more than 0.3 rad count for x and L.
+//! at times T of equal distances √Σ(θ_i Δu_i)². Only sites that move by more than 0.3 rad count for the x_i.
 
-use super::clock::clocked;
+use super::clock::{Way, clocked, fraction, ways};
 use super::{FirstGuess, GuessContext};
 use crate::error::{Error, Result};
 use crate::geometry::{Direction, angle};
+use crate::linalg::slab;
 use crate::path::Path;
 use crate::registry::Described;
 use crate::spins::Spins;
+use rayon::prelude::*;
 use serde::Deserialize;
 use std::fmt;
 
 /// Spins that move by less (rad) do not make a wall.
 const MOVES: f64 = 0.3;
+
+/// Distances between images that agree to this fraction are equal.
+const EVEN: f64 = 0.01;
+
+/// Rounds of making them equal, at the most.
+const ROUNDS: usize = 20;
 
 /// Where a wall enters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
@@ -86,9 +94,46 @@ impl FirstGuess for Sweep {
                 Edge::Ends => n / 2.0 - (x - n / 2.0).abs(),
             }
         };
-        let farthest = (0..sites).map(entry).fold(0.0, f64::max) + 0.5;
-        let axis = self.axis.unwrap_or(context.default_axis);
-        let clock = |t: f64, i: usize| ((t * (farthest + width) - entry(i)) / width).clamp(0.0, 1.0);
-        Ok(clocked(a, b, images.max(3), axis, clock).resampled(images))
+        let entries: Vec<f64> = (0..sites).map(entry).collect();
+        let ways = ways(a, b, self.axis.unwrap_or(context.default_axis));
+        let times = even_times(&entries, &ways, width, images);
+        Ok(clocked(a, b, images, &ways, |k, i| reached(times[k], entries[i], width)))
     }
+}
+
+/// The fraction of its way a spin has gone at time T.
+fn reached(time: f64, entry: f64, width: f64) -> f64 {
+    ((time - entry) / width).clamp(0.0, 1.0)
+}
+
+/// Times at which neighbouring images are equally far apart: equal steps, stretched and squeezed until the distances agree.
+fn even_times(entries: &[f64], ways: &[Way], width: f64, images: usize) -> Vec<f64> {
+    let end = entries.iter().copied().fold(0.0, f64::max) + width;
+    let lengths: Vec<f64> = ways.iter().map(Way::length).collect();
+    let mut times: Vec<f64> = (0..images).map(|k| end * fraction(k, images)).collect();
+    for _ in 0..ROUNDS {
+        let distance = |pair: &[f64]| {
+            let squares: Vec<f64> = (entries.iter().zip(&lengths))
+                .map(|(x, l)| (l * (reached(pair[1], *x, width) - reached(pair[0], *x, width))).powi(2))
+                .collect();
+            slab::sum(&squares).sqrt()
+        };
+        let distances: Vec<f64> = times.par_windows(2).map(distance).collect();
+        let mut s = vec![0.0];
+        for d in &distances {
+            s.push(s[s.len() - 1] + d);
+        }
+        let total = s[s.len() - 1];
+        if total == 0.0 || distances.iter().all(|d| (d * distances.len() as f64 / total - 1.0).abs() < EVEN) {
+            break;
+        }
+        let at = |place: f64| {
+            let i = s.partition_point(|x| *x <= place).clamp(1, s.len() - 1) - 1;
+            let step = s[i + 1] - s[i];
+            let t = if step > 0.0 { (place - s[i]) / step } else { 0.0 };
+            times[i] + t.clamp(0.0, 1.0) * (times[i + 1] - times[i])
+        };
+        times = (0..images).map(|k| at(total * fraction(k, images))).collect();
+    }
+    times
 }

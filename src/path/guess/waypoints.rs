@@ -1,8 +1,10 @@
-//! Geodesics through given states, images at equal distances.
+//! Geodesics through given states, images at equal distances along them; frozen spins stay on the way.
 
-use super::clock::clocked;
-use super::{FirstGuess, GuessContext};
+use super::clock::{Way, fraction, ways};
+use super::{FirstGuess, GuessContext, frozen};
 use crate::error::Result;
+use crate::field::ComponentsMut;
+use crate::linalg::slab;
 use crate::path::Path;
 use crate::registry::Described;
 use crate::spins::Spins;
@@ -26,16 +28,37 @@ impl Described for Waypoints {
 
 impl FirstGuess for Waypoints {
     fn path(&self, a: &Spins, b: &Spins, images: usize, context: &GuessContext) -> Result<Path> {
+        let frozen = frozen(context.states.chain);
         let mut stops = vec![a.clone()];
         for (k, state) in self.states.iter().enumerate() {
-            stops.push(state.build(&context.states).map_err(|e| e.within(&format!("states[{k}]")))?);
+            let at_stop = state.build(&context.states).map_err(|e| e.within(&format!("states[{k}]")))?;
+            let mut m = at_stop.as_slice().to_vec();
+            let mut held = ComponentsMut::new(&mut m);
+            for i in (0..a.sites()).filter(|i| frozen[*i]) {
+                held.set(i, a.get(i));
+            }
+            stops.push(Spins::from_unit_components(&m));
         }
         stops.push(b.clone());
-        let mut row = vec![a.clone()];
-        for leg in stops.windows(2) {
-            let part = clocked(&leg[0], &leg[1], images.max(3), context.default_axis, |t, _| t);
-            row.extend((1..part.images()).map(|k| part.spins(k)));
+        let legs: Vec<Vec<Way>> = stops.windows(2).map(|s| ways(&s[0], &s[1], context.default_axis)).collect();
+        let mut reached = vec![0.0];
+        for leg in &legs {
+            let squares: Vec<f64> = leg.iter().map(|w| w.length().powi(2)).collect();
+            reached.push(reached[reached.len() - 1] + slab::sum(&squares).sqrt());
         }
-        Ok(Path::new(&row).resampled(images))
+        let total = reached[legs.len()];
+        Ok(Path::build(images, a.sites(), |k, out| {
+            if k == 0 || k + 1 == images {
+                return out.copy_from_slice(if k == 0 { a.as_slice() } else { b.as_slice() });
+            }
+            let place = total * fraction(k, images);
+            let leg = reached.partition_point(|s| *s <= place).clamp(1, legs.len()) - 1;
+            let length = reached[leg + 1] - reached[leg];
+            let u = if length > 0.0 { ((place - reached[leg]) / length).min(1.0) } else { 0.0 };
+            let mut out = ComponentsMut::new(out);
+            for (i, way) in legs[leg].iter().enumerate() {
+                out.set(i, way.at(u));
+            }
+        }))
     }
 }
