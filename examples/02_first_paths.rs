@@ -193,7 +193,7 @@ fn table(rows: &[Row]) -> String {
                 100.0 * (1.0 - r.length_rad / n.length_rad),
                 n.unevenness,
                 r.highest_mev / q.highest_mev,
-                100.0 * (q.length_rad / r.length_rad - 1.0)
+                (100.0 * (q.length_rad / r.length_rad - 1.0)).max(0.0)
             );
         }
     }

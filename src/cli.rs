@@ -145,7 +145,7 @@ pub fn report(error: &anyhow::Error) -> u8 {
     if error.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == ErrorKind::BrokenPipe) {
         return 0;
     }
-    note(&format!("error: {error:#}"));
+    note(&format!("error: {error}"));
     match error.downcast_ref::<Error>() {
         Some(Error::Config { .. } | Error::Invalid { .. }) => USAGE,
         Some(Error::Io { source, .. }) if source.kind() == ErrorKind::AlreadyExists => USAGE,

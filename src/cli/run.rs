@@ -99,7 +99,8 @@ fn run_one(arguments: &Run, loaded: &Loaded, directory: &Path) -> Result<u8> {
         say(&format!("{name}: warning: {warning}"));
     }
     let stored = Stored::of(&outcome);
-    say(&format!("{name}: {}; {}; results in {place}", barrier(&outcome), outcome.stop_reason));
+    let proof = if outcome.certified { "certified" } else { "not certified" };
+    say(&format!("{name}: {}, {proof}; {}; results in {place}", barrier(&outcome), outcome.stop_reason));
     print(arguments, name, directory, &stored)
 }
 

@@ -44,13 +44,21 @@ impl Minimum {
         self.spectrum.negative == 0 && self.spectrum.is_stationary(self.max_torque_mev)
     }
 
-    /// Whether `other` is this minimum: the same spins after the best rotation about the symmetry axes, or, where the energy is
-    /// flat, the same energy.
+    /// Whether `other` is this minimum: the same spins, also after the best rotation about the symmetry axes, or, where the
+    /// energy is flat, the same energy.
     pub fn is_same(&self, h: &Hamiltonian, other: &Minimum) -> bool {
         let a = self.spins.as_slice();
-        if largest_angle(a, other.spins.as_slice()) < SAME {
+        if largest_angle(a, other.spins.as_slice()) < SAME || self.is_turned(h, other) {
             return true;
         }
+        let noise = 1e-12 * h.stiffness_mev();
+        let both_flat = self.spectrum.flat > 0 && other.spectrum.flat > 0;
+        both_flat && h.difference_mev(a, other.spins.as_slice()).abs() < noise
+    }
+
+    /// Whether a rotation about the symmetry axes makes `other` of this minimum.
+    pub fn is_turned(&self, h: &Hamiltonian, other: &Minimum) -> bool {
+        let a = self.spins.as_slice();
         let axes = h.symmetry_axes_at(a);
         let mut turned = other.spins.clone();
         for _ in 0..4 {
@@ -60,12 +68,7 @@ impl Minimum {
                 turned = rotated(&turned, axis, angle);
             }
         }
-        if !axes.is_empty() && largest_angle(a, turned.as_slice()) < SAME {
-            return true;
-        }
-        let noise = 1e-12 * h.stiffness_mev();
-        let both_flat = self.spectrum.flat > 0 && other.spectrum.flat > 0;
-        both_flat && h.difference_mev(a, other.spins.as_slice()).abs() < noise
+        !axes.is_empty() && largest_angle(a, turned.as_slice()) < SAME
     }
 }
 

@@ -14,7 +14,7 @@ use crate::band::{Band, Laplacian, align_rotations};
 use crate::error::Result;
 use crate::geometry::{Direction, Vector};
 use crate::linalg::slab;
-use crate::path::guess::{GuessContext, GuessSpec, NoiseSpec, add_noise, smooth};
+use crate::path::guess::{FirstGuess, GuessContext, GuessSpec, NoiseSpec, Rotation, add_noise, smooth};
 use crate::path::{Path, distance};
 use crate::spins::Spins;
 use crate::state::StateContext;
@@ -25,7 +25,7 @@ const RESOLVED: f64 = 1.0;
 /// Neighbours of a band to start from are at most this far apart, any spin (rad).
 const COARSEST: f64 = 2.0;
 /// Most images of an automatic path.
-const MOST_IMAGES: usize = 4001;
+const MOST_IMAGES: usize = 2001;
 /// Evaluations after which first paths are compared.
 const TRIAL: usize = 8;
 /// Rounds of leaving a saddle of higher index.
@@ -145,6 +145,9 @@ impl<'a, 'o> Run<'a, 'o> {
         if distance(a, b) < 1e-6 * (self.problem.chain.sites as f64).sqrt() {
             return Ok(report::same_minimum(self.summary()));
         }
+        if let Some(flat) = self.turned_minimum()? {
+            return Ok(flat);
+        }
         let (mut candidate, rejected) = match &self.problem.guess {
             Some(guess) => {
                 let mut c = self.start(guess, self.problem.noise.as_ref(), self.problem.smooth, usize::MAX)?;
@@ -218,8 +221,42 @@ impl<'a, 'o> Run<'a, 'o> {
         }
     }
 
-    fn summary(self) -> report::Summary<'a> {
-        report::Summary { problem: self.problem, started: self.started, ends: self.ends, warnings: self.warnings }
+    fn summary(&self) -> report::Summary<'a> {
+        report::Summary {
+            problem: self.problem,
+            started: self.started,
+            ends: self.ends.clone(),
+            warnings: self.warnings.clone(),
+        }
+    }
+
+    /// Ends that are one minimum turned about a symmetry axis: the rigid turn between them costs nothing.
+    fn turned_minimum(&mut self) -> Result<Option<Outcome>> {
+        let h = &self.problem.hamiltonian;
+        if self.axes.is_empty() || self.problem.guess.is_some() {
+            return Ok(None);
+        }
+        let ends = [0, 1].map(|k| Minimum::examine(h, &self.ends[k].spins));
+        if !ends[0].is_turned(h, &ends[1]) {
+            return Ok(None);
+        }
+        let images = match self.problem.images {
+            Images::Count(n) => n,
+            Images::Auto => 17,
+        };
+        let path = Rotation { axis: None }.path(&self.ends[0].spins, &self.ends[1].spins, images, &self.context())?;
+        let mut band = Band::new(h, path);
+        band.evaluate();
+        if height(&band) > 1e-9 * h.stiffness_mev() {
+            return Ok(None);
+        }
+        let name = "rotation".to_string();
+        let stop = Stop::Converged { rotation: 0.0, tolerance: self.problem.neb.tolerance };
+        let c = Candidate { name, band, stop, history: Vec::new(), found: None, escapes: Vec::new() };
+        let doubt =
+            "the two states are one minimum turned about a symmetry axis: between them there is no saddle to prove";
+        let proof = Proof { ends, links: Vec::new(), doubts: vec![doubt.into()] };
+        Ok(Some(report::outcome(self.summary(), c, &[], proof, Vec::new())))
     }
 
     /// The lowest of the natural first paths, and what became of the others: a few evaluations each, the best two finished.
