@@ -139,3 +139,16 @@ fn the_usual_methods_find_the_same_path_in_many_more_evaluations() {
         assert!(count > 5 * best);
     }
 }
+
+#[test]
+fn on_the_finest_lattice_of_the_series_the_saddle_is_still_certified() {
+    let n = 3200;
+    let mut problem = case("plain", n);
+    (problem.refine, problem.certify, problem.neb.climb) = (true, true, true);
+    let outcome = solve(&problem);
+    assert!(outcome.certified, "{:?}", outcome.warnings);
+    // the continuum's wall, 2√(2JK), is approached from below as the square of the lattice constant over the wall width
+    let continuum = 2.0 * (2.0 * anisotropy(n)).sqrt();
+    let ratio = common::forward(&outcome) / continuum;
+    assert!((1.0 - ratio) > 0.0 && (1.0 - ratio) < 3e-6, "{ratio}");
+}

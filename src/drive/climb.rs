@@ -64,7 +64,8 @@ impl Found {
     /// Stationary to machine precision, and still the start's saddle.
     pub fn is_stationary(&self, c: f64) -> bool {
         let done = matches!(self.refined.verdict, Verdict::Saddle | Verdict::Flat | Verdict::HigherIndex);
-        done && self.refined.state.max_torque_mev() < 1e-9 * c && self.refined.rotation_rad < SAME_PLACE
+        let zero = (1e-9 * c).max(1e-12 * self.refined.state.hessian.norm1());
+        done && self.refined.state.max_torque_mev() < zero && self.refined.rotation_rad < SAME_PLACE
     }
 
     /// A stationary state with at most one negative direction.
