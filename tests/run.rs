@@ -36,7 +36,12 @@ fn results_go_to_results_name_and_a_finished_one_is_left_as_it_is() {
     let folder = folder(&["short"]);
     let (code, out, said) = spinneb(folder.path(), &["run", "short.json"]);
     assert_eq!((code, out.as_str()), (Some(0), ""), "{said}");
-    assert!(said.lines().last().unwrap().starts_with("short: barrier 2.000000 meV forward, 2.000000 meV backward; "));
+    assert!(
+        said.lines()
+            .last()
+            .unwrap()
+            .starts_with("short: barrier 2.000000 meV forward, 2.000000 meV backward, certified; ")
+    );
     let summary = folder.path().join("results/short/summary.json");
     let first = fs::read(&summary).unwrap();
     let (code, out, said) = spinneb(folder.path(), &["run", "short.json", "--json"]);
