@@ -8,8 +8,15 @@ use spinneb::geometry::Direction;
 use spinneb::spins::Spins;
 
 /// A run that must be certified, with one negative mode (or a valley flat to rounding) at each saddle.
-fn solve(problem: &Problem) -> Outcome {
-    let outcome = common::solve(problem);
+///
+/// Before that the band alone, its top image climbing but nothing refined further or certified, must give the same to 1e-6.
+fn solve(mut problem: Problem) -> Outcome {
+    (problem.refine, problem.certify) = (false, false);
+    let band = common::solve(&problem);
+    (problem.refine, problem.certify) = (true, true);
+    let outcome = common::solve(&problem);
+    let (coarse, fine) = (forward(&band), forward(&outcome));
+    assert!((coarse - fine).abs() <= 1e-6 * fine, "the band alone gives {coarse}, the certified saddle {fine}");
     let (w, warnings) = (outcome.work, &outcome.warnings);
     println!(
         "{} saddles, {} evaluations, {:.3} s, certified {} {warnings:?}",
@@ -47,7 +54,7 @@ fn single_spins_in_oblique_fields() {
         let (psi, h) = (number(&case, "psi").to_radians(), number(&case, "h"));
         // the field favours −z, at the angle ψ to the axis
         let b = [2.0 * h * psi.sin(), 0.0, -2.0 * h * psi.cos()];
-        let outcome = solve(&Build::open(1).easy(1.0).field(b).reversal());
+        let outcome = solve(Build::open(1).easy(1.0).field(b).reversal());
         check("single_spin", &case, forward(&outcome), number(&case, "barrier"), tolerance);
     }
 }
@@ -56,7 +63,7 @@ fn single_spins_in_oblique_fields() {
 fn open_chains_reverse_over_the_lowest_saddle() {
     for (case, tolerance) in section("open_chain_reversal") {
         let n = case["N"].as_u64().expect("N") as usize;
-        let outcome = solve(&Build::open(n).easy(number(&case, "K")).reversal());
+        let outcome = solve(Build::open(n).easy(number(&case, "K")).reversal());
         check("open_chain_reversal", &case, forward(&outcome), number(&case, "barrier"), tolerance);
     }
 }
@@ -65,7 +72,7 @@ fn open_chains_reverse_over_the_lowest_saddle() {
 fn a_ring_reverses_by_a_nucleus() {
     for (case, tolerance) in section("ring_nucleus") {
         let k = 0.01;
-        let outcome = solve(&Build::ring(200).easy(k).field([0.0, 0.0, -2.0 * k * number(&case, "h")]).reversal());
+        let outcome = solve(Build::ring(200).easy(k).field([0.0, 0.0, -2.0 * k * number(&case, "h")]).reversal());
         check("ring_nucleus", &case, forward(&outcome), number(&case, "barrier"), tolerance);
     }
 }
@@ -79,7 +86,7 @@ fn a_wall_hops_by_one_site() {
         let middle = build.chain.sites as f64 / 2.0 - 0.5;
         let width = (0.5 / k).sqrt();
         let (a, b) = (build.wall(middle, width, Direction::X), build.wall(middle + 1.0, width, Direction::X));
-        let outcome = solve(&build.problem(a, b));
+        let outcome = solve(build.problem(a, b));
         check("peierls", &case, forward(&outcome), number(&case, "barrier"), tolerance);
     }
 }
@@ -96,7 +103,7 @@ fn a_wall_leaves_and_crosses_defects() {
             for (final_state, key) in
                 [(Direction::Z.reversed(), "barrier_towards_low_index"), (Direction::Z, "barrier_towards_high_index")]
             {
-                let outcome = solve(&chain().problem(pinned.clone(), Spins::uniform(100, final_state)));
+                let outcome = solve(chain().problem(pinned.clone(), Spins::uniform(100, final_state)));
                 check("defect", &case, forward(&outcome), number(&case, key), tolerance);
             }
         } else {
@@ -105,7 +112,7 @@ fn a_wall_leaves_and_crosses_defects() {
             // the field drives the wall to the right; a weak site holds it, a strong one stops it on its left
             let start = if defect < k { 50.0 } else { 45.0 };
             let (a, b) = (build.wall(start, width, Direction::X), build.wall(100.0, width, Direction::X));
-            let outcome = solve(&build.problem(a, b));
+            let outcome = solve(build.problem(a, b));
             check("defect", &case, forward(&outcome), number(&case, "barrier"), tolerance);
         }
     }
@@ -118,7 +125,7 @@ fn a_wall_turns_its_plane_over_the_hard_axis() {
         let build = Build::between_walls(100).easy(k).hard(number(&case, "K_hard"));
         let width = (0.5 / k).sqrt();
         let (a, b) = (build.wall(50.5, width, Direction::Y), build.wall(50.5, width, Direction::Y.reversed()));
-        let outcome = solve(&build.problem(a, b));
+        let outcome = solve(build.problem(a, b));
         check("chirality_reversal", &case, forward(&outcome), number(&case, "barrier"), tolerance);
     }
 }
@@ -126,8 +133,7 @@ fn a_wall_turns_its_plane_over_the_hard_axis() {
 #[test]
 fn with_dmi_the_edge_is_the_barrier() {
     for (case, tolerance) in section("dmi_nucleation") {
-        let outcome =
-            solve(&Build::open(100).easy(number(&case, "K")).dmi(number(&case, "D"), Direction::Y).reversal());
+        let outcome = solve(Build::open(100).easy(number(&case, "K")).dmi(number(&case, "D"), Direction::Y).reversal());
         check("dmi_nucleation", &case, forward(&outcome), number(&case, "barrier"), tolerance);
     }
 }
@@ -140,7 +146,7 @@ fn the_sign_of_dmi_tells_the_two_chiralities_apart() {
             Build::between_walls(100).easy(k).hard(number(&case, "K_hard")).dmi(number(&case, "D"), Direction::X);
         let width = (0.5 / k).sqrt();
         let (a, b) = (build.wall(50.5, width, Direction::Y), build.wall(50.5, width, Direction::Y.reversed()));
-        let outcome = solve(&build.problem(a, b));
+        let outcome = solve(build.problem(a, b));
         check("dmi_sign", &case, forward(&outcome), number(&case, "forward"), tolerance);
         check(
             "dmi_sign",
