@@ -1,10 +1,10 @@
 //! Relaxing a state to its minimum: Newton's method with a shift that keeps the Hessian positive, and descent checked.
 
-use super::scales::orthonormal;
 use crate::energy::{Hamiltonian, TangentBasis, assemble};
 use crate::error::{Error, Result};
 use crate::linalg::{Banded, lowest_modes, slab};
 use crate::path::largest_angle;
+use crate::saddle::orthonormal;
 use crate::sphere::{move_points, rotation_of};
 use crate::spins::Spins;
 
@@ -134,8 +134,10 @@ fn way_down(h: &Hamiltonian, p: &Point, hessian: &Banded, basis: &TangentBasis) 
     if lifted.factor().negatives() == 0 {
         return None;
     }
-    let known =
-        orthonormal(h.rotation_modes(&p.m, &h.symmetry_axes_at(&p.m)).iter().map(|z| basis.coordinates(z)).collect());
+    let known = orthonormal(
+        h.rotation_modes(&p.m, &h.symmetry_axes_at(&p.m)).iter().map(|z| basis.coordinates(z)).collect(),
+        1e-6,
+    );
     let mode = lowest_modes(hessian, 1, &known).into_iter().next()?;
     if mode.value > -1e-7 * h.stiffness_mev() {
         return None;

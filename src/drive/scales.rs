@@ -1,8 +1,9 @@
 //! The scales of a problem: how stiff its softest mode is, how wide its walls are.
 
-use crate::energy::{Hamiltonian, TangentBasis, assemble};
+use crate::energy::Hamiltonian;
 use crate::field::Components;
-use crate::linalg::{eigenvalues_symmetric, lowest_modes, slab};
+use crate::linalg::{eigenvalues_symmetric, lowest_modes};
+use crate::saddle::State;
 
 /// Scales from which tolerances, shifts and image counts follow.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,29 +56,8 @@ impl Scales {
 
 /// Lowest eigenvalue of the Riemannian Hessian (meV), rotations about symmetry axes apart.
 fn softest_mode(h: &Hamiltonian, m: &[f64]) -> f64 {
-    let mut g = vec![0.0; m.len()];
-    h.energy_gradient(m, &mut g);
-    let basis = TangentBasis::at(m);
-    let matrix = assemble(h, m, &g, &basis);
-    let known = orthonormal(h.rotation_modes(m, &h.symmetry_axes_at(m)).iter().map(|z| basis.coordinates(z)).collect());
-    lowest_modes(&matrix, 1, &known).first().map_or(0.0, |mode| mode.value)
-}
-
-/// Gram–Schmidt; vectors that are (nearly) zero or dependent are left out.
-pub(super) fn orthonormal(vectors: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
-    let mut done: Vec<Vec<f64>> = Vec::new();
-    for mut v in vectors {
-        for b in &done {
-            let overlap = slab::dot(b, &v);
-            slab::add_scaled(&mut v, -overlap, b);
-        }
-        let size = slab::norm(&v);
-        if size > 1e-6 {
-            slab::scale(&mut v, 1.0 / size);
-            done.push(v);
-        }
-    }
-    done
+    let state = State::at(h, m.to_vec());
+    lowest_modes(&state.hessian, 1, &state.zeros).first().map_or(0.0, |mode| mode.value)
 }
 
 /// Median over sites of the gap between the two lowest on-site curvatures: 2K of an easy axis.

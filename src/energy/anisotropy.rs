@@ -12,7 +12,7 @@ use crate::error::Result;
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, Vector, vector};
 use crate::lattice::Selection;
-use crate::linalg::slab::fold;
+use crate::linalg::slab::accumulate;
 use crate::registry::Described;
 use crate::units::SiteEnergy;
 use serde::Deserialize;
@@ -106,7 +106,7 @@ impl EnergyTerm for Anisotropy {
         let (x, y, z) = (&m.x[lo..hi], &m.y[lo..hi], &m.z[lo..hi]);
         let (k1, k2) = (&self.k[lo..hi], &self.k2[lo..hi]);
         let (gx, gy, gz) = (&mut g.x[..len], &mut g.y[..len], &mut g.z[..len]);
-        let mut at = |i: usize, lane: &mut f64| {
+        let at = |i: usize, lane: &mut f64| {
             let c = x[i] * ex + y[i] * ey + z[i] * ez;
             let (rx, ry, rz) = (x[i] - c * ex, y[i] - c * ey, z[i] - c * ez);
             *lane += Anisotropy::site(k1[i], k2[i], c, rx * rx + ry * ry + rz * rz);
@@ -115,18 +115,7 @@ impl EnergyTerm for Anisotropy {
             gy[i] += slope * ey;
             gz[i] += slope * ez;
         };
-        let mut lanes = [0.0; 8];
-        let whole = len - len % 8;
-        for i in (0..whole).step_by(8) {
-            for (l, lane) in lanes.iter_mut().enumerate() {
-                at(i + l, lane);
-            }
-        }
-        let mut rest = 0.0;
-        for i in whole..len {
-            at(i, &mut rest);
-        }
-        fold(lanes) + rest
+        accumulate(len, at)
     }
 
     fn add_hessian_product(&self, m: Components, v: Components, mut out: ComponentsMut) {

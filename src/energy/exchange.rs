@@ -14,7 +14,7 @@ use crate::error::{Error, Result};
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Vector, vector};
 use crate::lattice::{Chain, Selection};
-use crate::linalg::slab::fold;
+use crate::linalg::slab::accumulate;
 use crate::registry::Described;
 use crate::units::{Energy, ExchangeStiffness};
 use serde::Deserialize;
@@ -95,8 +95,7 @@ impl Run<'_> {
         let (y0, yp, ym) = (&m.y[lo..hi], &m.y[lo + n..hi + n], &m.y[lo - n..hi - n]);
         let (z0, zp, zm) = (&m.z[lo..hi], &m.z[lo + n..hi + n], &m.z[lo - n..hi - n]);
         let (gx, gy, gz) = (&mut gx[..len], &mut gy[..len], &mut gz[..len]);
-        let mut lanes = [0.0; 8];
-        let mut at = |k: usize, lane: &mut f64| {
+        let at = |k: usize, lane: &mut f64| {
             let (ap, am) = (jp[k].abs(), jm[k].abs());
             let (sp, sm) = (1f64.copysign(jp[k]), 1f64.copysign(jm[k]));
             let (dx, dy, dz) = (x0[k] - sp * xp[k], y0[k] - sp * yp[k], z0[k] - sp * zp[k]);
@@ -105,17 +104,7 @@ impl Run<'_> {
             gy[k] += ap * dy + am * (y0[k] - sm * ym[k]);
             gz[k] += ap * dz + am * (z0[k] - sm * zm[k]);
         };
-        let whole = len - len % 8;
-        for k in (0..whole).step_by(8) {
-            for (l, lane) in lanes.iter_mut().enumerate() {
-                at(k + l, lane);
-            }
-        }
-        let mut rest = 0.0;
-        for k in whole..len {
-            at(k, &mut rest);
-        }
-        0.5 * (fold(lanes) + rest)
+        0.5 * accumulate(len, at)
     }
 }
 

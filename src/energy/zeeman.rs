@@ -11,6 +11,7 @@ use crate::error::Result;
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Vector, vector};
 use crate::lattice::Selection;
+use crate::linalg::slab::accumulate;
 use crate::registry::Described;
 use crate::units::{FluxDensity, MU_B_MEV_PER_T};
 use serde::Deserialize;
@@ -86,25 +87,14 @@ impl EnergyTerm for Zeeman {
         let (lo, hi, len) = (range.start, range.end, range.len());
         let (x, y, z, b) = (&m.x[lo..hi], &m.y[lo..hi], &m.z[lo..hi], &self.b[lo..hi]);
         let (gx, gy, gz) = (&mut g.x[..len], &mut g.y[..len], &mut g.z[..len]);
-        let mut lanes = [0.0; 8];
-        let mut at = |i: usize, lane: &mut f64| {
+        let at = |i: usize, lane: &mut f64| {
             let (dx, dy, dz) = (x[i] - ex, y[i] - ey, z[i] - ez);
             *lane += b[i] * (dx * dx + dy * dy + dz * dz);
             gx[i] -= b[i] * ex;
             gy[i] -= b[i] * ey;
             gz[i] -= b[i] * ez;
         };
-        let whole = len - len % 8;
-        for i in (0..whole).step_by(8) {
-            for (l, lane) in lanes.iter_mut().enumerate() {
-                at(i + l, lane);
-            }
-        }
-        let mut rest = 0.0;
-        for i in whole..len {
-            at(i, &mut rest);
-        }
-        0.5 * (crate::linalg::slab::fold(lanes) + rest)
+        0.5 * accumulate(len, at)
     }
 
     fn add_hessian_product(&self, _: Components, _: Components, _: ComponentsMut) {}

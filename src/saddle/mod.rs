@@ -12,5 +12,5 @@ mod valley;
 pub use descent::{Descent, descend};
 pub use pinned::Pinned;
 pub use spectrum::Spectrum;
-pub use state::State;
+pub use state::{State, orthonormal};
 pub use valley::{Refined, Verdict, refine};
