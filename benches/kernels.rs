@@ -1,0 +1,143 @@
+//! Throughput of the kernels on one thread, beside the memory bandwidth they run against, and the gain of two threads.
+//!
+//! `cargo bench --bench kernels`. A spin-image evaluation is the energy and the gradient of one spin in one image. Figures are
+//! per CPU second (of all threads together), the best of several repetitions; the machine may be shared.
+
+use cpu_time::ProcessTime;
+use rayon::prelude::*;
+use spinneb::band::{Band, Sweep};
+use spinneb::energy::{Anisotropy, Exchange, Hamiltonian};
+use spinneb::geometry::Direction;
+use spinneb::lattice::Chain;
+use spinneb::optimise::{Implicit, Method};
+use spinneb::path::Path;
+use spinneb::spins::Spins;
+use std::time::{Duration, Instant};
+
+const IMAGES: usize = 18;
+const SIZES: [usize; 4] = [100, 1_000, 10_000, 100_000];
+
+fn main() {
+    let one = pool(1);
+    let bandwidth = one.install(triad_gb_per_s);
+    println!("memory bandwidth (triad, one thread): {bandwidth:.1} GB per CPU second");
+    println!("million spin-image evaluations per CPU second, {} images between the ends:", IMAGES - 2);
+    println!("{:>8} {:>10} {:>10} {:>10} {:>12}", "sites", "gradient", "GB/s", "band", "iteration");
+    for sites in SIZES {
+        let (h, path) = problem(sites);
+        let [g, b, i] = one.install(|| [gradient(&h, &path), band(&h, &path), iteration(&h, &path)]);
+        println!("{sites:>8} {:>10.1} {:>10.1} {:>10.1} {:>12.1}", g.per_cpu(), g.per_cpu() * BYTES * 1e-3, b.per_cpu(), i.per_cpu());
+    }
+    let two = pool(2);
+    println!("wall time of one thread over that of two:");
+    for sites in [1_000, 100_000] {
+        let (h, path) = problem(sites);
+        let [g1, i1] = one.install(|| [gradient(&h, &path), iteration(&h, &path)]);
+        let [g2, i2] = two.install(|| [gradient(&h, &path), iteration(&h, &path)]);
+        println!("{sites:>8} gradient {:.2}  iteration {:.2}", g2.per_wall() / g1.per_wall(), i2.per_wall() / i1.per_wall());
+    }
+}
+
+/// Numbers that must pass for one spin of one image: m read, g written, the coefficients read (J, K, K₂), 8 bytes each.
+const BYTES: f64 = 8.0 * (3.0 + 3.0 + 3.0);
+
+fn pool(threads: usize) -> rayon::ThreadPool {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads to measure with")
+}
+
+/// The chain of the shipped wall nucleation, refined to `sites`, with a wall on its way through.
+fn problem(sites: usize) -> (Hamiltonian, Path) {
+    let chain = Chain::open(sites);
+    let ratio = 50.0 / sites as f64;
+    let exchange = Exchange::uniform(&chain, &[10.0]);
+    let easy_axis = Anisotropy::uniform(sites, 0.5 * ratio * ratio, Direction::Z);
+    let h = Hamiltonian::new(&chain, vec![Box::new(exchange), Box::new(easy_axis)]).expect("a chain");
+    let width = 4.0 * sites as f64 / 50.0 * 3.2;
+    let image = |k: usize| {
+        let front = -width + (sites as f64 + 2.0 * width) * k as f64 / (IMAGES - 1) as f64;
+        let angle = |i: usize| std::f64::consts::PI * ((front - i as f64) / width + 0.5).clamp(0.0, 1.0);
+        let mut m = vec![0.0; 3 * sites];
+        for i in 0..sites {
+            let (s, c) = libm::sincos(angle(i));
+            let (sp, cp) = libm::sincos(0.05 * libm::sin(3.0 * i as f64 / width));
+            (m[i], m[sites + i], m[2 * sites + i]) = (s * cp, s * sp, c);
+        }
+        Spins::from_components(&m).expect("unit vectors")
+    };
+    (h, Path::new(&(0..IMAGES).map(image).collect::<Vec<_>>()))
+}
+
+/// Work done in a time.
+struct Figure {
+    spins: f64,
+    cpu: Duration,
+    wall: Duration,
+}
+
+impl Figure {
+    fn per_cpu(&self) -> f64 {
+        self.spins / self.cpu.as_secs_f64() * 1e-6
+    }
+
+    fn per_wall(&self) -> f64 {
+        self.spins / self.wall.as_secs_f64() * 1e-6
+    }
+}
+
+/// The best of seven repetitions of at least 0.1 s.
+fn measure(spins: usize, mut work: impl FnMut()) -> Figure {
+    work();
+    let run = |work: &mut dyn FnMut()| {
+        let (cpu, wall) = (ProcessTime::now(), Instant::now());
+        let mut times = 0;
+        while wall.elapsed() < Duration::from_millis(100) {
+            work();
+            times += 1;
+        }
+        Figure { spins: (times * spins) as f64, cpu: cpu.elapsed(), wall: wall.elapsed() }
+    };
+    let figures: Vec<Figure> = (0..7).map(|_| run(&mut work)).collect();
+    figures.into_iter().max_by(|a, b| a.per_wall().total_cmp(&b.per_wall())).expect("seven of them")
+}
+
+/// Energy and gradient of all images between the ends.
+fn gradient(h: &Hamiltonian, path: &Path) -> Figure {
+    let slab = 3 * path.sites();
+    let mut g = vec![0.0; (IMAGES - 2) * slab];
+    measure((IMAGES - 2) * path.sites(), || {
+        let energy: Vec<f64> = g.par_chunks_mut(slab).enumerate().map(|(k, g)| h.energy_gradient(path.image(k + 1), g)).collect();
+        assert!(energy.iter().all(|e| e.is_finite()));
+    })
+}
+
+/// The evaluation of a band: energies, gradients, tangents, forces across the path, distances.
+fn band(h: &Hamiltonian, path: &Path) -> Figure {
+    let mut band = Band::new(h, path.clone());
+    measure((IMAGES - 2) * path.sites(), || band.evaluate())
+}
+
+/// A whole implicit iteration: evaluation, Hessians, factorisations, the sweep and the move.
+fn iteration(h: &Hamiltonian, path: &Path) -> Figure {
+    let (sites, c) = (path.sites(), 2.0 * 0.5 * (50.0 / path.sites() as f64).powi(2));
+    let mut band = Band::new(h, path.clone());
+    let mut sweep = Sweep::new(c);
+    let mut optimiser = Implicit {}.start(h.stiffness_mev());
+    measure((IMAGES - 2) * sites, || {
+        band.evaluate();
+        let step = sweep.step(&band, &[[0.0, 0.0, 1.0]]);
+        optimiser.advance(band.inner_mut(), 3 * sites, &step.moves);
+    })
+}
+
+/// a ← b + s c over 3 × 64 MiB: bytes read and written per CPU second.
+fn triad_gb_per_s() -> f64 {
+    const LENGTH: usize = 8 << 20;
+    let (mut a, b, c) = (vec![0.0; LENGTH], vec![1.0; LENGTH], vec![2.0; LENGTH]);
+    let figure = measure(LENGTH, || {
+        for ((a, b), c) in a.iter_mut().zip(&b).zip(&c) {
+            *a = b + 3.0 * c;
+        }
+        assert!(std::hint::black_box(&a)[LENGTH / 2] == 7.0);
+    });
+    figure.per_cpu() * 24e-3
+}
