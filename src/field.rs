@@ -40,6 +40,12 @@ impl<'a> Components<'a> {
         self.x.len()
     }
 
+    /// The sites of `range` alone.
+    #[inline]
+    pub fn range(&self, range: std::ops::Range<usize>) -> Components<'a> {
+        Components { x: &self.x[range.clone()], y: &self.y[range.clone()], z: &self.z[range] }
+    }
+
     /// The vector on site i.
     #[inline]
     pub fn get(&self, i: usize) -> Vector {

@@ -151,7 +151,11 @@ impl Hamiltonian {
             g.x.fill(0.0);
             g.y.fill(0.0);
             g.z.fill(0.0);
-            self.terms.iter().map(|t| t.add_gradient(m, g.reborrow(), range.clone())).sum()
+            let mut density = [0.0; TILE];
+            for t in &self.terms {
+                t.add_gradient(m, g.reborrow(), &mut density[..range.len()], range.clone());
+            }
+            slab::sum(&density[..range.len()])
         };
         let tiles = split(g, TILE);
         let sums: Vec<f64> = if self.sites >= LONG {
@@ -190,7 +194,7 @@ impl Hamiltonian {
     pub fn density(&self, m: &[f64]) -> Vec<f64> {
         let mut density = vec![0.0; self.sites];
         for t in &self.terms {
-            t.add_density(Components::new(m), &mut density);
+            super::add_density(t.as_ref(), m, &mut density);
         }
         density
     }
@@ -199,9 +203,7 @@ impl Hamiltonian {
     pub fn energies_mev(&self, m: &[f64]) -> Vec<(&'static str, f64)> {
         let mut sums: Vec<(&'static str, f64)> = Vec::new();
         for t in &self.terms {
-            let mut density = vec![0.0; self.sites];
-            t.add_density(Components::new(m), &mut density);
-            let e = t.reference_mev() + slab::sum(&density);
+            let e = t.reference_mev() + slab::sum(&super::density_of(t.as_ref(), m));
             match sums.iter_mut().find(|(name, _)| *name == t.name()) {
                 Some((_, sum)) => *sum += e,
                 None => sums.push((t.name(), e)),

@@ -40,23 +40,6 @@ pub fn fold(a: [f64; 8]) -> f64 {
     ((a[0] + a[4]) + (a[1] + a[5])) + ((a[2] + a[6]) + (a[3] + a[7]))
 }
 
-/// What `at` adds up over 0 … `len`, eight lanes at a time: the loop of the energy kernels.
-#[inline(always)]
-pub fn accumulate(len: usize, mut at: impl FnMut(usize, &mut f64)) -> f64 {
-    let mut lanes = [0.0; 8];
-    let whole = len - len % 8;
-    for k in (0..whole).step_by(8) {
-        for (l, lane) in lanes.iter_mut().enumerate() {
-            at(k + l, lane);
-        }
-    }
-    let mut rest = 0.0;
-    for k in whole..len {
-        at(k, &mut rest);
-    }
-    fold(lanes) + rest
-}
-
 /// |a|.
 pub fn norm(a: &[f64]) -> f64 {
     dot(a, a).sqrt()
