@@ -133,10 +133,12 @@ fn iteration(h: &Hamiltonian, path: &Path) -> Figure {
     let mut band = Band::new(h, path.clone());
     let mut sweep = Sweep::new(c);
     let mut optimiser = Implicit {}.start(h.stiffness_mev());
+    let mut moves = vec![0.0; (IMAGES - 2) * 3 * sites];
     measure((IMAGES - 2) * sites, || {
         band.evaluate();
-        let step = sweep.step(&band, &[[0.0, 0.0, 1.0]]);
-        optimiser.advance(band.inner_mut(), 3 * sites, &step.moves);
+        let step = sweep.step(&band, &[[0.0, 0.0, 1.0]], &mut moves);
+        assert!(step.rotation.is_finite());
+        optimiser.advance(band.inner_mut(), 3 * sites, &moves);
     })
 }
 

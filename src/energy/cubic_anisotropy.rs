@@ -136,10 +136,7 @@ impl EnergyTerm for CubicAnisotropy {
 
     fn add_blocks(&self, m: Components, blocks: &mut Blocks) {
         for i in 0..m.sites() {
-            let b = self.curvature(i, m.get(i));
-            for r in 0..3 {
-                blocks.site[i][r] = vector::add(blocks.site[i][r], b[r]);
-            }
+            blocks.add_site(i, self.curvature(i, m.get(i)));
         }
     }
 

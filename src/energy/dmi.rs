@@ -128,10 +128,7 @@ impl EnergyTerm for Dmi {
     fn add_blocks(&self, _: Components, blocks: &mut Blocks) {
         for (i, &d) in self.d.iter().enumerate() {
             if d != 0.0 {
-                let b = cross_block(vector::scale(d, self.direction));
-                for r in 0..3 {
-                    blocks.bond[0][i][r] = vector::add(blocks.bond[0][i][r], b[r]);
-                }
+                blocks.bond[0].add(i, cross_block(vector::scale(d, self.direction)));
             }
         }
     }

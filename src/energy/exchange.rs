@@ -174,9 +174,7 @@ impl EnergyTerm for Exchange {
                 if j[i] != 0.0 {
                     blocks.add_isotropic(i, j[i].abs());
                     blocks.add_isotropic((i + n) % sites, j[i].abs());
-                    for c in 0..3 {
-                        blocks.bond[k][i][c][c] -= j[i];
-                    }
+                    blocks.bond[k].isotropic[i] -= j[i];
                 }
             }
         }

@@ -17,12 +17,12 @@ mod spec;
 mod zeeman;
 
 pub use anisotropy::{Anisotropy, AnisotropySpec};
-pub use blocks::Blocks;
+pub use blocks::{Blocks, Bonds};
 pub use cubic_anisotropy::{CubicAnisotropy, CubicAnisotropySpec};
 pub use dmi::{Dmi, DmiSpec};
 pub use exchange::{Exchange, ExchangeSpec};
 pub use hamiltonian::Hamiltonian;
-pub use hessian::{TangentBasis, assemble};
+pub use hessian::{TangentBasis, assemble, assemble_shifted};
 pub use spec::{Medium, TermBuilder, TermSpec};
 pub use zeeman::{Zeeman, ZeemanSpec};
 
