@@ -60,9 +60,15 @@ def main():
 def arguments():
     p = argparse.ArgumentParser(prog="run.sh", description="Compares spinneb with spirit on one thread.")
     p.add_argument("--spinneb", required=True, type=lambda p: str(Path(p).resolve()), help=argparse.SUPPRESS)
-    p.add_argument("--repeat", type=int, default=5, help="repetitions of every run; the least time counts (default 5)")
+    p.add_argument("--repeat", type=positive, default=5, help="repetitions of every run; the least time counts (default 5)")
     p.add_argument("--markdown", action="store_true", help="print the tables as Markdown")
     return p.parse_args()
+
+
+def positive(word):
+    if int(word) < 1:
+        raise ValueError
+    return int(word)
 
 
 def say(words):
@@ -79,7 +85,8 @@ def one_thread():
 def child(command):
     """Runs a program; its stdout and the CPU seconds of the whole process."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    done = subprocess.run(one_thread() + command, cwd=ROOT, env=dict(os.environ, OMP_NUM_THREADS="1"), capture_output=True, text=True)
+    alone = dict(os.environ, OMP_NUM_THREADS="1")
+    done = subprocess.run(one_thread() + command, cwd=ROOT, env=alone, capture_output=True, text=True)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     # 3: finished but not certified, which the table shows.
     if done.returncode not in (0, 3):
@@ -135,9 +142,14 @@ def candidates(case):
     return rows
 
 
+def short(number):
+    """As 1e-6."""
+    return f"{number:.0e}".replace("e-0", "e-")
+
+
 def stop(target):
     """When spirit's clock stops, in words."""
-    return "says converged" if target is DONE else f"within {target:.0e}"
+    return "says converged" if target is DONE else f"within {short(target)}"
 
 
 def least(runs):
@@ -150,7 +162,8 @@ def judge(row, case):
     if row["program"] == "spinneb":
         r = least(row["runs"])
         who = "spinneb" if row["certify"] else "spinneb, asked for no certificate"
-        return r | dict(who=who, given=CASES[case]["given"], stop=stop(DONE) if r["converged"] else "not converged", right=r["error"] <= NEAR)
+        words = stop(DONE) if r["converged"] else "not converged"
+        return r | dict(who=who, given=CASES[case]["given"], stop=words, right=r["error"] <= NEAR)
     best = min((s | least(s["runs"]) for s in row["settings"]), key=lambda s: s["cpu_s"])
     given = {"geodesic": "geodesic", "sweep": "hand-made sweep"}[best["start"]] + (", images to suit" if row["any"] else "")
     # A stop that the run against the clock did not confirm is not to pass for one.
@@ -163,7 +176,7 @@ def how(s):
     """A setting in words."""
     if not s["climbing"]:
         return f"{s['solver']}, no climbing"
-    first = f"after {s['plain_meV']:.0e} meV" if s["plain"] else "at once"
+    first = f"after {short(s['plain_meV'])} meV" if s["plain"] else "at once"
     return f"{s['solver']}, {s['climb']} climbing {first}"
 
 
@@ -180,10 +193,12 @@ def goal(name, table):
     met = "met" if ratio >= wanted and own["certified"] and own["right"] else "NOT met"
     unaided = [r["cpu_s"] / own["cpu_s"] for r in rows if r["stop"] == stop(DONE)]
     beside = f", {min(unaided):.2g} times with 20 images until it says that it has converged" if unaided else ""
-    return f"{name}: the goal, 1/{wanted} of the CPU time of spirit's best, is {met}: spirit's best takes {ratio:.2g} times spinneb's{beside}"
+    words = f"{name}: the goal, 1/{wanted} of the CPU time of spirit's best, is {met}"
+    return f"{words}: spirit's best takes {ratio:.2g} times spinneb's{beside}"
 
 
-HEAD = ["program", "given", "images", "stops", "CPU ms, solving", "CPU ms, process", "evaluations", "barrier (meV)", "relative error", "certified", "CPU time over spinneb's"]
+HEAD = ["program", "given", "images", "stops", "CPU ms, solving", "CPU ms, process", "evaluations"]
+HEAD += ["barrier (meV)", "relative error", "certified", "CPU time over spinneb's"]
 
 
 def cells(row, own):
@@ -196,7 +211,7 @@ def cells(row, own):
         f"{row['process_s'] * 1e3:.0f}",
         str(row["evaluations"]),
         f"{row['barrier_meV']:.9f}",
-        f"{row['error']:.0e}" if row["right"] else f"{row['error']:.2g}: wrong",
+        short(row["error"]) if row["right"] else f"{row['error']:.2g}: wrong",
         {True: "yes", False: "no", None: "–"}[row["certified"]],
         f"{row['cpu_s'] / own['cpu_s']:.2g}" if row["right"] else "",
     ]

@@ -201,7 +201,8 @@ def solve(case, s):
         iterations += info.total_iterations
         says = info.total_iterations < s["climbing"]
     evaluations = iterations * (s["images"] - 2) + band.end_iterations
-    return dict(cpu_s=band.clock, iterations=iterations, evaluations=evaluations, barrier_meV=band.barrier_mev(), error=band.error(), converged=says)
+    barrier = dict(barrier_meV=band.barrier_mev(), error=band.error())
+    return barrier | dict(cpu_s=band.clock, iterations=iterations, evaluations=evaluations, converged=says)
 
 
 def main():
