@@ -15,6 +15,13 @@ pub fn image_bytes(sites: usize, reach: usize, periodic: bool) -> f64 {
     sites as f64 * (vectors + hessian) as f64
 }
 
+/// Memory of the Hessian's couplings of distant sites, and their factors (bytes), as many at a time as there are threads;
+/// `state` is how many numbers they pass through at a site, and none where they are all pairs.
+pub fn far_bytes(sites: usize, state: Option<usize>, threads: usize) -> f64 {
+    let a_site = state.map_or(2.0 * 4.0 * sites as f64, |s| 2.0 * (4 * s + 12) as f64);
+    a_site * (sites * size_of::<f64>()) as f64 * (2 * threads) as f64
+}
+
 /// Memory of the energy (bytes): coefficients of its terms and constant blocks.
 pub fn hamiltonian_bytes(sites: usize, reach: usize, terms: usize) -> f64 {
     let blocks = 9 * (reach + 1) * size_of::<f64>();

@@ -2,7 +2,7 @@
 
 use crate::energy::Hamiltonian;
 use crate::field::Components;
-use crate::linalg::{eigenvalues_symmetric, lowest_modes};
+use crate::linalg::{eigenvalues_symmetric, lowest_modes, slab};
 use crate::saddle::State;
 
 /// Scales from which tolerances, shifts and image counts follow.
@@ -60,15 +60,22 @@ fn softest_mode(h: &Hamiltonian, m: &[f64]) -> f64 {
     lowest_modes(&state.hessian, 1, &state.zeros).first().map_or(0.0, |mode| mode.value)
 }
 
-/// Median over sites of the gap between the two lowest on-site curvatures: 2K of an easy axis.
+/// Median over sites of the gap between the two lowest on-site curvatures: 2K of an easy axis. Magnetostatics count as between
+/// spins that are all alike: the anisotropy of the chain's shape.
 fn on_site_gap(h: &Hamiltonian) -> f64 {
     let zero = vec![0.0; 3 * h.sites()];
     let own = h.varying_blocks(Components::new(&zero));
     let blocks = own.as_ref().unwrap_or(h.constant_blocks());
+    let others = h.long_range().map(|long| long.sums_of_others());
     let mut gaps: Vec<f64> = blocks
         .sites()
-        .map(|b| {
-            let e = eigenvalues_symmetric(&b.concat(), 3);
+        .enumerate()
+        .map(|(i, b)| {
+            let mut sum = b.concat();
+            if let Some(others) = &others {
+                slab::add_scaled(&mut sum, 1.0, &others[i].concat());
+            }
+            let e = eigenvalues_symmetric(&sum, 3);
             e[1] - e[0]
         })
         .collect();

@@ -1,7 +1,7 @@
 //! The sum of the terms, on a chain.
 
-use super::{Blocks, EnergyTerm};
-use crate::error::Result;
+use super::{Blocks, EnergyTerm, Magnetostatics};
+use crate::error::{Error, Result};
 use crate::field::{Components, ComponentsMut, TILE, tiles};
 use crate::geometry::{Direction, Vector, vector};
 use crate::lattice::Chain;
@@ -21,6 +21,8 @@ pub struct Hamiltonian {
     frozen: Vec<bool>,
     has_frozen: bool,
     terms: Vec<Box<dyn EnergyTerm>>,
+    /// The term that joins all pairs of sites.
+    long: Option<usize>,
     blocks: Blocks,
     reach: usize,
     stiffness: f64,
@@ -38,6 +40,11 @@ impl Hamiltonian {
                 frozen[i] = true;
             }
         }
+        let mut long = terms.iter().enumerate().filter(|(_, t)| t.long_range().is_some());
+        let (long, second) = (long.next().map(|(k, _)| k), long.next());
+        if let (Some(first), Some((_, second))) = (long, second) {
+            return Err(twice(terms[first].name(), second.name()));
+        }
         let reach = terms.iter().map(|t| t.reach()).max().unwrap_or(0).min(chain.sites - 1);
         let axes = symmetry_axes(&terms);
         let mut h = Hamiltonian {
@@ -46,6 +53,7 @@ impl Hamiltonian {
             has_frozen: frozen.contains(&true),
             frozen,
             terms,
+            long,
             blocks: Blocks::zeros(0, 0),
             reach,
             stiffness: 0.0,
@@ -83,7 +91,7 @@ impl Hamiltonian {
         self.periodic
     }
 
-    /// How many sites away the furthest partner is.
+    /// How many sites away the furthest partner is that has a block of its own; a long-ranged term goes on from there.
     pub fn reach(&self) -> usize {
         self.reach
     }
@@ -96,6 +104,11 @@ impl Hamiltonian {
     /// Whether any site never moves.
     pub fn has_frozen(&self) -> bool {
         self.has_frozen
+    }
+
+    /// The term that joins all pairs of sites, if there is one.
+    pub fn long_range(&self) -> Option<&Magnetostatics> {
+        self.long.and_then(|k| self.terms[k].long_range())
     }
 
     /// The terms, in the order of the config.
@@ -133,13 +146,21 @@ impl Hamiltonian {
     pub fn energy_gradient(&self, m: &[f64], g: &mut [f64]) -> f64 {
         self.evaluations.fetch_add(1, Ordering::Relaxed);
         let m = Components::new(m);
+        let far = self.long_range().map_or(0.0, |long| {
+            g.fill(0.0);
+            let mut density = vec![0.0; self.sites];
+            long.add_gradient(m, ComponentsMut::new(g), &mut density, 0..self.sites);
+            slab::sum(&density)
+        });
         let tile = |(first, mut g): (usize, ComponentsMut)| -> f64 {
             let range = first..first + g.x.len();
-            g.x.fill(0.0);
-            g.y.fill(0.0);
-            g.z.fill(0.0);
+            if self.long.is_none() {
+                g.x.fill(0.0);
+                g.y.fill(0.0);
+                g.z.fill(0.0);
+            }
             let mut density = [0.0; TILE];
-            for t in &self.terms {
+            for (_, t) in self.terms.iter().enumerate().filter(|(k, _)| self.long != Some(*k)) {
                 t.add_gradient(m, g.reborrow(), &mut density[..range.len()], range.clone());
             }
             slab::sum(&density[..range.len()])
@@ -149,7 +170,7 @@ impl Hamiltonian {
         } else {
             tiles(g).map(tile).collect()
         };
-        slab::sum(&sums)
+        far + slab::sum(&sums)
     }
 
     /// Gradients computed so far.
@@ -247,6 +268,19 @@ impl Hamiltonian {
         }
         Some(blocks)
     }
+}
+
+/// Two terms that count the same forces.
+fn twice(first: &str, second: &str) -> Error {
+    let what = if first == second {
+        format!("\"{first}\" is there twice")
+    } else {
+        format!("there are both \"{first}\" and \"{second}\"")
+    };
+    Error::invalid(
+        "energy",
+        format!("{what}, of the material or here: keep one, or the moments act on each other twice"),
+    )
 }
 
 /// Axes of global rotations under which all terms are invariant.

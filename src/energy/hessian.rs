@@ -4,10 +4,11 @@
 //! H = Uᵀ A U − diag(m_i·g_i) ⊗ 1₂        A = ∂²E/∂m∂m, g = ∂E/∂m, U the 3N × 2N matrix of tangent bases
 //! ```
 //! (Absil, Mahony, Trumpf, LNCS 8085, 361 (2013), doi:10.1007/978-3-642-40020-9_39.) Unknown 2i + a is the component of site i
-//! along its basis vector a; shells 1 … r give the half-bandwidth 2r + 1, and the last r sites of a ring are the rim.
+//! along its basis vector a; shells 1 … r give the half-bandwidth 2r + 1, and the last r sites of a ring are the rim. What a
+//! long-ranged term adds is in [`far`].
 
-use super::Hamiltonian;
 use super::blocks::{Blocks, Bonds, multiply};
+use super::{Hamiltonian, far};
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Vector, tangent_basis, vector};
 use crate::linalg::Banded;
@@ -152,14 +153,25 @@ fn write_component(t: &[f64], e: &[f64], f: &[f64], v: &mut [f64]) {
 /// The Riemannian Hessian at `m`, where the Euclidean gradient is `g`. A frozen site has a stiff diagonal and no couplings.
 pub fn assemble(h: &Hamiltonian, m: &[f64], g: &[f64], basis: &TangentBasis) -> Banded {
     let mut matrix = Banded::default();
-    assemble_shifted(h, m, g, basis, 0.0, &mut matrix);
+    fill(h, m, g, basis, 0.0, true, &mut matrix);
     matrix
 }
 
-/// [`assemble`] of H + shift·1 into the memory of `matrix`.
+/// [`assemble`] of H + shift·1 into the memory of `matrix`. What a long-ranged term does to distant sites is there to six digits
+/// only: enough to steer, and quicker.
 pub fn assemble_shifted(h: &Hamiltonian, m: &[f64], g: &[f64], basis: &TangentBasis, shift: f64, matrix: &mut Banded) {
-    let rim = if h.periodic() { h.reach() } else { 0 };
-    matrix.reset(2 * (h.sites() - rim), 2 * h.reach() + 1, 2 * rim);
+    fill(h, m, g, basis, shift, false, matrix);
+}
+
+fn fill(h: &Hamiltonian, m: &[f64], g: &[f64], basis: &TangentBasis, shift: f64, precise: bool, matrix: &mut Banded) {
+    let dense = h.long_range().is_some_and(|long| long.exponentials(precise).is_none());
+    let rim = match (dense, h.periodic()) {
+        (true, _) => h.sites(),
+        (false, true) => h.reach(),
+        (false, false) => 0,
+    };
+    let width = if dense { 1 } else { 2 * h.reach() + 1 };
+    matrix.reset(2 * (h.sites() - rim), width, 2 * rim);
     let own = h.varying_blocks(Components::new(m));
     let parts = Parts {
         h,
@@ -173,6 +185,9 @@ pub fn assemble_shifted(h: &Hamiltonian, m: &[f64], g: &[f64], basis: &TangentBa
     parts.write_plain(plain, matrix);
     for i in plain..h.sites() {
         parts.add_site(i, matrix);
+    }
+    if let Some(long) = h.long_range() {
+        far::add(h, long, basis, precise, matrix);
     }
 }
 

@@ -9,20 +9,27 @@
 mod anisotropy;
 mod blocks;
 mod cubic_anisotropy;
+mod demag;
+mod dipolar;
 mod dmi;
 mod exchange;
+mod far;
 mod hamiltonian;
 mod hessian;
+pub mod magnetostatics;
 mod spec;
 mod zeeman;
 
 pub use anisotropy::{Anisotropy, AnisotropySpec};
 pub use blocks::{Blocks, Bonds};
 pub use cubic_anisotropy::{CubicAnisotropy, CubicAnisotropySpec};
+pub use demag::DemagSpec;
+pub use dipolar::DipolarSpec;
 pub use dmi::{Dmi, DmiSpec};
 pub use exchange::{Exchange, ExchangeSpec};
 pub use hamiltonian::Hamiltonian;
 pub use hessian::{TangentBasis, assemble, assemble_shifted};
+pub use magnetostatics::Magnetostatics;
 pub use spec::{Medium, TermBuilder, TermSpec};
 pub use zeeman::{Zeeman, ZeemanSpec};
 
@@ -79,4 +86,10 @@ pub trait EnergyTerm: Debug + Send + Sync {
 
     /// Axes that the term itself singles out: candidates for a symmetry axis.
     fn axes(&self) -> Vec<Vector>;
+
+    /// The term as one that joins all pairs of sites, if it does: its gradient is then asked for once a configuration, for all
+    /// sites together, and its [`reach`](Self::reach) is that of the blocks it adds, which are not all.
+    fn long_range(&self) -> Option<&Magnetostatics> {
+        None
+    }
 }

@@ -1,6 +1,8 @@
 //! From a term as written in a config to a term with numbers a site: units, cell sizes and selections.
 
-use super::{AnisotropySpec, CubicAnisotropySpec, DmiSpec, EnergyTerm, ExchangeSpec, ZeemanSpec};
+use super::{
+    AnisotropySpec, CubicAnisotropySpec, DemagSpec, DipolarSpec, DmiSpec, EnergyTerm, ExchangeSpec, ZeemanSpec,
+};
 use crate::error::{Error, Result};
 use crate::lattice::{Chain, Selection};
 use crate::registry::family;
@@ -14,6 +16,8 @@ family! {
         CubicAnisotropy(CubicAnisotropySpec),
         Dmi(DmiSpec),
         Zeeman(ZeemanSpec),
+        Dipolar(DipolarSpec),
+        Demag(DemagSpec),
     }
 }
 
@@ -92,7 +96,14 @@ impl Medium<'_> {
         }
     }
 
-    fn spacing_nm(&self) -> Result<f64> {
+    /// Width and thickness of a cell.
+    pub(super) fn edges_nm(&self) -> Result<[f64; 2]> {
+        self.section_nm2()?;
+        Ok(self.chain.cross_section.map_or([0.0; 2], |edges| edges.map(|e| e.0)))
+    }
+
+    /// Distance between neighbours.
+    pub(super) fn spacing_nm(&self) -> Result<f64> {
         let missing = || Error::invalid("", "a continuum quantity needs the lattice's \"spacing\" (\"2 nm\")");
         self.chain.spacing.map(|a| a.0).ok_or_else(missing)
     }

@@ -4,9 +4,9 @@
 //!   ⎡ T   Rᵀ ⎤   T: n × n, half-bandwidth w          (the open chain)
 //!   ⎣ R   C  ⎦   R: b × n dense, C: b × b             (the sites that close a ring)
 //! ```
-//! Factorised by [`Ldl`].
+//! A matrix without a rim may have a long-ranged [`Tail`] besides. Factorised by [`Ldl`].
 
-use super::{Ldl, slab};
+use super::{Ldl, Tail, slab};
 
 /// A symmetric matrix of `inner` banded unknowns followed by `border` unknowns coupled to all.
 #[derive(Clone, Debug, Default)]
@@ -20,6 +20,8 @@ pub struct Banded {
     pub(super) rim: Vec<f64>,
     /// corner[r b + s] = A[n+r][n+s], lower half used.
     pub(super) corner: Vec<f64>,
+    /// What reaches further than the band.
+    pub(super) tail: Option<Tail>,
 }
 
 impl Banded {
@@ -32,6 +34,7 @@ impl Banded {
             band: vec![0.0; (inner + width) * (width + 1)],
             rim: vec![0.0; inner * border],
             corner: vec![0.0; border * border],
+            tail: None,
         }
     }
 
@@ -43,6 +46,13 @@ impl Banded {
             entries.clear();
             entries.resize(length, 0.0);
         }
+        self.tail = None;
+    }
+
+    /// Adds a tail to a matrix of two unknowns a site, without a rim.
+    pub fn set_tail(&mut self, tail: Tail) {
+        debug_assert!(self.border == 0 && self.inner == 2 * tail.rows.len());
+        self.tail = Some(tail);
     }
 
     /// Number of unknowns.
@@ -55,6 +65,7 @@ impl Banded {
         self.band.fill(0.0);
         self.rim.fill(0.0);
         self.corner.fill(0.0);
+        self.tail = None;
     }
 
     /// Adds `v` to the entry (i, j) and, off the diagonal, to its mirror image. The entry must lie in the band or the rim.
@@ -77,8 +88,13 @@ impl Banded {
         self.band[first * pair..self.inner * (self.width + 1)].chunks_exact_mut(pair)
     }
 
-    /// Entry (i, j); zero outside the band.
+    /// Entry (i, j); zero outside the band where there is no tail.
     pub fn get(&self, i: usize, j: usize) -> f64 {
+        self.get_band(i, j) + self.tail.as_ref().map_or(0.0, |t| t.get(i, j))
+    }
+
+    /// Entry (i, j) without the tail.
+    pub(super) fn get_band(&self, i: usize, j: usize) -> f64 {
         let (i, j) = if i >= j { (i, j) } else { (j, i) };
         if i < self.inner {
             if i - j <= self.width { self.band[j * (self.width + 1) + i - j] } else { 0.0 }
@@ -127,9 +143,12 @@ impl Banded {
                 }
             }
         }
+        if let Some(tail) = &self.tail {
+            tail.add_product(x, y);
+        }
     }
 
-    /// The largest column sum of absolute values, ‖A‖₁.
+    /// The largest column sum of absolute values, ‖A‖₁; a tail counts with its estimate.
     pub fn norm1(&self) -> f64 {
         let (n, w, b) = (self.inner, self.width, self.border);
         let mut sums = vec![0.0; n + b];
@@ -156,7 +175,7 @@ impl Banded {
                 }
             }
         }
-        sums.into_iter().fold(0.0, f64::max)
+        sums.into_iter().fold(0.0, f64::max) + self.tail.as_ref().map_or(0.0, |t| t.norm)
     }
 
     /// A = L D Lᵀ, in the memory of A. A pivot smaller than the rounding error of the matrix is replaced by that error's
@@ -168,7 +187,7 @@ impl Banded {
     /// About the largest column sum, from one quick pass: the largest entry times the number of entries in a column.
     pub(super) fn size(&self) -> f64 {
         let largest = slab::max_abs(&self.band).max(slab::max_abs(&self.rim)).max(slab::max_abs(&self.corner));
-        largest * (2 * self.width + 1 + self.border) as f64
+        largest * (2 * self.width + 1 + self.border) as f64 + self.tail.as_ref().map_or(0.0, |t| t.norm)
     }
 }
 

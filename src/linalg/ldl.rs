@@ -4,12 +4,15 @@
 //! Open chains of short reach have a path of their own, with the next columns in registers: what follows a pivot waits for
 //! nothing but that pivot.
 
-use super::Banded;
+use super::{Banded, TailLdl};
+use multiversion::multiversion;
 
 /// The factors L and D of a [`Banded`] matrix.
 #[derive(Clone, Debug, Default)]
 pub struct Ldl {
     a: Banded,
+    /// The factors, where the matrix has a tail: then `a` is the matrix as it was.
+    tail: Option<TailLdl>,
 }
 
 impl Ldl {
@@ -17,13 +20,17 @@ impl Ldl {
     /// error's size, sign kept.
     pub fn of(mut a: Banded) -> Ldl {
         let floor = 4.0 * f64::EPSILON * a.size().max(1e-280);
+        if a.tail.is_some() {
+            let tail = Some(TailLdl::of(&a, floor));
+            return Ldl { a, tail };
+        }
         match (a.width, a.border) {
             (1, 0) => eliminate_open::<1, 2>(&mut a, floor),
             (3, 0) => eliminate_open::<3, 4>(&mut a, floor),
             (5, 0) => eliminate_open::<5, 6>(&mut a, floor),
             _ => eliminate(&mut a, floor),
         }
-        Ldl { a }
+        Ldl { a, tail: None }
     }
 
     /// The memory, to be filled anew.
@@ -31,10 +38,13 @@ impl Ldl {
         self.a
     }
 
+    /// D, or the eigenvalues of its blocks.
     fn pivots(&self) -> impl Iterator<Item = f64> + '_ {
         let (s, b) = (self.a.width + 1, self.a.border);
-        let band = (0..self.a.inner).map(move |j| self.a.band[j * s]);
-        band.chain((0..b).map(move |r| self.a.corner[r * b + r]))
+        let inner = if self.tail.is_some() { 0 } else { self.a.inner };
+        let band = (0..inner).map(move |j| self.a.band[j * s]);
+        let tail = self.tail.iter().flat_map(|t| t.pivots().iter().copied());
+        band.chain((0..b).map(move |r| self.a.corner[r * b + r])).chain(tail)
     }
 
     /// Number of negative eigenvalues of A.
@@ -63,6 +73,9 @@ impl Ldl {
 
     /// Solves A X = B in place for `columns` right-hand sides, interleaved: x[j columns + c].
     pub fn solve(&self, x: &mut [f64], columns: usize) {
+        if let Some(tail) = &self.tail {
+            return solve_by_column(x, columns, |column| tail.solve(column));
+        }
         match (self.a.width, self.a.border, columns) {
             (3, 0, 1) => substitute_open::<3, 4, 1>(&self.a, x),
             (3, 0, 2) => substitute_open::<3, 4, 2>(&self.a, x),
@@ -144,17 +157,39 @@ fn eliminate(m: &mut Banded, floor: f64) {
             column[k] *= inverse;
         }
     }
+    eliminate_corner(&mut m.corner, b, floor);
+}
+
+/// Elimination of a dense matrix, row by row, lower half.
+#[multiversion(targets("x86_64+avx2"))]
+fn eliminate_corner(corner: &mut [f64], b: usize, floor: f64) {
+    let mut column = vec![0.0; b];
     for j in 0..b {
-        let d = guarded(m.corner[j * b + j], floor);
-        m.corner[j * b + j] = d;
+        let d = guarded(corner[j * b + j], floor);
+        corner[j * b + j] = d;
         for r in j + 1..b {
-            let l = m.corner[r * b + j] / d;
-            for s in j + 1..=r {
-                m.corner[r * b + s] -= l * m.corner[s * b + j];
-            }
+            column[r] = corner[r * b + j];
         }
         for r in j + 1..b {
-            m.corner[r * b + j] /= d;
+            let l = column[r] / d;
+            for (x, c) in corner[r * b + j + 1..=r * b + r].iter_mut().zip(&column[j + 1..]) {
+                *x -= l * c;
+            }
+            corner[r * b + j] = l;
+        }
+    }
+}
+
+/// Solves for interleaved right-hand sides one after the other.
+fn solve_by_column(x: &mut [f64], columns: usize, solve: impl Fn(&mut [f64])) {
+    if columns == 1 {
+        return solve(x);
+    }
+    for c in 0..columns {
+        let mut column: Vec<f64> = x[c..].iter().step_by(columns).copied().collect();
+        solve(&mut column);
+        for (x, y) in x[c..].iter_mut().step_by(columns).zip(column) {
+            *x = y;
         }
     }
 }
@@ -196,8 +231,8 @@ fn substitute(m: &Banded, c: usize, x: &mut [f64]) {
             x[(n + r) * c + q] /= m.corner[r * b + r];
         }
     }
-    for r in (0..b).rev() {
-        for s in r + 1..b {
+    for s in (0..b).rev() {
+        for r in 0..s {
             for q in 0..c {
                 x[(n + r) * c + q] -= m.corner[s * b + r] * x[(n + s) * c + q];
             }

@@ -1,12 +1,21 @@
-//! Linear algebra of short-ranged chains: banded symmetric matrices, their LDLᵀ, and the small dense matrices beside them.
+//! Linear algebra of chains: banded symmetric matrices, with or without a long-ranged tail, their LDLᵀ, the small dense matrices
+//! beside them, the Fourier transform, and numbers of twice the digits.
 
 mod banded;
+mod double_double;
+mod fft;
 mod ldl;
 mod lowest;
 pub mod slab;
 mod small;
+mod tail;
+mod tail_ldl;
 
 pub use banded::Banded;
+pub use double_double::DoubleDouble;
+pub use fft::Fft;
 pub use ldl::Ldl;
 pub use lowest::{Mode, lowest_modes, rayleigh_ritz};
 pub use small::{eigen_symmetric, eigenvalues_symmetric, solve_dense};
+pub use tail::{Decays, Tail};
+pub use tail_ldl::TailLdl;

@@ -1,6 +1,7 @@
 //! Counting negative, flat and positive directions of a Hessian, zero modes apart.
 //!
-//! A sign is told only above the noise floor 8·eps·‖H‖₁. The counts come from the inertia of H ± floor with the zero modes
+//! A sign is told only above the noise floor: 8·eps·‖H‖₁, or what the Hessian of a long-ranged chain is known to, if that is
+//! more. The counts come from the inertia of H ± floor with the zero modes
 //! pinned (see [`super::Pinned`]), so they hold for all eigenvalues, not just the few that are computed.
 
 use super::pinned::pin;
@@ -20,7 +21,7 @@ pub struct Spectrum {
     pub flat: usize,
     /// Exact zero modes: rotations about symmetry axes.
     pub zero: usize,
-    /// The floor 8·eps·‖H‖₁ (meV).
+    /// The noise floor (meV).
     pub floor_mev: f64,
     /// ‖H‖₁ (meV).
     pub norm_mev: f64,
@@ -32,7 +33,8 @@ impl Spectrum {
     /// Of a state.
     pub fn of(h: &Hamiltonian, state: &State) -> Spectrum {
         let norm_mev = state.hessian.norm1();
-        let floor_mev = 8.0 * f64::EPSILON * norm_mev;
+        let left_out = h.long_range().map_or(0.0, |long| long.error_mev(true));
+        let floor_mev = (8.0 * f64::EPSILON * norm_mev).max(left_out);
         let below = |shift: f64| {
             let mut matrix = state.hessian.clone();
             let mut used = Vec::new();

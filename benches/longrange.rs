@@ -1,0 +1,96 @@
+//! What magnetostatics cost: the gradient beside that of short-ranged terms, and a factorised Hessian.
+//!
+//! `cargo bench --bench longrange`. One thread, CPU time, the best of several repetitions.
+
+use cpu_time::ProcessTime;
+use spinneb::energy::magnetostatics::{Convolution, Kernel, Shape};
+use spinneb::energy::{EnergyTerm, Hamiltonian, Medium, TangentBasis, TermSpec, assemble, assemble_shifted};
+use spinneb::geometry::Direction;
+use spinneb::lattice::Chain;
+use spinneb::linalg::Banded;
+use spinneb::spins::Spins;
+use spinneb::units::{Length, Magnetisation};
+use std::time::{Duration, Instant};
+
+fn main() {
+    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread to measure with");
+    one.install(|| {
+        convolutions();
+        gradients();
+    });
+}
+
+/// Where transforms become quicker than direct sums.
+fn convolutions() {
+    println!("one component of a convolution, µs:");
+    println!("{:>8} {:>10} {:>12}", "sites", "direct", "transforms");
+    for sites in [16, 32, 48, 64, 96, 128, 256, 300, 512, 1024] {
+        let convolution = Convolution::new(&Kernel::new(Shape::Dipoles, sites, false));
+        let (x, mut y) = (vec![1.0; sites], vec![0.0; sites]);
+        let direct = seconds(|| convolution.direct(0, &x, &mut y));
+        let fast = seconds(|| convolution.transformed(0, &x, &mut y));
+        println!("{sites:>8} {:>10.2} {:>12.2}", 1e6 * direct, 1e6 * fast);
+    }
+}
+
+fn gradients() {
+    println!("energy and gradient of one image, and one factorised Hessian:");
+    println!(
+        "{:>8} {:>14} {:>14} {:>8} {:>16} {:>14}",
+        "sites", "short (µs)", "with demag", "ratio", "Hessian (ms)", "rough (ms)"
+    );
+    for sites in [100, 1000, 4096, 16_384, 100_000] {
+        let short = hamiltonian(sites, &[EXCHANGE, ANISOTROPY]);
+        let all = hamiltonian(sites, &[EXCHANGE, ANISOTROPY, r#"{"demag": {}}"#]);
+        let m = Spins::uniform(sites, Direction::new([0.6, 0.48, 0.64]).expect("a direction"));
+        let mut g = vec![0.0; 3 * sites];
+        let a = seconds(|| assert!(short.energy_gradient(m.as_slice(), &mut g).is_finite()));
+        let b = seconds(|| assert!(all.energy_gradient(m.as_slice(), &mut g).is_finite()));
+        let basis = TangentBasis::at(m.as_slice());
+        let precise = seconds(|| {
+            let _ = std::hint::black_box(assemble(&all, m.as_slice(), &g, &basis).factor());
+        });
+        let rough = seconds(|| {
+            let mut matrix = Banded::default();
+            assemble_shifted(&all, m.as_slice(), &g, &basis, 0.0, &mut matrix);
+            let _ = std::hint::black_box(matrix.factor());
+        });
+        println!(
+            "{sites:>8} {:>14.2} {:>14.2} {:>8.1} {:>16.2} {:>14.2}",
+            1e6 * a,
+            1e6 * b,
+            b / a,
+            1e3 * precise,
+            1e3 * rough
+        );
+    }
+}
+
+const EXCHANGE: &str = r#"{"exchange": {"A": "13 pJ/m"}}"#;
+const ANISOTROPY: &str = r#"{"anisotropy": {"K": "10 kJ/m^3", "axis": [1, 0, 0]}}"#;
+
+fn hamiltonian(sites: usize, terms: &[&str]) -> Hamiltonian {
+    let edges = Some([Length(20.0), Length(5.0)]);
+    let chain = Chain { spacing: Some(Length(5.0)), cross_section: edges, ..Chain::open(sites) };
+    let medium = Medium { chain: &chain, moment: None, saturation: Some(Magnetisation(8e5)) };
+    let build = |text: &&str| -> Box<dyn EnergyTerm> {
+        let spec: TermSpec = serde_json::from_str(text).expect("a term");
+        spec.member().build(&medium).expect("a term")
+    };
+    Hamiltonian::new(&chain, terms.iter().map(build).collect()).expect("a chain")
+}
+
+/// CPU seconds of one call, the best of five repetitions of at least 0.05 s.
+fn seconds(mut work: impl FnMut()) -> f64 {
+    work();
+    let run = |work: &mut dyn FnMut()| {
+        let (cpu, wall) = (ProcessTime::now(), Instant::now());
+        let mut times = 0;
+        while wall.elapsed() < Duration::from_millis(50) {
+            work();
+            times += 1;
+        }
+        cpu.elapsed().as_secs_f64() / f64::from(times)
+    };
+    (0..5).map(|_| run(&mut work)).fold(f64::INFINITY, f64::min)
+}

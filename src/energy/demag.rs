@@ -1,0 +1,41 @@
+//! Magnetostatics of uniformly magnetised cells: spacing × width × thickness each, one a site, all pairs.
+//!
+//! ```text
+//! E = ½ μ₀ V Σ_ij M_i·N(|i − j|) M_j          N: Newell's tensors, trace 1 for i = j and 0 else
+//! ```
+//! The cells lie along the chain's direction. With the default, +x, their width is along y and their thickness along z; another
+//! direction takes these with it by the smallest rotation from x. A ring is the straight chain that repeats itself.
+
+use super::EnergyTerm;
+use super::magnetostatics::{Magnetostatics, Row, Shape};
+use super::spec::{Medium, TermBuilder};
+use crate::error::Result;
+use crate::geometry::Direction;
+use crate::registry::Described;
+use serde::Deserialize;
+
+/// `{}`.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DemagSpec {}
+
+impl Described for DemagSpec {
+    const NAME: &'static str = "demag";
+    const SUMMARY: &'static str = "demagnetising field of uniformly magnetised cells (Newell tensors), all pairs";
+    const EXAMPLE: &'static str = r#"{"demag": {}}"#;
+}
+
+impl TermBuilder for DemagSpec {
+    fn build(&self, medium: &Medium) -> Result<Box<dyn EnergyTerm>> {
+        let [width, thickness] = medium.edges_nm()?;
+        let spacing = medium.spacing_nm()?;
+        let row = Row {
+            shape: Shape::Cells { width: width / spacing, thickness: thickness / spacing },
+            volume_nm3: spacing * width * thickness,
+            periodic: medium.chain.periodic,
+            direction: medium.chain.direction.unwrap_or(Direction::X),
+        };
+        let moments = vec![medium.moment_mu_b()?; medium.chain.sites];
+        Ok(Box::new(Magnetostatics::new(DemagSpec::NAME, &row, moments)))
+    }
+}

@@ -1,0 +1,57 @@
+//! The Hessian's couplings of distant sites: all pairs of a short chain or a ring, exponentials along a long open chain.
+//!
+//! ```text
+//! H_ij = Σ_c r_ic K_c(|i − j|) r_jcᵀ,   r_ic = μ_i (e_i·f_c, e'_i·f_c)       e, e': tangent basis;  f: the chain's axes
+//! ```
+//! In a long open chain K is a sum of exponentials beyond the nearest shells, whose blocks are in the band already; so the
+//! band takes back what the sum gives there.
+
+use super::hessian::TangentBasis;
+use super::{Hamiltonian, Magnetostatics};
+use crate::geometry::{Vector, vector};
+use crate::linalg::{Banded, Decays, Tail};
+use std::sync::Arc;
+
+/// r of every site: two rows of three; zero where a site is frozen.
+type Rows = Vec<[Vector; 2]>;
+
+/// Adds what reaches further than the blocks.
+pub(super) fn add(h: &Hamiltonian, long: &Magnetostatics, basis: &TangentBasis, precise: bool, matrix: &mut Banded) {
+    let rows = rows(h, long, basis);
+    let Some(sum) = long.exponentials(precise) else { return add_pairs(long, &rows, matrix) };
+    for n in 1..=sum.shells {
+        let back = sum.at(n).map(|k| -k);
+        for i in 0..rows.len() - n {
+            add_pair(i, i + n, back, &rows, matrix);
+        }
+    }
+    let decays = Arc::new(Decays { q: sum.decays.clone(), weights: sum.weights.clone() });
+    matrix.set_tail(Tail { decays, norm: long.far_norm_mev(sum.shells), rows });
+}
+
+/// All pairs but those of neighbours that have a block.
+fn add_pairs(long: &Magnetostatics, rows: &Rows, matrix: &mut Banded) {
+    let [x, y, z] = &long.kernel().table;
+    for i in 0..rows.len() {
+        for j in i + 1..rows.len() {
+            add_pair(i, j, [x[j - i], y[j - i], z[j - i]], rows, matrix);
+        }
+    }
+}
+
+#[inline]
+fn add_pair(i: usize, j: usize, k: [f64; 3], rows: &Rows, matrix: &mut Banded) {
+    for (a, p) in rows[i].iter().enumerate() {
+        for (b, q) in rows[j].iter().enumerate() {
+            matrix.add(2 * j + b, 2 * i + a, p[0] * k[0] * q[0] + p[1] * k[1] * q[1] + p[2] * k[2] * q[2]);
+        }
+    }
+}
+
+fn rows(h: &Hamiltonian, long: &Magnetostatics, basis: &TangentBasis) -> Rows {
+    let row = |i: usize| {
+        let moment = if h.is_frozen(i) { 0.0 } else { long.moments()[i] };
+        basis.pair(i).map(|e| long.frame().map(|f| moment * vector::dot(e, f)))
+    };
+    (0..h.sites()).map(row).collect()
+}

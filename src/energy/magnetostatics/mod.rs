@@ -1,0 +1,22 @@
+//! What magnetic moments in a row do to each other, all pairs of them.
+//!
+//! ```text
+//! E = ½ (μ₀/V) Σ_ij μ_i μ_j m_i·N(|i − j|) m_j          = E_ref + Σ_i ½ (m_i·h_i − x̂·h_i(x̂))
+//! ∂E/∂m_i = h_i = (μ₀/V) μ_i Σ_j N(|i − j|) μ_j m_j
+//! ```
+//! N is the demagnetising tensor of uniformly magnetised cells of volume V, or that of point dipoles; it is diagonal in the
+//! chain's own axes (along, width, thickness). The reference is the chain magnetised along itself, x̂.
+
+mod convolution;
+mod exponentials;
+mod kernel;
+mod newell;
+mod series;
+mod term;
+
+pub use convolution::Convolution;
+pub use exponentials::Exponentials;
+pub use kernel::{Kernel, Shape};
+pub use newell::cell_tensor;
+pub use series::{Series, hurwitz_zeta};
+pub use term::{MU_0_MU_B_SQUARED, Magnetostatics, Row};

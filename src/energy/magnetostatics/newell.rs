@@ -1,0 +1,158 @@
+//! The demagnetising tensor of equal cuboid cells in a row, per volume of a cell.
+//!
+//! ```text
+//! N_xx(n) = −(4πV)⁻¹ δ²_x δ²_y δ²_z f(x, y, z) at x = n a, y = z = 0      δ²: second differences by a cell's edges
+//! f(x, y, z) = ½y(z² − x²) arsinh(y/√(x² + z²)) + ½z(y² − x²) arsinh(z/√(x² + y²)) − xyz arctan(yz/xr) + ⅙(2x² − y² − z²) r
+//! ```
+//! (N_yy and N_zz by exchanging the axes; on the row itself the tensor is diagonal.) The energy of two cells is
+//! μ₀ Ms² V m₁·N(n) m₂, of one ½ μ₀ Ms² V m·N(0) m.
+//! Newell, Williams, Dunlop, J. Geophys. Res. 98, 9551 (1993), doi:10.1029/93JB00694.
+//!
+//! The differences cancel all but a part 1/n⁶ of f, so they are taken in double-double arithmetic; from six diagonals of a
+//! cell on, the multipole series of [`super::series`] takes over.
+
+use crate::linalg::DoubleDouble;
+
+type Dd = DoubleDouble;
+
+/// N(n) = (xx, yy, zz) of cells with edges 1 × width × thickness (in units of their spacing), n cells apart.
+pub fn cell_tensor(n: usize, width: f64, thickness: f64) -> [f64; 3] {
+    let edges = [1.0, width, thickness].map(Dd::from);
+    let zero = Dd::from(0.0);
+    let mut sums = [zero; 3];
+    let (m, two) = (n as f64, -2.0);
+    for (x, along) in [(m - 1.0, 1.0), (m, two), (m + 1.0, 1.0)] {
+        for (y, across) in [(zero, two), (edges[1], 2.0)] {
+            for (z, through) in [(zero, two), (edges[2], 2.0)] {
+                let weight = Dd::from(along * across * through);
+                let x = Dd::from(x.abs());
+                for (sum, value) in sums.iter_mut().zip([newell_f(x, y, z), newell_f(y, x, z), newell_f(z, x, y)]) {
+                    *sum = *sum + weight * value;
+                }
+            }
+        }
+    }
+    let scale = Dd::from(-4.0 * std::f64::consts::PI) * edges[1] * edges[2];
+    sums.map(|s| (s / scale).to_f64())
+}
+
+/// Newell's f for lengths that are not negative.
+fn newell_f(x: Dd, y: Dd, z: Dd) -> Dd {
+    let (xx, yy, zz) = (x * x, y * y, z * z);
+    let r = (xx + yy + zz).sqrt();
+    let half = Dd::from(0.5);
+    let one = half * y * (zz - xx) * arsinh(y, (xx + zz).sqrt(), r);
+    let two = half * z * (yy - xx) * arsinh(z, (xx + yy).sqrt(), r);
+    let area = x * y * z;
+    let three = if area.to_f64() > 0.0 { area * (y * z / (x * r)).atan() } else { Dd::from(0.0) };
+    one + two - three + (xx + xx - yy - zz) * r / Dd::from(6.0)
+}
+
+/// arsinh(y/ρ) with r² = y² + ρ²; 0 where ρ is 0, for there its factor is.
+fn arsinh(y: Dd, rho: Dd, r: Dd) -> Dd {
+    if rho.to_f64() == 0.0 || y.to_f64() == 0.0 { Dd::from(0.0) } else { ((y + r) / rho).ln() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::energy::magnetostatics::series::Series;
+
+    /// (width, thickness, n, xx, yy, zz) from the closed form in 60-digit arithmetic.
+    const EXACT: [(f64, f64, usize, [f64; 3]); 12] = [
+        (1.0, 1.0, 1, [-0.13501718054449526839, 0.067508590272247634194, 0.067508590272247634194]),
+        (1.0, 1.0, 7, [-0.00046392442065692513619, 0.0002319622103284625681, 0.0002319622103284625681]),
+        (1.0, 1.0, 30, [-5.894624338776224308e-6, 2.947312169388112154e-6, 2.947312169388112154e-6]),
+        (1.0, 1.0, 100_000, [-1.5915494309189533577e-16, 7.9577471545947667884e-17, 7.9577471545947667884e-17]),
+        (4.0, 1.0, 0, [0.44577298426376077446, 0.10845403147247845108, 0.44577298426376077446]),
+        (4.0, 1.0, 3, [-0.014365738158045841726, 0.005454053715739346948, 0.0089116844423064947776]),
+        (4.0, 1.0, 20, [-0.000078124623187429579598, 0.000038702393285511027497, 0.000039422229901918552101]),
+        (4.0, 1.0, 1000, [-6.3661499777093377624e-10, 3.1830630524070157702e-10, 3.1830869253023219922e-10]),
+        (0.5, 20.0, 0, [0.34551952365451742329, 0.63842432368672821067, 0.01605615265875436604]),
+        (0.5, 20.0, 2, [-0.021874421309568164034, 0.020003817707294887102, 0.0018706036022732769322]),
+        (0.5, 20.0, 100, [-1.560774831791747209e-6, 7.8803523743235377397e-7, 7.7273959435939343505e-7]),
+        (0.5, 20.0, 1000, [-1.5912326083551858926e-9, 7.9569580029284873216e-10, 7.9553680806233716042e-10]),
+    ];
+
+    #[test]
+    fn near_and_far_the_tensor_has_the_value_of_sixty_digit_arithmetic() {
+        for (width, thickness, n, exact) in EXACT {
+            let series = Series::of_cells(width, thickness);
+            let found = if n < series.first() { cell_tensor(n, width, thickness) } else { series.at(n as f64) };
+            for c in 0..3 {
+                let error = (found[c] / exact[c] - 1.0).abs();
+                assert!(error < 2e-15, "{width} × {thickness}, {n}: {:e} {:e}, off by {error:e}", found[c], exact[c]);
+            }
+        }
+    }
+
+    #[test]
+    fn the_closed_form_and_the_multipole_series_agree_where_one_takes_over_from_the_other() {
+        for (width, thickness) in [(1.0, 1.0), (4.0, 1.0), (0.2, 0.3), (0.5, 20.0)] {
+            let series = Series::of_cells(width, thickness);
+            for n in series.first()..series.first() + 3 {
+                let (near, far) = (cell_tensor(n, width, thickness), series.at(n as f64));
+                for c in 0..3 {
+                    assert!((near[c] / far[c] - 1.0).abs() < 1e-14, "{width} × {thickness}, {n}: {near:?} {far:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_self_term_has_trace_one_a_cube_a_third_each_and_other_cells_trace_zero() {
+        for (width, thickness) in [(1.0, 1.0), (4.0, 1.0), (0.01, 3.0), (7.0, 0.3)] {
+            assert!((cell_tensor(0, width, thickness).iter().sum::<f64>() - 1.0).abs() < 1e-15);
+            for n in [1, 2, 9] {
+                let t = cell_tensor(n, width, thickness);
+                assert!(t.iter().sum::<f64>().abs() < 1e-15 * t[0].abs());
+            }
+        }
+        assert!(cell_tensor(0, 1.0, 1.0).iter().all(|n| (n - 1.0 / 3.0).abs() < 1e-16));
+    }
+
+    /// Aharoni's demagnetising factor along c of a prism with half edges a, b, c.
+    /// J. Appl. Phys. 83, 3432 (1998), doi:10.1063/1.367113, eq. (1).
+    fn aharoni(a: f64, b: f64, c: f64) -> f64 {
+        let r = (a * a + b * b + c * c).sqrt();
+        let [ab, bc, ac] = [(a * a + b * b).sqrt(), (b * b + c * c).sqrt(), (a * a + c * c).sqrt()];
+        let ln = |x: f64| x.ln();
+        let sum = (b * b - c * c) / (2.0 * b * c) * ln((r - a) / (r + a))
+            + (a * a - c * c) / (2.0 * a * c) * ln((r - b) / (r + b))
+            + b / (2.0 * c) * ln((ab + a) / (ab - a))
+            + a / (2.0 * c) * ln((ab + b) / (ab - b))
+            + c / (2.0 * a) * ln((bc - b) / (bc + b))
+            + c / (2.0 * b) * ln((ac - a) / (ac + a))
+            + 2.0 * (a * b / (c * r)).atan()
+            + (a * a * a + b * b * b - 2.0 * c * c * c) / (3.0 * a * b * c)
+            + (a * a + b * b - 2.0 * c * c) / (3.0 * a * b * c) * r
+            + c / (a * b) * (ac + bc)
+            - (ab * ab * ab + bc * bc * bc + ac * ac * ac) / (3.0 * a * b * c);
+        sum / std::f64::consts::PI
+    }
+
+    #[test]
+    fn a_prism_has_aharonis_factors_as_one_cell_and_as_a_row_of_cells() {
+        for (width, thickness) in [(1.0, 1.0), (2.0, 1.0), (0.5, 3.0), (4.0, 1.0)] {
+            let exact =
+                [aharoni(width, thickness, 1.0), aharoni(1.0, thickness, width), aharoni(1.0, width, thickness)];
+            let cell = cell_tensor(0, width, thickness);
+            for c in 0..3 {
+                assert!((cell[c] - exact[c]).abs() < 1e-13, "{cell:?} {exact:?}");
+            }
+            let (length, series) = (200, Series::of_cells(width, thickness));
+            let at = |n: usize| if n < series.first() { cell_tensor(n, width, thickness) } else { series.at(n as f64) };
+            let mut row = cell.map(|n| n * length as f64);
+            for n in 1..length {
+                for (sum, v) in row.iter_mut().zip(at(n)) {
+                    *sum += 2.0 * (length - n) as f64 * v;
+                }
+            }
+            let l = length as f64;
+            let exact = [aharoni(width, thickness, l), aharoni(l, thickness, width), aharoni(l, width, thickness)];
+            for c in 0..3 {
+                assert!((row[c] / l - exact[c]).abs() < 1e-11, "{row:?} {exact:?}");
+            }
+        }
+    }
+}

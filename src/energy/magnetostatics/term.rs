@@ -1,0 +1,255 @@
+//! The energy term that dipoles and cells share.
+
+use super::{Convolution, Exponentials, Kernel, Shape};
+use crate::energy::EnergyTerm;
+use crate::energy::blocks::{Block, Blocks};
+use crate::field::{Components, ComponentsMut};
+use crate::geometry::{Direction, Vector, vector};
+use crate::units::{E_CHARGE, MU_0, MU_B_MEV_PER_T};
+use std::ops::Range;
+
+/// Open chains of at most this many sites have a dense Hessian; longer ones a sum of exponentials. Rings are dense.
+const DENSE: usize = 128;
+/// Accuracy of the exponentials of a Hessian that proves something, of Σ|K|: below its rounding error.
+const PRECISE: f64 = 4.0 * f64::EPSILON;
+/// Accuracy of the exponentials of a Hessian that steers a band.
+const COARSE: f64 = 1e-6;
+
+/// μ₀μ_B² (meV nm³).
+pub const MU_0_MU_B_SQUARED: f64 = MU_0 * MU_B_MEV_PER_T * (1e-3 * MU_B_MEV_PER_T * E_CHARGE) * 1e27;
+
+/// Moments in a row, each acting on all the others.
+#[derive(Debug)]
+pub struct Magnetostatics {
+    name: &'static str,
+    /// The chain's own axes: along, width, thickness.
+    frame: [Vector; 3],
+    /// Moment of every site (μ_B).
+    moments: Vec<f64>,
+    /// In meV/μ_B².
+    kernel: Kernel,
+    convolution: Convolution,
+    /// x̂·h_i(x̂)/2 of the chain magnetised along itself (meV).
+    reference: Vec<f64>,
+    tails: Option<[Exponentials; 2]>,
+}
+
+/// What the sites are, and how they stand.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// Dipoles, or cells.
+    pub shape: Shape,
+    /// Volume of a cell, or the cube of the spacing of dipoles (nm³).
+    pub volume_nm3: f64,
+    /// A ring: the row repeats itself.
+    pub periodic: bool,
+    /// Where the row points.
+    pub direction: Direction,
+}
+
+impl Magnetostatics {
+    /// Of sites with these moments (μ_B).
+    pub fn new(name: &'static str, row: &Row, moments: Vec<f64>) -> Magnetostatics {
+        let sites = moments.len();
+        let mut kernel = Kernel::new(row.shape, sites, row.periodic);
+        let tails = (!row.periodic && sites > DENSE).then(|| {
+            let precise = Exponentials::new(&kernel, PRECISE, None);
+            let coarse = Exponentials::new(&kernel, COARSE, Some(precise.shells));
+            [precise, coarse]
+        });
+        let strength = MU_0_MU_B_SQUARED / row.volume_nm3;
+        kernel.table.iter_mut().flatten().for_each(|k| *k *= strength);
+        let scaled = |mut e: Exponentials| {
+            e.weights.iter_mut().flatten().for_each(|w| *w *= strength);
+            e.error *= strength;
+            e
+        };
+        let convolution = Convolution::new(&kernel);
+        let frame = frame(row.direction);
+        let tails = tails.map(|t| t.map(scaled));
+        let mut term = Magnetostatics { name, frame, reference: vec![0.0; sites], convolution, moments, kernel, tails };
+        let [x, y, z] = term.frame[0].map(|v| vec![v; sites]);
+        let along = Components { x: &x, y: &y, z: &z };
+        let field = term.field(along, 0..sites);
+        term.reference =
+            (0..sites).map(|i| 0.5 * vector::dot(term.frame[0], [0, 1, 2].map(|c: usize| field[c][i]))).collect();
+        term
+    }
+
+    /// The chain's own axes: along, width, thickness.
+    pub fn frame(&self) -> &[Vector; 3] {
+        &self.frame
+    }
+
+    /// Moment of every site (μ_B).
+    pub fn moments(&self) -> &[f64] {
+        &self.moments
+    }
+
+    /// The interaction by distance (meV/μ_B²).
+    pub fn kernel(&self) -> &Kernel {
+        &self.kernel
+    }
+
+    /// The interaction of an open chain as a sum of exponentials; nothing where the Hessian is dense.
+    pub fn exponentials(&self, precise: bool) -> Option<&Exponentials> {
+        self.tails.as_ref().map(|[fine, coarse]| if precise { fine } else { coarse })
+    }
+
+    /// A bound of the Hessian's error (meV, any norm) for what the exponentials leave out.
+    pub fn error_mev(&self, precise: bool) -> f64 {
+        let largest = self.moments.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        self.exponentials(precise).map_or(0.0, |e| 2.0 * e.error * largest * largest)
+    }
+
+    /// About the norm of what acts beyond the nearest `shells` (meV).
+    pub fn far_norm_mev(&self, shells: usize) -> f64 {
+        let largest = self.moments.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        let beyond = |c: usize| self.kernel.table[c].iter().skip(shells + 1).map(|k| k.abs()).sum::<f64>();
+        2.0 * largest * largest * [0, 1, 2].map(beyond).into_iter().fold(0.0, f64::max)
+    }
+
+    /// What all other sites do to each site where all spins are alike (meV): site blocks, in the coordinates of space.
+    pub fn sums_of_others(&self) -> Vec<Block> {
+        let sums = [0, 1, 2].map(|c: usize| {
+            let mut sum = vec![0.0; self.moments.len()];
+            self.convolution.apply(c, &self.moments, &mut sum);
+            sum
+        });
+        let own = [0, 1, 2].map(|c: usize| self.kernel.table[c][0]);
+        let others = |i: usize, c: usize| self.moments[i] * (sums[c][i] - own[c] * self.moments[i]);
+        (0..self.moments.len()).map(|i| self.in_space([0, 1, 2].map(|c| others(i, c)))).collect()
+    }
+
+    /// Σ_c d_c f_c f_cᵀ with the chain's axes f.
+    fn in_space(&self, diagonal: [f64; 3]) -> Block {
+        let entry = |r: usize, s: usize| (0..3).map(|c| diagonal[c] * self.frame[c][r] * self.frame[c][s]).sum();
+        [0, 1, 2].map(|r| [0, 1, 2].map(|s| entry(r, s)))
+    }
+
+    /// h_i (meV) on the sites of `range`, x of all, y of all, z of all.
+    fn field(&self, m: Components, range: Range<usize>) -> [Vec<f64>; 3] {
+        let sites = self.moments.len();
+        let mut field = [(); 3].map(|()| vec![0.0; range.len()]);
+        let mut weighted = vec![0.0; sites];
+        let mut own = vec![0.0; range.len()];
+        for (c, axis) in self.frame.iter().enumerate() {
+            for i in 0..sites {
+                weighted[i] = self.moments[i] * (axis[0] * m.x[i] + axis[1] * m.y[i] + axis[2] * m.z[i]);
+            }
+            if range.len() == sites {
+                self.convolution.apply(c, &weighted, &mut own);
+            } else {
+                for (own, i) in own.iter_mut().zip(range.clone()) {
+                    *own = (0..sites).map(|j| self.kernel.table[c][i.abs_diff(j)] * weighted[j]).sum();
+                }
+            }
+            for (k, i) in range.clone().enumerate() {
+                let h = self.moments[i] * own[k];
+                for (field, a) in field.iter_mut().zip(axis) {
+                    field[k] += h * a;
+                }
+            }
+        }
+        field
+    }
+}
+
+/// The axes of a chain that points along `direction`: x, y and z turned by the smallest rotation that takes x there.
+fn frame(direction: Direction) -> [Vector; 3] {
+    let d = direction.vector();
+    let (x, y) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0]);
+    if d[0] <= -1.0 + 1e-12 {
+        return frame_beside(d, [0.0, -1.0, 0.0]);
+    }
+    // parallel transport of y along the arc from x to d
+    let carried = |v: Vector| vector::sub(v, vector::scale(vector::dot(d, v) / (1.0 + d[0]), vector::add(x, d)));
+    frame_beside(d, carried(y))
+}
+
+/// Right-handed axes with the first along d and the second as near to y as can be.
+fn frame_beside(d: Vector, y: Vector) -> [Vector; 3] {
+    let across = vector::sub(y, vector::scale(vector::dot(d, y), d));
+    let y = vector::unit_or(across, y);
+    [d, y, vector::cross(d, y)]
+}
+
+impl EnergyTerm for Magnetostatics {
+    fn name(&self) -> &'static str {
+        self.name
+    }
+
+    fn reference_mev(&self) -> f64 {
+        self.reference.iter().sum()
+    }
+
+    fn add_gradient(&self, m: Components, mut g: ComponentsMut, density: &mut [f64], range: Range<usize>) {
+        let [x, y, z] = self.field(m, range.clone());
+        for (k, i) in range.enumerate() {
+            let h = [x[k], y[k], z[k]];
+            density[k] += 0.5 * vector::dot(m.get(i), h) - self.reference[i];
+            g.add(k, h);
+        }
+    }
+
+    fn add_hessian_product(&self, _: Components, v: Components, mut out: ComponentsMut) {
+        let [x, y, z] = self.field(v, 0..self.moments.len());
+        for i in 0..self.moments.len() {
+            out.add(i, [x[i], y[i], z[i]]);
+        }
+    }
+
+    fn add_blocks(&self, _: Components, blocks: &mut Blocks) {
+        let sites = self.moments.len();
+        let block = |n: usize| self.in_space([0, 1, 2].map(|c: usize| self.kernel.table[c][n]));
+        let scaled = |b: &Block, s: f64| b.map(|row| vector::scale(s, row));
+        let own = block(0);
+        for i in 0..sites {
+            blocks.add_site(i, scaled(&own, self.moments[i] * self.moments[i]));
+        }
+        for n in 1..=self.reach() {
+            let pair = block(n);
+            for i in 0..sites - n {
+                blocks.bond[n - 1].add(i, scaled(&pair, self.moments[i] * self.moments[i + n]));
+            }
+        }
+    }
+
+    fn reach(&self) -> usize {
+        self.tails.as_ref().map_or(0, |[precise, _]| precise.shells)
+    }
+
+    fn invariant_about(&self, axis: Vector) -> bool {
+        let about_itself = vector::norm(vector::cross(axis, self.frame[0])) < 1e-14;
+        let idle = self.moments.iter().all(|m| *m == 0.0);
+        let [x, y, _] = &self.kernel.table;
+        let alone = x.len() == 1 && (x[0] - y[0]).abs() <= 1e-14 * x[0].abs();
+        idle || (self.kernel.is_axial() && (about_itself || alone))
+    }
+
+    fn axes(&self) -> Vec<Vector> {
+        self.frame.to_vec()
+    }
+
+    fn long_range(&self) -> Option<&Magnetostatics> {
+        Some(self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_axes_of_a_chain_are_orthonormal_wherever_it_points() {
+        for d in [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0], [-0.9, 0.3, 0.1]] {
+            let f = frame(Direction::new(d).unwrap());
+            for i in 0..3 {
+                for j in 0..3 {
+                    let expected = if i == j { 1.0 } else { 0.0 };
+                    assert!((vector::dot(f[i], f[j]) - expected).abs() < 1e-15, "{f:?}");
+                }
+            }
+        }
+    }
+}

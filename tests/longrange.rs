@@ -1,0 +1,175 @@
+//! Magnetostatics against what is known by pen, and end to end.
+
+use serde_json::Value;
+use spinneb::drive::{Outcome, Problem, Silent, run};
+use spinneb::energy::magnetostatics::MU_0_MU_B_SQUARED;
+use spinneb::energy::{Exchange, Hamiltonian, Medium, TangentBasis, TermSpec, assemble};
+use spinneb::geometry::Direction;
+use spinneb::lattice::Chain;
+use spinneb::linalg::eigenvalues_symmetric;
+use spinneb::spins::Spins;
+use spinneb::units::{Length, Magnetisation, Moment};
+use std::process::Command;
+
+/// ζ(3).
+const ZETA_3: f64 = 1.2020569031595942;
+
+fn dipoles(sites: usize, periodic: bool) -> (Chain, Hamiltonian) {
+    let chain = Chain { periodic, spacing: Some(Length(0.5)), ..Chain::open(sites) };
+    let spec: TermSpec = serde_json::from_str(r#"{"dipolar": {}}"#).unwrap();
+    let medium = Medium { chain: &chain, moment: Some(Moment(3.0)), saturation: None };
+    let term = spec.member().build(&medium).unwrap();
+    let h = Hamiltonian::new(&chain, vec![term]).unwrap();
+    (chain, h)
+}
+
+/// μ₀μ²/4πa³ (meV) of [`dipoles`].
+fn unit() -> f64 {
+    MU_0_MU_B_SQUARED * 9.0 / (4.0 * std::f64::consts::PI * 0.125)
+}
+
+fn alternating(sites: usize) -> Spins {
+    let vectors: Vec<_> = (0..sites).map(|i| [0.0, 0.0, if i % 2 == 0 { 1.0 } else { -1.0 }]).collect();
+    Spins::from_vectors(&vectors).unwrap()
+}
+
+#[test]
+fn the_unit_of_dipolar_energy_is_that_of_codata() {
+    // two moments of 1 μ_B at 1 nm: μ₀μ_B²/(4π nm³) = 8.6007e-47 J²/T² × 1e-7 × 1e27 = 5.36835e-5 meV
+    let mu_b = 9.274_010_065_7e-24f64;
+    let expected = 1.256_637_061_27e-6 * mu_b * mu_b / 1e-27 / 1.602_176_634e-22;
+    assert!((MU_0_MU_B_SQUARED / expected - 1.0).abs() < 1e-10, "{MU_0_MU_B_SQUARED} {expected}");
+}
+
+#[test]
+fn a_ring_of_dipoles_has_the_energies_of_the_infinite_chain() {
+    for sites in [4, 10, 300] {
+        let (_, h) = dipoles(sites, true);
+        let along = h.energy_mev(Spins::uniform(sites, Direction::X).as_slice()) / sites as f64;
+        let across = h.energy_mev(Spins::uniform(sites, Direction::Y).as_slice()) / sites as f64;
+        let staggered = h.energy_mev(alternating(sites).as_slice()) / sites as f64;
+        assert!((along / (-2.0 * ZETA_3 * unit()) - 1.0).abs() < 1e-13, "{sites}: {along}");
+        assert!((across / (ZETA_3 * unit()) - 1.0).abs() < 1e-13, "{sites}: {across}");
+        assert!((staggered / (-0.75 * ZETA_3 * unit()) - 1.0).abs() < 1e-13, "{sites}: {staggered}");
+    }
+}
+
+#[test]
+fn an_open_chain_of_dipoles_tends_to_the_infinite_one_as_its_ends_matter_less() {
+    let error = |sites: usize| {
+        let (_, h) = dipoles(sites, false);
+        let along = h.energy_mev(Spins::uniform(sites, Direction::X).as_slice()) / sites as f64;
+        along / (-2.0 * ZETA_3 * unit()) - 1.0
+    };
+    // Σ_n (N − n)/n³ = N ζ(3) − ζ(2) + …
+    let zeta_2 = std::f64::consts::PI.powi(2) / 6.0;
+    for sites in [200, 2000, 20_000] {
+        let expected = -zeta_2 / ZETA_3 / sites as f64;
+        assert!((error(sites) / expected - 1.0).abs() < 2.0 / sites as f64, "{sites}: {} {expected}", error(sites));
+    }
+}
+
+/// A result from `spinneb run`.
+fn result(name: &str, config: &str) -> (Option<i32>, Value) {
+    let folder = tempfile::tempdir().unwrap();
+    let file = format!("{name}.json");
+    std::fs::write(folder.path().join(&file), config).unwrap();
+    let run = Command::new(env!("CARGO_BIN_EXE_spinneb"))
+        .current_dir(folder.path())
+        .args(["run", &file, "--quiet", "--set", r#"output={"formats":[],"plots":[]}"#])
+        .output()
+        .unwrap();
+    let summary = std::fs::read_to_string(folder.path().join(format!("results/{name}/summary.json")));
+    let summary = summary.unwrap_or_else(|_| panic!("{}", String::from_utf8_lossy(&run.stderr)));
+    (run.status.code(), serde_json::from_str(&summary).unwrap())
+}
+
+#[test]
+fn a_single_cube_has_the_barrier_of_its_anisotropy_for_demagnetising_a_cube_costs_the_same_in_all_directions() {
+    let config = r#"{
+      "material": {"name": "cube", "Ms": "800 kA/m", "energy": [
+        {"anisotropy": {"K": "50 kJ/m^3", "axis": [1, 0, 0]}},
+        {"anisotropy": {"K": "-20 kJ/m^3", "axis": [0, 0, 1]}},
+        {"demag": {}}
+      ]},
+      "lattice": {"chain": {"sites": 1, "spacing": "5 nm", "cross_section": ["5 nm", "5 nm"]}},
+      "initial": {"uniform": {"direction": [1, 0, 0]}},
+      "final": {"uniform": {"direction": [-1, 0, 0]}}
+    }"#;
+    let (code, summary) = result("cube", config);
+    assert_eq!((code, &summary["certified"]), (Some(0), &Value::Bool(true)), "{summary}");
+    let barrier = summary["barrier_J"]["forward"].as_f64().unwrap();
+    assert!((barrier / 6.25e-21 - 1.0).abs() < 1e-12, "{barrier:e}");
+}
+
+#[test]
+fn two_cells_without_exchange_or_magnetostatics_turn_one_after_the_other() {
+    let config = r#"{
+      "material": {"name": "grains", "Ms": "1 MA/m", "energy": [
+        {"anisotropy": {"K": "100 kJ/m^3", "axis": [0, 0, 1]}}
+      ]},
+      "lattice": {"chain": {"sites": 2, "spacing": "3 nm", "cross_section": ["3 nm", "3 nm"]}},
+      "initial": {"uniform": {"direction": [0, 0, 1]}},
+      "final": {"uniform": {"direction": [0, 0, -1]}}
+    }"#;
+    let (code, summary) = result("grains", config);
+    let barrier = summary["barrier_meV"]["forward"].as_f64().unwrap();
+    assert!((barrier / 16.852_074_5 - 1.0).abs() < 1e-8, "{summary}");
+    assert_eq!((code, &summary["certified"]), (Some(0), &Value::Bool(true)), "{summary}");
+}
+
+/// A Permalloy wire of 5 nm cells, 20 nm × 5 nm across, as long as `sites` cells; reversed.
+fn wire(sites: usize) -> Problem {
+    let chain =
+        Chain { spacing: Some(Length(5.0)), cross_section: Some([Length(20.0), Length(5.0)]), ..Chain::open(sites) };
+    let medium = Medium { chain: &chain, moment: None, saturation: Some(Magnetisation(8e5)) };
+    let terms = [r#"{"exchange": {"A": "13 pJ/m"}}"#, r#"{"demag": {}}"#];
+    let build = |text: &&str| serde_json::from_str::<TermSpec>(text).unwrap().member().build(&medium).unwrap();
+    let h = Hamiltonian::new(&chain, terms.iter().map(build).collect()).unwrap();
+    let [a, b] = [Direction::X, Direction::X.reversed()].map(|d| Spins::uniform(sites, d));
+    Problem::new(chain, h, a, b)
+}
+
+fn solved(problem: &Problem) -> Outcome {
+    let outcome = run(problem, &mut Silent).unwrap();
+    assert!(outcome.certified, "{:?} {:?}", outcome.stop_reason, outcome.warnings);
+    outcome
+}
+
+#[test]
+fn a_permalloy_wire_reverses_by_a_wall_and_the_barrier_does_not_grow_with_its_length() {
+    let (short, long) = (solved(&wire(40)), solved(&wire(140)));
+    let [a, b] = [&short, &long].map(|o| o.barrier.unwrap());
+    // both ends are alike
+    assert!((a.forward_mev / a.backward_mev - 1.0).abs() < 1e-9 && (b.forward_mev / b.backward_mev - 1.0).abs() < 1e-9);
+    assert!((b.forward_mev / a.forward_mev - 1.0).abs() < 0.05, "{} {}", a.forward_mev, b.forward_mev);
+}
+
+#[test]
+fn the_index_counted_by_exponentials_is_that_of_all_eigenvalues() {
+    let sites = 130;
+    let (chain, _) = dipoles(sites, false);
+    let spec: TermSpec = serde_json::from_str(r#"{"dipolar": {}}"#).unwrap();
+    let medium = Medium { chain: &chain, moment: Some(Moment(3.0)), saturation: None };
+    for (exchange, k) in [(-0.02, 0), (0.0, 1), (0.02, 2)] {
+        let terms = vec![spec.member().build(&medium).unwrap(), Box::new(Exchange::uniform(&chain, &[exchange]))];
+        let h = Hamiltonian::new(&chain, terms).unwrap();
+        let states = [Spins::uniform(sites, Direction::X), Spins::uniform(sites, Direction::Y), alternating(sites)];
+        {
+            let m = states[k].as_slice();
+            let mut g = vec![0.0; m.len()];
+            h.energy_gradient(m, &mut g);
+            let matrix = assemble(&h, m, &g, &TangentBasis::at(m));
+            let n = 2 * sites;
+            let full: Vec<f64> = (0..n * n).map(|k| matrix.get(k / n, k % n)).collect();
+            let eigen = eigenvalues_symmetric(&full, n);
+            // off the zero mode of rotation about the chain
+            for shift in [1e-6, -1e-6, 1e-3] {
+                let mut shifted = matrix.clone();
+                shifted.shift(shift);
+                let negative = eigen.iter().filter(|e| **e + shift < 0.0).count();
+                assert_eq!(shifted.factor().negatives(), negative, "{exchange} {shift}");
+            }
+        }
+    }
+}
