@@ -166,7 +166,7 @@ mod tests {
         assert!(error(third, 0.3333333333333333, 1.850371707708594e-17) < 1e-31);
         assert!(error(DoubleDouble::from(2.0).sqrt(), std::f64::consts::SQRT_2, -9.667293313452913e-17) < 1e-31);
         assert!(error(DoubleDouble::from(10.0).ln(), std::f64::consts::LN_10, -2.1707562233822494e-16) < 1e-30);
-        assert!(error(DoubleDouble::from(1.0).atan(), 0.7853981633974483, 3.061616997868383e-17) < 1e-31);
+        assert!(error(DoubleDouble::from(1.0).atan(), std::f64::consts::FRAC_PI_4, 3.061616997868383e-17) < 1e-31);
         assert!(
             error(DoubleDouble::from(1e-3).atan() + DoubleDouble::from(1e3).atan(), HALF_PI.hi, HALF_PI.lo) < 1e-17
         );

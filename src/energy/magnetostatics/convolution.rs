@@ -13,8 +13,8 @@ use crate::linalg::Fft;
 use multiversion::multiversion;
 use std::cell::RefCell;
 
-/// Up to this many sites the direct sum is the quicker (measured: about 0.9 µs per component either way).
-const SHORT: usize = 48;
+/// Up to this many sites the direct sum is the quicker, by `benches/longrange.rs`.
+const SHORT: usize = 24;
 
 thread_local! {
     /// Room of this thread's transforms.
