@@ -38,6 +38,9 @@ pub struct Chain {
     /// Spins that never move.
     #[serde(default)]
     pub frozen: Vec<Frozen>,
+    /// Sites without a spin: nothing acts on them, and they on nothing.
+    #[serde(default)]
+    pub vacant: Option<Selection>,
 }
 
 /// Spins that never move.
@@ -54,7 +57,15 @@ pub struct Frozen {
 impl Chain {
     /// A chain of `sites` sites, open, without a length scale.
     pub fn open(sites: usize) -> Chain {
-        Chain { sites, spacing: None, periodic: false, cross_section: None, direction: None, frozen: Vec::new() }
+        Chain {
+            sites,
+            spacing: None,
+            periodic: false,
+            cross_section: None,
+            direction: None,
+            frozen: Vec::new(),
+            vacant: None,
+        }
     }
 
     /// A ring of `sites` sites, without a length scale.
@@ -77,7 +88,27 @@ impl Chain {
         self.cross_section.map(|[w, t]| w.0 * t.0)
     }
 
-    /// Sites, spacing and frozen sites that make sense.
+    /// Which sites are vacant.
+    pub fn is_vacant(&self) -> Result<Vec<bool>> {
+        let mut vacant = vec![false; self.sites];
+        if let Some(list) = &self.vacant {
+            list.indices(self.sites, "site")
+                .map_err(|e| e.within("vacant"))?
+                .into_iter()
+                .for_each(|i| vacant[i] = true);
+        }
+        Ok(vacant)
+    }
+
+    /// The same chain with its vacant sites frozen, their idle spins along `direction`.
+    pub fn with_vacancies_frozen(mut self, direction: Direction) -> Chain {
+        if let Some(sites) = self.vacant.clone() {
+            self.frozen.push(Frozen { sites, direction: Some(direction) });
+        }
+        self
+    }
+
+    /// Sites, spacing, frozen and vacant sites that make sense.
     pub fn validate(&self) -> Result<()> {
         if self.sites == 0 || self.sites > MAX_SITES {
             return Err(Error::invalid(
@@ -96,6 +127,9 @@ impl Chain {
         }
         for (k, f) in self.frozen.iter().enumerate() {
             f.sites.indices(self.sites, "site").map_err(|e| e.within(&format!("frozen[{k}].sites")))?;
+        }
+        if self.is_vacant()?.iter().all(|v| *v) {
+            return Err(Error::invalid("vacant", "all sites are vacant: no spin is left"));
         }
         Ok(())
     }

@@ -2,7 +2,7 @@
 
 use super::{Loaded, memory};
 use crate::drive::{Images, Problem, Scales};
-use crate::energy::{EnergyTerm, Hamiltonian, Medium, TermSpec};
+use crate::energy::{EnergyTerm, Hamiltonian, Medium, TermSpec, symmetry_axes};
 use crate::error::{Error, Result};
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, Vector, angle};
@@ -33,9 +33,12 @@ impl Loaded {
         let here = |e: Error| self.text.locate(e);
         let chain = self.chain();
         chain.validate().map_err(|e| here(e.within("lattice.chain")))?;
+        not_both(chain).map_err(|e| here(e.within("lattice.chain")))?;
         self.affordable(memory::hamiltonian_bytes(chain.sites, 1, self.specs().count()), None)?;
         let terms = self.terms(chain)?;
-        let hamiltonian = Hamiltonian::new(chain, terms).map_err(|e| here(e.within("lattice.chain")))?;
+        let idle = idle_direction(&terms);
+        let chain = &chain.clone().with_vacancies_frozen(idle);
+        let hamiltonian = Hamiltonian::new(chain, terms).map_err(here)?;
         let scales = Scales::of_terms(&hamiltonian);
         let context = StateContext { chain, wall_width_sites: scales.wall_width_sites };
         let state = |spec: &StateSpec, key: &str| -> Result<Spins> {
@@ -165,6 +168,24 @@ fn torque(term: &dyn EnergyTerm, sites: usize) -> Result<f64> {
             Err(Error::invalid("", message))
         }
     }
+}
+
+/// No site is vacant and frozen at once.
+fn not_both(chain: &Chain) -> Result<()> {
+    let vacant = chain.is_vacant()?;
+    for (k, f) in chain.frozen.iter().enumerate() {
+        if let Some(i) = f.sites.indices(chain.sites, "site")?.into_iter().find(|i| vacant[*i]) {
+            let message = format!("site {i} is vacant: there is no spin to freeze");
+            return Err(Error::invalid(format!("frozen[{k}].sites"), message));
+        }
+    }
+    Ok(())
+}
+
+/// Where the idle spins of vacant sites point: along the axis of symmetry, if there is one, which they must not break.
+fn idle_direction(terms: &[Box<dyn EnergyTerm>]) -> Direction {
+    let axis = symmetry_axes(terms).into_iter().last();
+    axis.and_then(|axis| Direction::new(axis).ok()).unwrap_or(Direction::Z)
 }
 
 /// The final state with frozen spins just where the initial state has them; an error where it has them elsewhere.

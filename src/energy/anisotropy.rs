@@ -5,9 +5,9 @@
 //! ```
 //! For the form K₁ sin²θ + K₂' sin⁴θ use K = K₁ + 2 K₂', K₂ = − K₂'.
 
-use super::EnergyTerm;
 use super::blocks::Blocks;
 use super::spec::{Medium, TermBuilder};
+use super::{EnergyTerm, Profile};
 use crate::error::Result;
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, Vector, vector};
@@ -24,12 +24,12 @@ use std::ops::Range;
 #[allow(non_snake_case)]
 pub struct AnisotropySpec {
     /// Energy per site or per volume; positive: easy axis.
-    pub K: SiteEnergy,
+    pub K: Profile<SiteEnergy>,
     /// The axis.
     pub axis: Direction,
     /// Fourth-order constant.
     #[serde(default)]
-    pub K2: Option<SiteEnergy>,
+    pub K2: Option<Profile<SiteEnergy>>,
     /// Only these sites; all if absent.
     #[serde(default)]
     pub sites: Option<Selection>,
@@ -43,17 +43,13 @@ impl Described for AnisotropySpec {
 
 impl TermBuilder for AnisotropySpec {
     fn build(&self, medium: &Medium) -> Result<Box<dyn EnergyTerm>> {
-        let k = medium.site_energy_mev(self.K).map_err(|e| e.within("K"))?;
-        let k2 = self.K2.map_or(Ok(0.0), |k2| medium.site_energy_mev(k2)).map_err(|e| e.within("K2"))?;
-        let on_sites = |value: f64| -> Result<Vec<f64>> {
-            let mut list = vec![0.0; medium.chain.sites];
-            for i in medium.sites(self.sites.as_ref())? {
-                list[i] = value;
-            }
-            Ok(list)
+        let on_sites = |profile: &Profile<SiteEnergy>, key: &str| {
+            medium.on_sites(profile, self.sites.as_ref(), key, |k| medium.site_energy_mev(k))
         };
-        let k2 = if k2 == 0.0 { Vec::new() } else { on_sites(k2)? };
-        Ok(Box::new(Anisotropy { axis: self.axis.vector(), k: on_sites(k)?, k2 }))
+        let k = on_sites(&self.K, "K")?;
+        let k2 = self.K2.as_ref().map_or(Ok(Vec::new()), |k2| on_sites(k2, "K2"))?;
+        let k2 = if k2.iter().all(|k| *k == 0.0) { Vec::new() } else { k2 };
+        Ok(Box::new(Anisotropy { axis: self.axis.vector(), k, k2 }))
     }
 }
 

@@ -4,9 +4,9 @@
 //! E = Σ_i K (α₁²α₂² + α₂²α₃² + α₃²α₁²)        α_k = m·e_k;  K > 0: the cube edges are easy,  K < 0: its diagonals
 //! ```
 
-use super::EnergyTerm;
 use super::blocks::{Block, Blocks, multiply};
 use super::spec::{Medium, TermBuilder};
+use super::{EnergyTerm, Profile};
 use crate::error::{Error, Result};
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, Vector, vector};
@@ -23,7 +23,7 @@ use std::ops::Range;
 #[allow(non_snake_case)]
 pub struct CubicAnisotropySpec {
     /// Energy per site or per volume.
-    pub K: SiteEnergy,
+    pub K: Profile<SiteEnergy>,
     /// Two cube axes at right angles, the third follows; x and y if absent.
     #[serde(default)]
     pub axes: Option<[Direction; 2]>,
@@ -40,17 +40,13 @@ impl Described for CubicAnisotropySpec {
 
 impl TermBuilder for CubicAnisotropySpec {
     fn build(&self, medium: &Medium) -> Result<Box<dyn EnergyTerm>> {
-        let k = medium.site_energy_mev(self.K).map_err(|e| e.within("K"))?;
+        let k = medium.on_sites(&self.K, self.sites.as_ref(), "K", |k| medium.site_energy_mev(k))?;
         let [a, b] = self.axes.unwrap_or([Direction::X, Direction::Y]).map(|d| d.vector());
         if vector::dot(a, b).abs() > 1e-6 {
             return Err(Error::invalid("axes[1]", "the two cube axes must be at right angles"));
         }
         let third = vector::cross(a, b);
-        let mut term = CubicAnisotropy { axes: [a, vector::cross(third, a), third], k: vec![0.0; medium.chain.sites] };
-        for i in medium.sites(self.sites.as_ref())? {
-            term.k[i] = k;
-        }
-        Ok(Box::new(term))
+        Ok(Box::new(CubicAnisotropy { axes: [a, vector::cross(third, a), third], k }))
     }
 }
 

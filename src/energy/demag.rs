@@ -35,7 +35,6 @@ impl TermBuilder for DemagSpec {
             periodic: medium.chain.periodic,
             direction: medium.chain.direction.unwrap_or(Direction::X),
         };
-        let moments = vec![medium.moment_mu_b()?; medium.chain.sites];
-        Ok(Box::new(Magnetostatics::new(DemagSpec::NAME, &row, moments)))
+        Ok(Box::new(Magnetostatics::new(DemagSpec::NAME, &row, medium.moments_mu_b()?)))
     }
 }

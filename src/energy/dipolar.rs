@@ -8,7 +8,7 @@
 use super::EnergyTerm;
 use super::magnetostatics::{Magnetostatics, Row, Shape};
 use super::spec::{Medium, TermBuilder};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::geometry::Direction;
 use crate::registry::Described;
 use serde::Deserialize;
@@ -26,14 +26,18 @@ impl Described for DipolarSpec {
 
 impl TermBuilder for DipolarSpec {
     fn build(&self, medium: &Medium) -> Result<Box<dyn EnergyTerm>> {
-        let spacing = medium.spacing_nm()?;
+        let Some(spacing) = medium.chain.spacing.map(|a| a.0) else {
+            return Err(Error::invalid(
+                "",
+                "dipoles need their distance: give the lattice a \"spacing\" (\"0.25 nm\")",
+            ));
+        };
         let row = Row {
             shape: Shape::Dipoles,
             volume_nm3: spacing * spacing * spacing,
             periodic: medium.chain.periodic,
             direction: medium.chain.direction.unwrap_or(Direction::X),
         };
-        let moments = vec![medium.moment_mu_b()?; medium.chain.sites];
-        Ok(Box::new(Magnetostatics::new(DipolarSpec::NAME, &row, moments)))
+        Ok(Box::new(Magnetostatics::new(DipolarSpec::NAME, &row, medium.moments_mu_b()?)))
     }
 }

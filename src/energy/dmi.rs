@@ -6,9 +6,9 @@
 //! ```
 //! With D > 0 the lower turning sense is that in which m_i × m_{i+1} points against d̂.
 
-use super::EnergyTerm;
 use super::blocks::{Blocks, cross_block};
 use super::spec::{Medium, TermBuilder};
+use super::{EnergyTerm, Profile};
 use crate::error::Result;
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, Vector, vector};
@@ -25,7 +25,7 @@ use std::ops::Range;
 #[allow(non_snake_case)]
 pub struct DmiSpec {
     /// Energy per bond, or per area of the cross-section.
-    pub D: BondEnergy,
+    pub D: Profile<BondEnergy>,
     /// d̂.
     pub direction: Direction,
     /// Only these bonds; all if absent.
@@ -41,12 +41,8 @@ impl Described for DmiSpec {
 
 impl TermBuilder for DmiSpec {
     fn build(&self, medium: &Medium) -> Result<Box<dyn EnergyTerm>> {
-        let d = medium.bond_energy_mev(self.D).map_err(|e| e.within("D"))?;
-        let mut term = Dmi { direction: self.direction.vector(), d: vec![0.0; medium.chain.sites] };
-        for i in medium.bonds(1, self.bonds.as_ref(), "D")? {
-            term.d[i] = d;
-        }
-        Ok(Box::new(term))
+        let d = medium.on_bonds(&self.D, 1, self.bonds.as_ref(), "D", |d| medium.bond_energy_mev(d))?;
+        Ok(Box::new(Dmi { direction: self.direction.vector(), d }))
     }
 }
 

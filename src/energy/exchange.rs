@@ -7,9 +7,9 @@
 //! ```
 //! From a continuum stiffness: J = 2 A S/a, with the cross-section S and the spacing a.
 
-use super::EnergyTerm;
 use super::blocks::Blocks;
 use super::spec::{Medium, TermBuilder};
+use super::{EnergyTerm, Profile};
 use crate::error::{Error, Result};
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Vector, vector};
@@ -27,10 +27,10 @@ use std::ops::Range;
 pub struct ExchangeSpec {
     /// Bond energies of the nearest, next … neighbours.
     #[serde(default)]
-    pub J: Option<Vec<Energy>>,
+    pub J: Option<Vec<Profile<Energy>>>,
     /// Exchange stiffness of a continuum.
     #[serde(default)]
-    pub A: Option<ExchangeStiffness>,
+    pub A: Option<Profile<ExchangeStiffness>>,
     /// Only these bonds (of every shell given); all if absent.
     #[serde(default)]
     pub bonds: Option<Selection>,
@@ -44,12 +44,18 @@ impl Described for ExchangeSpec {
 
 impl TermBuilder for ExchangeSpec {
     fn build(&self, medium: &Medium) -> Result<Box<dyn EnergyTerm>> {
-        let shells: Vec<f64> = match (&self.J, self.A) {
-            (Some(j), None) if !j.is_empty() => j.iter().map(|e| e.0).collect(),
+        let bonds = self.bonds.as_ref();
+        let shells = match (&self.J, &self.A) {
+            (Some(j), None) if !j.is_empty() => {
+                let shell = |(k, j): (usize, &Profile<Energy>)| {
+                    medium.on_bonds(j, k + 1, bonds, &format!("J[{k}]"), |e| Ok(e.0))
+                };
+                j.iter().enumerate().map(shell).collect::<Result<_>>()?
+            }
             (Some(_), None) => {
                 return Err(Error::invalid("J", "the list is empty: give one energy a neighbour shell, [\"10 meV\"]"));
             }
-            (None, Some(a)) => vec![medium.bond_from_stiffness_mev(a).map_err(|e| e.within("A"))?],
+            (None, Some(a)) => vec![medium.on_bonds(a, 1, bonds, "A", |a| medium.bond_from_stiffness_mev(a))?],
             (None, None) => {
                 return Err(Error::invalid("", "an exchange needs \"J\" (bond energies) or \"A\" (a stiffness)"));
             }
@@ -57,17 +63,7 @@ impl TermBuilder for ExchangeSpec {
                 return Err(Error::invalid("A", "\"J\" and \"A\" are two ways to say the same: keep one"));
             }
         };
-        let mut term = Exchange { shells: Vec::new() };
-        for (k, j) in shells.iter().enumerate() {
-            let place = if self.A.is_some() { "A".to_string() } else { format!("J[{k}]") };
-            let bonds = medium.bonds(k + 1, self.bonds.as_ref(), &place)?;
-            let mut values = vec![0.0; medium.chain.sites];
-            for i in bonds {
-                values[i] = *j;
-            }
-            term.shells.push(values);
-        }
-        Ok(Box::new(term))
+        Ok(Box::new(Exchange { shells }))
     }
 }
 

@@ -283,8 +283,8 @@ fn twice(first: &str, second: &str) -> Error {
     )
 }
 
-/// Axes of global rotations under which all terms are invariant.
-fn symmetry_axes(terms: &[Box<dyn EnergyTerm>]) -> Vec<Vector> {
+/// Unit vectors about which a rotation of all spins leaves all terms as they are: none, one, or x, y and z.
+pub fn symmetry_axes(terms: &[Box<dyn EnergyTerm>]) -> Vec<Vector> {
     let invariant = |axis: &Vector| terms.iter().all(|t| t.invariant_about(*axis));
     let cartesian = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let tilted = [0.6, 0.0, 0.8];

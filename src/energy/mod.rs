@@ -17,6 +17,7 @@ mod far;
 mod hamiltonian;
 mod hessian;
 pub mod magnetostatics;
+mod profile;
 mod spec;
 mod zeeman;
 
@@ -27,9 +28,10 @@ pub use demag::DemagSpec;
 pub use dipolar::DipolarSpec;
 pub use dmi::{Dmi, DmiSpec};
 pub use exchange::{Exchange, ExchangeSpec};
-pub use hamiltonian::Hamiltonian;
+pub use hamiltonian::{Hamiltonian, symmetry_axes};
 pub use hessian::{TangentBasis, assemble, assemble_shifted};
 pub use magnetostatics::Magnetostatics;
+pub use profile::{Profile, RampShape};
 pub use spec::{Medium, TermBuilder, TermSpec};
 pub use zeeman::{Zeeman, ZeemanSpec};
 

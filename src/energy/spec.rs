@@ -1,7 +1,7 @@
 //! From a term as written in a config to a term with numbers a site: units, cell sizes and selections.
 
 use super::{
-    AnisotropySpec, CubicAnisotropySpec, DemagSpec, DipolarSpec, DmiSpec, EnergyTerm, ExchangeSpec, ZeemanSpec,
+    AnisotropySpec, CubicAnisotropySpec, DemagSpec, DipolarSpec, DmiSpec, EnergyTerm, ExchangeSpec, Profile, ZeemanSpec,
 };
 use crate::error::{Error, Result};
 use crate::lattice::{Chain, Selection};
@@ -72,8 +72,60 @@ impl Medium<'_> {
         Ok(2.0 * a.over_length(self.section_nm2()? / self.spacing_nm()?).0)
     }
 
-    /// The chosen sites; all if there is no choice.
+    /// Moment of every site (μ_B), 0 where it is vacant.
+    pub fn moments_mu_b(&self) -> Result<Vec<f64>> {
+        let mut moments = vec![0.0; self.chain.sites];
+        let moment = self.moment_mu_b()?;
+        self.sites(None)?.into_iter().for_each(|i| moments[i] = moment);
+        Ok(moments)
+    }
+
+    /// The values of a profile on the chosen sites, made numbers by `convert`; 0 on all others and where a site is vacant.
+    pub fn on_sites<T: Copy>(
+        &self,
+        profile: &Profile<T>,
+        selection: Option<&Selection>,
+        key: &str,
+        convert: impl Fn(T) -> Result<f64>,
+    ) -> Result<Vec<f64>> {
+        let chosen = self.chosen(selection)?;
+        let values = profile.values(chosen.len(), "site", convert).map_err(|e| e.within(key))?;
+        let vacant = self.chain.is_vacant()?;
+        let mut list = vec![0.0; self.chain.sites];
+        for (i, value) in chosen.into_iter().zip(values).filter(|(i, _)| !vacant[*i]) {
+            list[i] = value;
+        }
+        Ok(list)
+    }
+
+    /// The values of a profile on the chosen bonds of a shell, made numbers by `convert`; 0 on all others and where a site of
+    /// the bond is vacant. `key` is the profile's place.
+    pub fn on_bonds<T: Copy>(
+        &self,
+        profile: &Profile<T>,
+        shell: usize,
+        selection: Option<&Selection>,
+        key: &str,
+        convert: impl Fn(T) -> Result<f64>,
+    ) -> Result<Vec<f64>> {
+        let chosen = self.bonds(shell, selection, key)?;
+        let values = profile.values(chosen.len(), "bond", convert).map_err(|e| e.within(key))?;
+        let (vacant, sites) = (self.chain.is_vacant()?, self.chain.sites);
+        let mut list = vec![0.0; sites];
+        for (i, value) in chosen.into_iter().zip(values).filter(|(i, _)| !vacant[*i] && !vacant[(i + shell) % sites]) {
+            list[i] = value;
+        }
+        Ok(list)
+    }
+
+    /// The chosen sites that are not vacant; all of these if there is no choice.
     pub fn sites(&self, selection: Option<&Selection>) -> Result<Vec<usize>> {
+        let (mut sites, vacant) = (self.chosen(selection)?, self.chain.is_vacant()?);
+        sites.retain(|i| !vacant[*i]);
+        Ok(sites)
+    }
+
+    fn chosen(&self, selection: Option<&Selection>) -> Result<Vec<usize>> {
         match selection {
             None => Ok((0..self.chain.sites).collect()),
             Some(s) => s.indices(self.chain.sites, "site").map_err(|e| e.within("sites")),

@@ -1,0 +1,154 @@
+//! A parameter along the chain: one value, a list, or a ramp.
+//!
+//! ```text
+//! "0.5 meV"                                                   the same for all chosen sites (or bonds)
+//! ["0.5 meV", "0.4 meV", …]                                   one value each
+//! {"from": "1 meV", "to": "0.2 meV", "shape": "linear"}       from the first chosen one to the last
+//! ```
+//! With t from 0 to 1 along the chosen ones a ramp is from + (to − from) s(t): linear s = t; step s = 0 below ½, else 1;
+//! tanh s = ½ + ½ tanh(6t − 3)/tanh 3, two thirds of whose rise lie within a quarter of the length.
+
+use crate::error::{Error, Result};
+use serde::de::{self, Deserialize, Deserializer, IntoDeserializer, MapAccess, SeqAccess, Visitor};
+use std::fmt;
+use std::marker::PhantomData;
+
+/// A value for every site or bond.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Profile<T> {
+    /// The same everywhere.
+    Same(T),
+    /// One each.
+    List(Vec<T>),
+    /// From one value to another.
+    Ramp {
+        /// At the first.
+        from: T,
+        /// At the last.
+        to: T,
+        /// How.
+        shape: RampShape,
+    },
+}
+
+/// How a ramp rises.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RampShape {
+    /// Evenly.
+    #[default]
+    Linear,
+    /// Smoothly, most of it in the middle.
+    Tanh,
+    /// At once, in the middle.
+    Step,
+}
+
+impl RampShape {
+    /// s(t).
+    fn at(self, t: f64) -> f64 {
+        match self {
+            RampShape::Linear => t,
+            RampShape::Tanh => 0.5 + 0.5 * libm::tanh(6.0 * t - 3.0) / libm::tanh(3.0),
+            RampShape::Step => f64::from(u8::from(t >= 0.5)),
+        }
+    }
+}
+
+impl<T: Copy> Profile<T> {
+    /// The numbers for `count` sites or bonds (`what`), each value made a number by `convert`.
+    pub fn values(&self, count: usize, what: &str, convert: impl Fn(T) -> Result<f64>) -> Result<Vec<f64>> {
+        match self {
+            Profile::Same(value) => Ok(vec![convert(*value)?; count]),
+            Profile::List(list) if list.len() == count => {
+                let item = |(k, value): (usize, &T)| convert(*value).map_err(|e| e.within(&format!("[{k}]")));
+                list.iter().enumerate().map(item).collect()
+            }
+            Profile::List(list) => Err(Error::invalid(
+                "",
+                format!("found {} values for {count} {what}s: give one each, or one for all", list.len()),
+            )),
+            Profile::Ramp { from, to, shape } => {
+                let a = convert(*from).map_err(|e| e.within("from"))?;
+                let b = convert(*to).map_err(|e| e.within("to"))?;
+                let place = |k: usize| if count > 1 { k as f64 / (count - 1) as f64 } else { 0.0 };
+                Ok((0..count).map(|k| a + (b - a) * shape.at(place(k))).collect())
+            }
+        }
+    }
+}
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for Profile<T> {
+    fn deserialize<D: Deserializer<'de>>(d: D) -> std::result::Result<Self, D::Error> {
+        struct Seen<T>(PhantomData<T>);
+        impl<'de, T: Deserialize<'de>> Visitor<'de> for Seen<T> {
+            type Value = Profile<T>;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("a quantity, a list of them or a ramp {\"from\": …, \"to\": …, \"shape\": \"linear\"}")
+            }
+            fn visit_str<E: de::Error>(self, v: &str) -> std::result::Result<Profile<T>, E> {
+                T::deserialize(v.into_deserializer()).map(Profile::Same)
+            }
+            fn visit_f64<E: de::Error>(self, v: f64) -> std::result::Result<Profile<T>, E> {
+                T::deserialize(v.into_deserializer()).map(Profile::Same)
+            }
+            fn visit_i64<E: de::Error>(self, v: i64) -> std::result::Result<Profile<T>, E> {
+                T::deserialize(v.into_deserializer()).map(Profile::Same)
+            }
+            fn visit_u64<E: de::Error>(self, v: u64) -> std::result::Result<Profile<T>, E> {
+                T::deserialize(v.into_deserializer()).map(Profile::Same)
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut s: A) -> std::result::Result<Profile<T>, A::Error> {
+                let mut list = Vec::new();
+                while let Some(value) = s.next_element()? {
+                    list.push(value);
+                }
+                Ok(Profile::List(list))
+            }
+            fn visit_map<A: MapAccess<'de>>(self, m: A) -> std::result::Result<Profile<T>, A::Error> {
+                #[derive(serde::Deserialize)]
+                #[serde(deny_unknown_fields)]
+                struct Ends<T> {
+                    from: T,
+                    to: T,
+                    #[serde(default)]
+                    shape: RampShape,
+                }
+                let Ends { from, to, shape } = Ends::deserialize(de::value::MapAccessDeserializer::new(m))?;
+                Ok(Profile::Ramp { from, to, shape })
+            }
+        }
+        d.deserialize_any(Seen(PhantomData))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::units::Energy;
+
+    fn read(text: &str, count: usize) -> Result<Vec<f64>> {
+        let profile: Profile<Energy> = serde_json::from_str(text).map_err(|e| Error::Numerical(e.to_string()))?;
+        profile.values(count, "site", |e| Ok(e.0))
+    }
+
+    #[test]
+    fn a_profile_is_a_value_a_list_or_a_ramp() {
+        assert_eq!(read(r#""2 meV""#, 3).unwrap(), [2.0; 3]);
+        assert_eq!(read(r#"["2 meV", "1 eV"]"#, 2).unwrap(), [2.0, 1000.0]);
+        assert_eq!(read(r#"{"from": "1 meV", "to": "3 meV"}"#, 5).unwrap(), [1.0, 1.5, 2.0, 2.5, 3.0]);
+        assert_eq!(read(r#"{"from": "1 meV", "to": "3 meV", "shape": "step"}"#, 4).unwrap(), [1.0, 1.0, 3.0, 3.0]);
+        let smooth = read(r#"{"from": "1 meV", "to": "3 meV", "shape": "tanh"}"#, 9).unwrap();
+        assert_eq!((smooth[0], smooth[4], smooth[8]), (1.0, 2.0, 3.0));
+        assert!(smooth.windows(2).all(|w| w[1] > w[0]) && smooth[5] - smooth[3] > 1.2);
+    }
+
+    #[test]
+    fn a_list_of_the_wrong_length_and_a_number_without_a_unit_are_refused_in_words() {
+        let message = |text: &str| read(text, 3).unwrap_err().to_string();
+        assert!(message(r#"["2 meV"]"#).contains("found 1 values for 3 sites"));
+        assert!(message("2").contains("unit") || message("2").contains("meV"), "{}", message("2"));
+        assert!(message(r#"{"from": "1 meV"}"#).contains("to"));
+        assert!(message(r#"{"from": "1 meV", "to": "2 meV", "form": "step"}"#).contains("form"));
+    }
+}
