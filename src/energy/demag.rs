@@ -35,6 +35,6 @@ impl TermBuilder for DemagSpec {
             periodic: medium.chain.periodic,
             direction: medium.chain.direction.unwrap_or(Direction::X),
         };
-        Ok(Box::new(Magnetostatics::new(DemagSpec::NAME, &row, medium.moments_mu_b()?)))
+        Ok(Box::new(Magnetostatics::new(DemagSpec::NAME, &row, medium.moments_mub()?)))
     }
 }

@@ -73,7 +73,7 @@ impl Medium<'_> {
     }
 
     /// Moment of every site (μ_B), 0 where it is vacant.
-    pub fn moments_mu_b(&self) -> Result<Vec<f64>> {
+    pub fn moments_mub(&self) -> Result<Vec<f64>> {
         let mut moments = vec![0.0; self.chain.sites];
         let moment = self.moment_mu_b()?;
         self.sites(None)?.into_iter().for_each(|i| moments[i] = moment);
