@@ -5,6 +5,7 @@ mod ldl;
 mod lowest;
 pub mod slab;
 mod small;
+mod tridiagonal;
 
 pub use banded::Banded;
 pub use ldl::Ldl;

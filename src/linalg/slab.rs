@@ -56,13 +56,13 @@ pub fn norm(a: &[f64]) -> f64 {
 /// |a − b|, the straight distance.
 pub fn distance(a: &[f64], b: &[f64]) -> f64 {
     let tile = |(a, b): (&[f64], &[f64])| {
-        let mut difference = [0.0; 512];
+        let mut difference = [0.0; 256];
         for (d, (a, b)) in difference.iter_mut().zip(a.iter().zip(b)) {
             *d = a - b;
         }
         dot(&difference, &difference)
     };
-    let squares: f64 = a.chunks(512).zip(b.chunks(512)).map(tile).sum();
+    let squares: f64 = a.chunks(256).zip(b.chunks(256)).map(tile).sum();
     squares.sqrt()
 }
 
