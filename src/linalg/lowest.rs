@@ -57,7 +57,7 @@ struct Krylov<'a> {
     basis: Vec<Vec<f64>>,
     /// A⁻¹ of each.
     images: Vec<Vec<f64>>,
-    /// basis · images, the lower half, row after row.
+    /// basis · images, the lower half, row after row (the inverse is symmetric).
     products: Vec<Vec<f64>>,
 }
 
@@ -83,15 +83,10 @@ impl<'a> Krylov<'a> {
         for k in old..self.basis.len() {
             let mut image = self.basis[k].clone();
             self.factors.solve(&mut image, 1);
+            self.products.push(slab::overlaps(&self.basis[..=k], &image));
             self.images.push(image);
-            let row = (0..=k).map(|j| 0.5 * (self.product(k, j) + self.product(j, k))).collect();
-            self.products.push(row);
         }
         self.basis.len() > old
-    }
-
-    fn product(&self, i: usize, j: usize) -> f64 {
-        slab::dot(&self.basis[i], &self.images[j])
     }
 
     fn anything(&mut self) -> Vec<f64> {
@@ -104,9 +99,9 @@ impl<'a> Krylov<'a> {
             let size = slab::norm(&v);
             slab::scale(&mut v, 1.0 / size.max(f64::MIN_POSITIVE));
             for _ in 0..2 {
-                for b in self.known.iter().chain(&self.basis) {
-                    let overlap = slab::dot(b, &v);
-                    slab::add_scaled(&mut v, -overlap, b);
+                for space in [self.known, &self.basis] {
+                    let overlaps: Vec<f64> = slab::overlaps(space, &v).iter().map(|o| -o).collect();
+                    slab::add_all(&mut v, &overlaps, space);
                 }
             }
             let rest = slab::norm(&v);
@@ -136,10 +131,8 @@ impl<'a> Krylov<'a> {
             if !last {
                 let mut rest = combination(w, &self.images);
                 slab::add_scaled(&mut rest, -theta, &v);
-                self.known.iter().for_each(|k| {
-                    let overlap = slab::dot(k, &rest);
-                    slab::add_scaled(&mut rest, -overlap, k);
-                });
+                let overlaps: Vec<f64> = slab::overlaps(self.known, &rest).iter().map(|o| -o).collect();
+                slab::add_all(&mut rest, &overlaps, self.known);
                 if slab::norm(&rest) > RESIDUAL * theta.abs() {
                     return None;
                 }
@@ -153,9 +146,7 @@ impl<'a> Krylov<'a> {
 /// Σ w_k v_k.
 fn combination(weights: &[f64], vectors: &[Vec<f64>]) -> Vec<f64> {
     let mut v = vec![0.0; vectors[0].len()];
-    for (w, s) in weights.iter().zip(vectors) {
-        slab::add_scaled(&mut v, *w, s);
-    }
+    slab::add_all(&mut v, weights, vectors);
     v
 }
 
