@@ -88,7 +88,7 @@ impl<'a> ComponentsMut<'a> {
 }
 
 /// Sites handled at a time: what belongs to them stays in the first cache.
-pub const TILE: usize = 512;
+pub const TILE: usize = 256;
 
 /// A slab of 3N numbers in pieces of at most [`TILE`] sites: (first site, field) each.
 pub fn tiles(slab: &mut [f64]) -> impl Iterator<Item = (usize, ComponentsMut<'_>)> {

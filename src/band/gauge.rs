@@ -1,13 +1,15 @@
 //! The rotation gauge: images of a system with a symmetry axis may turn freely about it; each is turned to lie as near to
 //! its predecessor as possible.
 //!
-//! About one axis, φ = atan2(Σ (b_x a_y − b_y a_x), Σ (a_x b_x + a_y b_y)) with x, y across the axis brings b nearest to a.
-//! Without it a start with azimuthal noise does not relax, at any length. Where the energy has no axis at all (full rotation
-//! symmetry) the three axes are treated in turn, a few times.
+//! About one axis, the angle of the plane vector (Σ (a_x b_x + a_y b_y), Σ (b_x a_y − b_y a_x)), x and y across the axis,
+//! brings b nearest to a. Without it a start with azimuthal noise does not relax, at any length. Where the energy has no axis
+//! at all (full rotation symmetry) the three axes are treated in turn, a few times.
 
-use crate::field::{Components, ComponentsMut};
-use crate::geometry::{Direction, Vector, rotate, vector};
+use crate::field::{Components, ComponentsMut, TILE};
+use crate::geometry::Vector;
+use crate::linalg::slab;
 use crate::path::Path;
+use multiversion::multiversion;
 
 /// Turns every image between the ends about the given symmetry axes towards the image before it.
 pub fn align_rotations(path: &mut Path, axes: &[Vector]) {
@@ -25,25 +27,56 @@ pub fn align_rotations(path: &mut Path, axes: &[Vector]) {
 }
 
 fn turn_towards(reference: &[f64], image: &mut [f64], axis: Vector) {
-    let a = Components::new(reference);
-    let b = Components::new(image);
-    let (mut sine, mut cosine) = (0.0, 0.0);
-    for i in 0..a.sites() {
-        let (p, q) = (a.get(i), b.get(i));
-        sine += vector::dot(axis, vector::cross(q, p));
-        cosine += vector::dot(p, q) - vector::dot(p, axis) * vector::dot(q, axis);
-    }
-    let n = a.sites() as f64;
-    if sine.hypot(cosine) < 1e-8 * n {
+    let (sine, cosine) = overlap(Components::new(reference), Components::new(image), axis);
+    let size = (sine * sine + cosine * cosine).sqrt();
+    if size < 1e-8 * reference.len() as f64 / 3.0 || sine.abs() < 1e-15 * size && cosine > 0.0 {
         return;
     }
-    let phi = libm::atan2(sine, cosine);
-    let Ok(direction) = Direction::new(axis) else { return };
-    if phi.abs() > 1e-15 {
-        let mut image = ComponentsMut::new(image);
-        for i in 0..image.x.len() {
-            let v = rotate([image.x[i], image.y[i], image.z[i]], direction, phi);
-            image.set(i, vector::unit(v).unwrap_or(v));
-        }
+    let image = ComponentsMut::new(image);
+    turn(image.x, image.y, image.z, axis, (sine / size, cosine / size));
+}
+
+/// Σ axis·(b × a) and Σ (a·b − (a·axis)(b·axis)): the sine and cosine of the turn that brings b to a, times one size.
+fn overlap(a: Components, b: Components, axis: Vector) -> (f64, f64) {
+    let (mut sine, mut cosine) = ([0.0; TILE], [0.0; TILE]);
+    let (mut sines, mut cosines) = (0.0, 0.0);
+    for first in (0..a.sites()).step_by(TILE) {
+        let range = first..a.sites().min(first + TILE);
+        let (sine, cosine) = (&mut sine[..range.len()], &mut cosine[..range.len()]);
+        overlaps(a.range(range.clone()), b.range(range), axis, sine, cosine);
+        (sines, cosines) = (sines + slab::sum(sine), cosines + slab::sum(cosine));
+    }
+    (sines, cosines)
+}
+
+#[multiversion(targets("x86_64+avx2"))]
+fn overlaps(a: Components, b: Components, [x, y, z]: Vector, sine: &mut [f64], cosine: &mut [f64]) {
+    let n = sine.len();
+    let (ax, ay, az) = (&a.x[..n], &a.y[..n], &a.z[..n]);
+    let (bx, by, bz) = (&b.x[..n], &b.y[..n], &b.z[..n]);
+    let cosine = &mut cosine[..n];
+    for i in 0..n {
+        let turn = (by[i] * az[i] - bz[i] * ay[i], bz[i] * ax[i] - bx[i] * az[i], bx[i] * ay[i] - by[i] * ax[i]);
+        sine[i] = x * turn.0 + y * turn.1 + z * turn.2;
+        let along = (x * ax[i] + y * ay[i] + z * az[i]) * (x * bx[i] + y * by[i] + z * bz[i]);
+        cosine[i] = ax[i] * bx[i] + ay[i] * by[i] + az[i] * bz[i] - along;
+    }
+}
+
+/// Turns every vector about a unit axis by an angle of known sine and cosine, and makes it of unit length.
+#[multiversion(targets("x86_64+avx2"))]
+fn turn(mx: &mut [f64], my: &mut [f64], mz: &mut [f64], [x, y, z]: Vector, (sine, cosine): (f64, f64)) {
+    let n = mx.len();
+    let (my, mz) = (&mut my[..n], &mut mz[..n]);
+    for i in 0..n {
+        let m = [mx[i], my[i], mz[i]];
+        let along = (1.0 - cosine) * (x * m[0] + y * m[1] + z * m[2]);
+        let v = [
+            cosine * m[0] + sine * (y * m[2] - z * m[1]) + along * x,
+            cosine * m[1] + sine * (z * m[0] - x * m[2]) + along * y,
+            cosine * m[2] + sine * (x * m[1] - y * m[0]) + along * z,
+        ];
+        let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
+        (mx[i], my[i], mz[i]) = (v[0] / length, v[1] / length, v[2] / length);
     }
 }

@@ -36,9 +36,10 @@ impl Found {
         if !found.is_stationary(c) {
             return found;
         }
-        let spectrum = Spectrum::of(h, &found.refined.state);
-        let shallow = spectrum.negative == 2 && spectrum.lowest_mev.get(1).is_some_and(|l| l.abs() < SHALLOW * c);
-        if !shallow {
+        let state = &found.refined.state;
+        let shallow = |l: &f64| l.abs() < SHALLOW * c;
+        if Spectrum::of(h, state, 0).negative != 2 || !Spectrum::of(h, state, 2).lowest_mev.get(1).is_some_and(shallow)
+        {
             return found;
         }
         [hop, -hop].into_iter().find_map(|far| found.beside(h, c, far)).unwrap_or(found)
@@ -57,7 +58,7 @@ impl Found {
         slab::scale(&mut v, far / size);
         let refined = refine(h, &state.moved(&v), &self.refined.valley, c);
         let found = Found { top: self.top.clone(), refined };
-        let better = found.is_stationary(c) && Spectrum::of(h, &found.refined.state).negative <= 1;
+        let better = found.is_stationary(c) && Spectrum::of(h, &found.refined.state, 0).negative <= 1;
         better.then_some(found)
     }
 

@@ -3,9 +3,10 @@
 //! A saddle's two descents either end in the ends of its stretch of path, or in minima on the way; there the stretch is split,
 //! and the parts are treated alike.
 
-use super::climb::{Found, ZOOMS, conclude, zoomed};
+use super::climb::{Found, ZOOMS, zoomed};
 use super::minimum::{Link, Minimum};
 use super::relaxation::{Goal, Relaxation};
+use super::top::tops;
 use crate::band::Band;
 use crate::error::Result;
 use crate::path::guess::{Edge, FirstGuess, GuessContext, Sweep};
@@ -120,7 +121,17 @@ fn top_of(relaxation: &mut Relaxation, h: &crate::energy::Hamiltonian, path: &Pa
         band = Band::new(h, path);
         relaxation.run(&mut band, Goal::Loose, EVALUATIONS);
     }
-    conclude(&band, c, relaxation.scales.half_site_rad())
+    // the highest maximum may be where a path that overshoots turns round; any other saddle on the way will do to go on from
+    let hop = relaxation.scales.half_site_rad();
+    let mut highest = None;
+    for top in tops(&band, f64::INFINITY) {
+        let found = Found::at(h, top, c, hop);
+        if found.is_saddle(c) {
+            return Some(found);
+        }
+        highest = highest.or(Some(found));
+    }
+    highest
 }
 
 /// The part of a path between two states on it; a wall that moves if the part has too few images.

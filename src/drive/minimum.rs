@@ -11,6 +11,8 @@ use crate::path::largest_angle;
 use crate::saddle::{Spectrum, State, descend};
 use crate::spins::Spins;
 
+/// How many eigenvalues of a saddle are reported.
+const REPORTED: usize = 6;
 /// Spins of two states of one minimum differ by less (rad).
 const SAME: f64 = 1e-3;
 
@@ -34,7 +36,7 @@ impl Minimum {
         Minimum {
             energy_mev: h.energy_mev(&state.m),
             max_torque_mev: state.max_torque_mev(),
-            spectrum: Spectrum::of(h, &state),
+            spectrum: Spectrum::of(h, &state, 0),
             spins: spins.clone(),
         }
     }
@@ -109,7 +111,8 @@ impl Link {
             let relaxed = relax_to_minimum(h, &Spins::from_unit_components(&d.m), 1e-14 * h.stiffness_mev())?;
             Ok((Minimum::examine(h, &relaxed.spins), d.fallen_mev))
         };
-        let (sides, spectrum) = rayon::join(|| rayon::join(|| side(-1.0), || side(1.0)), || Spectrum::of(h, state));
+        let (sides, spectrum) =
+            rayon::join(|| rayon::join(|| side(-1.0), || side(1.0)), || Spectrum::of(h, state, REPORTED));
         let ((before, f), (after, g)) = (sides.0?, sides.1?);
         Ok(Link { spectrum, before, after, fallen_mev: [f, g], found })
     }

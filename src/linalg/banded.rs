@@ -115,6 +115,12 @@ impl Banded {
         }
     }
 
+    /// The smallest diagonal entry, which no smallest eigenvalue exceeds.
+    pub fn smallest_diagonal(&self) -> f64 {
+        let band = (0..self.inner).map(|j| self.band[j * (self.width + 1)]);
+        band.chain((0..self.border).map(|r| self.corner[r * self.border + r])).fold(f64::INFINITY, f64::min)
+    }
+
     /// y ← A x.
     pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
         let (n, w, b) = (self.inner, self.width, self.border);

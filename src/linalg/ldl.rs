@@ -47,6 +47,11 @@ impl Ldl {
         band.chain((0..b).map(move |r| self.a.corner[r * b + r])).chain(tail)
     }
 
+    /// Number of unknowns.
+    pub fn order(&self) -> usize {
+        self.a.order()
+    }
+
     /// Number of negative eigenvalues of A.
     pub fn negatives(&self) -> usize {
         self.pivots().filter(|d| *d < 0.0).count()

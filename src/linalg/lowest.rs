@@ -1,12 +1,15 @@
-//! The lowest eigenvalues of a banded matrix: a shift from the inertia, then inverse subspace iteration.
+//! The lowest eigenvalues of a banded matrix: a shift from the inertia, then block Lanczos on the inverse.
 
-use super::{Banded, eigen_symmetric, slab};
+use super::{Banded, Ldl, eigen_symmetric, slab};
 use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 
-/// Extra vectors that speed the iteration up.
-const GUARD: usize = 4;
-/// Most iterations.
-const ROUNDS: usize = 60;
+/// Vectors in a block: as many as modes may be degenerate.
+const BLOCK: usize = 4;
+/// A vector with |A⁻¹v − θv| ≤ this part of θ is an eigenvector: its eigenvalue is right to the square of it.
+const RESIDUAL: f64 = 1e-6;
+/// Most blocks.
+const STEPS: usize = 40;
 
 /// An eigenvalue with its unit eigenvector.
 #[derive(Clone, Debug)]
@@ -19,74 +22,170 @@ pub struct Mode {
 
 /// The `count` lowest modes of `matrix` in the space orthogonal to `known` (orthonormal vectors, invariant under it),
 /// ascending. Fewer where the space is smaller. Deterministic.
+///
+/// Block Lanczos on (A + s·1)⁻¹ with full orthogonalisation: blocks of [`BLOCK`] vectors, so that degenerate modes are all
+/// found, until the wanted vectors are eigenvectors (Golub, Underwood, Mathematical Software III, 361 (1977),
+/// doi:10.1016/B978-0-12-587260-7.50018-2).
 pub fn lowest_modes(matrix: &Banded, count: usize, known: &[Vec<f64>]) -> Vec<Mode> {
     let n = matrix.order();
-    let size = (count + GUARD).min(n.saturating_sub(known.len()));
-    if size == 0 {
+    let room = n.saturating_sub(known.len());
+    let count = count.min(room);
+    if count == 0 {
         return Vec::new();
     }
     let scale = matrix.norm1().max(1e-280);
+    let shift = shift_below(matrix, scale);
     let mut shifted = matrix.clone();
-    shifted.shift(shift_below(matrix, scale));
-    let factors = shifted.factor();
-    let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(0x5eed);
-    let mut space: Vec<Vec<f64>> =
-        (0..size).map(|_| (0..n).map(|_| random.random_range(-1.0..1.0)).collect()).collect();
-    let mut modes: Vec<Mode> = Vec::new();
-    for _ in 0..ROUNDS {
-        for v in &mut space {
-            factors.solve(v, 1);
-        }
-        orthonormalise(&mut space, known);
-        let before: Vec<f64> = modes.iter().map(|m| m.value).collect();
-        modes = rayleigh_ritz(matrix, &space);
-        space = modes.iter().map(|m| m.vector.clone()).collect();
-        let wanted = count.min(modes.len());
-        let settled = before.len() == modes.len()
-            && (0..wanted).all(|k| (modes[k].value - before[k]).abs() <= 1e-13 * scale + 1e-10 * before[k].abs());
-        if settled {
-            break;
+    shifted.shift(shift);
+    let mut krylov = Krylov::new(shifted.factor(), known);
+    for step in 1..=STEPS {
+        let grown = krylov.grow(room);
+        let enough = krylov.basis.len() >= count + BLOCK && step % 2 == 0;
+        if let Some(vectors) = krylov.settled(count, !grown || step == STEPS, enough) {
+            return rayleigh_ritz(matrix, &vectors);
         }
     }
-    modes.truncate(count);
-    modes
+    Vec::new()
 }
 
-/// s with A + s·1 positive definite, or nearly so: twice the size of the most negative eigenvalue, from the inertia.
+/// The space that the inverse spans from a random block, and the inverse within it.
+struct Krylov<'a> {
+    factors: Ldl,
+    known: &'a [Vec<f64>],
+    random: ChaCha8Rng,
+    /// Orthonormal.
+    basis: Vec<Vec<f64>>,
+    /// A⁻¹ of each.
+    images: Vec<Vec<f64>>,
+    /// basis · images, the lower half, row after row (the inverse is symmetric).
+    products: Vec<Vec<f64>>,
+}
+
+impl<'a> Krylov<'a> {
+    fn new(factors: Ldl, known: &'a [Vec<f64>]) -> Krylov<'a> {
+        let random = ChaCha8Rng::seed_from_u64(0x5eed);
+        Krylov { factors, known, random, basis: Vec::new(), images: Vec::new(), products: Vec::new() }
+    }
+
+    /// One block more, of a space of `room` dimensions; whether there was room.
+    fn grow(&mut self, room: usize) -> bool {
+        let (old, last) = (self.basis.len(), self.images.len().saturating_sub(BLOCK));
+        let wanted = BLOCK.min(room.saturating_sub(old));
+        for k in 0..wanted {
+            let next = match self.images.get(last + k) {
+                Some(image) if old > 0 => image.clone(),
+                _ => self.anything(),
+            };
+            if let Some(v) = self.new_direction(next) {
+                self.basis.push(v);
+            }
+        }
+        for k in old..self.basis.len() {
+            let mut image = self.basis[k].clone();
+            self.factors.solve(&mut image, 1);
+            self.products.push(slab::overlaps(&self.basis[..=k], &image));
+            self.images.push(image);
+        }
+        self.basis.len() > old
+    }
+
+    fn anything(&mut self) -> Vec<f64> {
+        (0..self.factors.order()).map(|_| self.random.random_range(-1.0..1.0)).collect()
+    }
+
+    /// The part of `v` that is new, or of something random where nothing is.
+    fn new_direction(&mut self, mut v: Vec<f64>) -> Option<Vec<f64>> {
+        for _ in 0..4 {
+            let size = slab::norm(&v);
+            slab::scale(&mut v, 1.0 / size.max(f64::MIN_POSITIVE));
+            for _ in 0..2 {
+                for space in [self.known, &self.basis] {
+                    let overlaps: Vec<f64> = slab::overlaps(space, &v).iter().map(|o| -o).collect();
+                    slab::add_all(&mut v, &overlaps, space);
+                }
+            }
+            let rest = slab::norm(&v);
+            if rest > 1e-10 {
+                slab::scale(&mut v, 1.0 / rest);
+                return Some(v);
+            }
+            v = self.anything();
+        }
+        None
+    }
+
+    fn projected(&self) -> Vec<f64> {
+        let k = self.basis.len();
+        (0..k * k).map(|e| self.products[(e / k).max(e % k)][(e / k).min(e % k)]).collect()
+    }
+
+    /// The `count` vectors to which the inverse is largest, orthonormal, if `look` and they are eigenvectors, or at `last`.
+    fn settled(&self, count: usize, last: bool, look: bool) -> Option<Vec<Vec<f64>>> {
+        if !look && !last {
+            return None;
+        }
+        let (values, weights) = eigen_symmetric(&self.projected(), self.basis.len());
+        let mut vectors = Vec::with_capacity(count);
+        for (theta, w) in values.iter().zip(&weights).rev().take(count) {
+            let v = combination(w, &self.basis);
+            if !last {
+                let mut rest = combination(w, &self.images);
+                slab::add_scaled(&mut rest, -theta, &v);
+                let overlaps: Vec<f64> = slab::overlaps(self.known, &rest).iter().map(|o| -o).collect();
+                slab::add_all(&mut rest, &overlaps, self.known);
+                if slab::norm(&rest) > RESIDUAL * theta.abs() {
+                    return None;
+                }
+            }
+            vectors.push(v);
+        }
+        Some(vectors)
+    }
+}
+
+/// Σ w_k v_k.
+fn combination(weights: &[f64], vectors: &[Vec<f64>]) -> Vec<f64> {
+    let mut v = vec![0.0; vectors[0].len()];
+    slab::add_all(&mut v, weights, vectors);
+    v
+}
+
+/// s with A + s·1 positive definite and its lowest eigenvalue small beside that of A: halves an interval by the inertia.
+/// The nearer the lowest eigenvalue is to zero, the fewer blocks the others take.
 fn shift_below(matrix: &Banded, scale: f64) -> f64 {
     let positive = |s: f64| {
         let mut a = matrix.clone();
         a.shift(s);
         a.factor().negatives() == 0
     };
-    let mut s = 1e-11 * scale;
-    while !positive(s) && s < 4.0 * scale {
-        s *= 4.0;
+    let least = 1e-11 * scale;
+    let mut enough = least;
+    while !positive(enough) && enough < 4.0 * scale {
+        enough *= 16.0;
     }
-    s
+    let mut too_little = if enough > least { enough / 16.0 } else { -matrix.smallest_diagonal().max(least) };
+    for _ in 0..12 {
+        let same_sign = enough * too_little > 0.0;
+        let near = (enough - too_little).abs() <= 0.1 * too_little.abs().min(enough.abs());
+        if same_sign && near || enough - too_little <= least {
+            break;
+        }
+        // in steps of size where the sign is settled, else towards the smallest size that counts
+        let middle = match same_sign {
+            true => (enough * too_little).sqrt().copysign(enough),
+            false => -(too_little.abs() * least).sqrt().max(least),
+        };
+        if positive(middle) {
+            enough = middle;
+        } else {
+            too_little = middle;
+        }
+    }
+    enough
 }
 
-fn orthonormalise(space: &mut Vec<Vec<f64>>, known: &[Vec<f64>]) {
-    let mut done: Vec<Vec<f64>> = Vec::with_capacity(space.len());
-    for mut v in space.drain(..) {
-        let size = slab::norm(&v);
-        slab::scale(&mut v, 1.0 / size.max(f64::MIN_POSITIVE));
-        for _ in 0..2 {
-            for b in known.iter().chain(&done) {
-                let overlap = slab::dot(b, &v);
-                slab::add_scaled(&mut v, -overlap, b);
-            }
-        }
-        let rest = slab::norm(&v);
-        if rest > 1e-10 {
-            slab::scale(&mut v, 1.0 / rest);
-            done.push(v);
-        }
-    }
-    *space = done;
-}
-
-/// The eigenvalues of `matrix` within the span of orthonormal vectors, ascending, with their vectors.
+/// The eigenvalues of `matrix` within the span of orthonormal vectors, ascending, with their vectors, whose largest component
+/// is positive.
 pub fn rayleigh_ritz(matrix: &Banded, space: &[Vec<f64>]) -> Vec<Mode> {
     let (n, k) = (matrix.order(), space.len());
     let images: Vec<Vec<f64>> = space
@@ -105,14 +204,13 @@ pub fn rayleigh_ritz(matrix: &Banded, space: &[Vec<f64>]) -> Vec<Mode> {
         }
     }
     let (values, vectors) = eigen_symmetric(&small, k);
-    let lift = |weights: &Vec<f64>| {
-        let mut v = vec![0.0; n];
-        for (w, s) in weights.iter().zip(space) {
-            slab::add_scaled(&mut v, *w, s);
-        }
-        v
+    let mode = |(value, weights): (f64, &Vec<f64>)| {
+        let mut vector = combination(weights, space);
+        let largest = vector.iter().fold(0.0f64, |m, x| if x.abs() > m.abs() { *x } else { m });
+        slab::scale(&mut vector, 1f64.copysign(largest));
+        Mode { value, vector }
     };
-    values.into_iter().zip(&vectors).map(|(value, w)| Mode { value, vector: lift(w) }).collect()
+    values.into_iter().zip(&vectors).map(mode).collect()
 }
 
 #[cfg(test)]
@@ -137,6 +235,60 @@ mod tests {
         }
         let rest = lowest_modes(&a, 2, &[modes[0].vector.clone()]);
         assert!((rest[0].value - exact(2)).abs() < 1e-10);
+    }
+
+    #[test]
+    fn degenerate_modes_are_all_found() {
+        let (rows, copies) = (20, 4);
+        let mut a = Banded::zeros(rows * copies, copies, 0);
+        for i in 0..rows * copies {
+            a.add(i, i, 2.0);
+            if i >= copies {
+                a.add(i, i - copies, -1.0);
+            }
+        }
+        let modes = lowest_modes(&a, 6, &[]);
+        let exact = |k: usize| 2.0 - 2.0 * libm::cos(k as f64 * std::f64::consts::PI / (rows as f64 + 1.0));
+        for (k, mode) in modes.iter().enumerate() {
+            assert!((mode.value - exact(1 + k / copies)).abs() < 1e-12, "{k}: {}", mode.value);
+        }
+        assert_eq!(modes.len(), 6);
+    }
+
+    #[test]
+    fn unknowns_without_couplings_give_their_diagonal() {
+        let mut a = Banded::zeros(50, 1, 0);
+        (0..50).for_each(|i| a.add(i, i, if i == 7 { -2.0 } else { 1.0 }));
+        let values: Vec<f64> = lowest_modes(&a, 3, &[]).iter().map(|m| m.value).collect();
+        assert!((values[0] + 2.0).abs() < 1e-12 && values[1..].iter().all(|v| (v - 1.0).abs() < 1e-12), "{values:?}");
+    }
+
+    #[test]
+    fn the_modes_of_random_matrices_agree_with_a_dense_solver() {
+        let mut r = ChaCha8Rng::seed_from_u64(8);
+        for round in 0..60 {
+            let (n, width) = (3 + round, 1 + round % 5);
+            let mut a = Banded::zeros(n, width.min(n - 1), 0);
+            let level = [0.0, 3.0, -3.0, 2.5][round % 4];
+            for j in 0..n {
+                for i in j..n.min(j + 1 + width.min(n - 1)) {
+                    a.add(i, j, r.random_range(-1.0..1.0) + if i == j { level } else { 0.0 });
+                }
+            }
+            let full: Vec<f64> = (0..n * n).map(|e| a.get(e / n, e % n)).collect();
+            let exact = crate::linalg::eigenvalues_symmetric(&full, n);
+            for count in [1, 2, 6] {
+                let modes = lowest_modes(&a, count, &[]);
+                assert_eq!(modes.len(), count.min(n));
+                for (mode, value) in modes.iter().zip(&exact) {
+                    assert!((mode.value - value).abs() < 1e-9, "n {n} count {count}: {} {value}", mode.value);
+                    let mut rest = vec![0.0; n];
+                    a.multiply(&mode.vector, &mut rest);
+                    slab::add_scaled(&mut rest, -mode.value, &mode.vector);
+                    assert!(slab::norm(&rest) < 1e-4, "n {n} count {count}: residual {}", slab::norm(&rest));
+                }
+            }
+        }
     }
 
     #[test]

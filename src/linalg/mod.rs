@@ -10,6 +10,7 @@ pub mod slab;
 mod small;
 mod tail;
 mod tail_ldl;
+mod tridiagonal;
 
 pub use banded::Banded;
 pub use double_double::DoubleDouble;

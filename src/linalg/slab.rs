@@ -53,16 +53,40 @@ pub fn norm(a: &[f64]) -> f64 {
     dot(a, a).sqrt()
 }
 
+/// The overlaps of `v` with all of `vectors`, tile by tile, so that v is read once.
+pub fn overlaps(vectors: &[Vec<f64>], v: &[f64]) -> Vec<f64> {
+    let mut sums = vec![0.0; vectors.len()];
+    for first in (0..v.len()).step_by(WORK) {
+        let tile = first..v.len().min(first + WORK);
+        for (sum, b) in sums.iter_mut().zip(vectors) {
+            *sum += dot_short(&b[tile.clone()], &v[tile.clone()]);
+        }
+    }
+    sums
+}
+
+/// v ← v + Σ w_k v_k, tile by tile.
+pub fn add_all(v: &mut [f64], weights: &[f64], vectors: &[Vec<f64>]) {
+    for (k, tile) in v.chunks_mut(WORK).enumerate() {
+        for (w, b) in weights.iter().zip(vectors) {
+            add_scaled(tile, *w, &b[k * WORK..k * WORK + tile.len()]);
+        }
+    }
+}
+
+/// Numbers in a tile that stays in the first cache.
+const WORK: usize = 2048;
+
 /// |a − b|, the straight distance.
 pub fn distance(a: &[f64], b: &[f64]) -> f64 {
     let tile = |(a, b): (&[f64], &[f64])| {
-        let mut difference = [0.0; 512];
+        let mut difference = [0.0; 256];
         for (d, (a, b)) in difference.iter_mut().zip(a.iter().zip(b)) {
             *d = a - b;
         }
         dot(&difference, &difference)
     };
-    let squares: f64 = a.chunks(512).zip(b.chunks(512)).map(tile).sum();
+    let squares: f64 = a.chunks(256).zip(b.chunks(256)).map(tile).sum();
     squares.sqrt()
 }
 
@@ -115,6 +139,11 @@ mod tests {
         }
         assert!(max_abs(&[1.0, f64::NAN, 2.0]).is_nan());
         assert_eq!(max_abs(&[1.0, -3.0]), 3.0);
+        let (mut v, columns) = (vec![1.0; 5000], [vec![2.0; 5000], (0..5000).map(f64::from).collect()]);
+        let sums = overlaps(&columns, &v);
+        assert_eq!(sums, [10_000.0, 12_497_500.0]);
+        add_all(&mut v, &[0.5, -1.0], &columns);
+        assert_eq!((v[0], v[4999]), (2.0, -4997.0));
         let mut many: Vec<f64> = (0..99).map(|k| -k as f64).collect();
         assert_eq!((max_abs(&many), distance(&many, &[0.0; 99])), (98.0, norm(&many)));
         many[17] = f64::NAN;

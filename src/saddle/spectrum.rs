@@ -9,9 +9,6 @@ use super::state::State;
 use crate::energy::Hamiltonian;
 use crate::linalg::lowest_modes;
 
-/// How many eigenvalues are reported.
-const REPORTED: usize = 6;
-
 /// What kind of stationary point a state is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
@@ -25,13 +22,13 @@ pub struct Spectrum {
     pub floor_mev: f64,
     /// ‖H‖₁ (meV).
     pub norm_mev: f64,
-    /// The lowest eigenvalues (meV), ascending, zero modes and frozen spins apart.
+    /// The lowest eigenvalues (meV), as many as were asked for, ascending, zero modes and frozen spins apart.
     pub lowest_mev: Vec<f64>,
 }
 
 impl Spectrum {
-    /// Of a state.
-    pub fn of(h: &Hamiltonian, state: &State) -> Spectrum {
+    /// Of a state, with `count` of its eigenvalues. The counts of signs cost two factorisations; eigenvalues cost far more.
+    pub fn of(h: &Hamiltonian, state: &State, count: usize) -> Spectrum {
         let norm_mev = state.hessian.norm1();
         let left_out = h.long_range().map_or(0.0, |long| long.error_mev(true));
         let floor_mev = (8.0 * f64::EPSILON * norm_mev).max(left_out);
@@ -48,7 +45,7 @@ impl Spectrum {
         let flat = below(-floor_mev).saturating_sub(negative);
         let frozen = (0..h.sites()).filter(|&i| h.is_frozen(i)).count();
         let free = state.hessian.order() - 2 * frozen - state.zeros.len().min(state.hessian.order() - 2 * frozen);
-        let modes = lowest_modes(&state.hessian, REPORTED.min(free), &state.zeros);
+        let modes = lowest_modes(&state.hessian, count.min(free), &state.zeros);
         let lowest_mev = modes.into_iter().map(|m| m.value).collect();
         Spectrum { negative, flat, zero: state.zeros.len(), floor_mev, norm_mev, lowest_mev }
     }

@@ -1,0 +1,147 @@
+//! What a barrier costs on ever finer lattices: K = 0.05 (50/N)² J, the same wall on N spins, nucleated at an end of the chain.
+//!
+//! `cargo bench --bench refinement` runs N = 50 … 102,400; `cargo bench --bench refinement -- 1000000` the sizes that are
+//! given. Everything is a default but the guess (a wall enters from the left) and the number of images (17). Band
+//! evaluations count all levels; solves are the factorisations of the saddle's refinement; the error is against a Newton's
+//! method of this file, in one angle a spin, that shares nothing with the library.
+
+use spinneb::band::Band;
+use spinneb::drive::{Images, Outcome, Problem, Silent, run, tops};
+use spinneb::energy::{Anisotropy, Exchange, Hamiltonian};
+use spinneb::geometry::Direction;
+use spinneb::lattice::Chain;
+use spinneb::path::guess::{Edge, GuessSpec, Sweep};
+use spinneb::saddle::refine;
+use spinneb::spins::Spins;
+
+/// Exchange (meV).
+const J: f64 = 10.0;
+const IMAGES: usize = 17;
+
+fn main() {
+    let given: Vec<usize> = std::env::args().filter_map(|a| a.parse().ok()).collect();
+    let sizes = if given.is_empty() { (0..12).map(|k| 50 << k).collect() } else { given };
+    println!(
+        "{:>8} {:>5} {:>7} {:>20} {:>9} {:>9} {:>10} {:>7} {:>9}",
+        "sites", "evals", "solves", "barrier_meV", "error", "certified", "lowest/c", "µs/spin", "peak_GB"
+    );
+    for sites in sizes {
+        let problem = problem(sites);
+        let outcome = run(&problem, &mut Silent).expect("a valid problem");
+        let solves = saddle_solves(&problem, &outcome);
+        let barrier = outcome.barrier.map_or(f64::NAN, |b| b.forward_mev);
+        let exact = wall_energy(sites);
+        let soft = outcome.saddles.first().and_then(|s| s.lowest_eigenvalues_mev.first()).map_or(f64::NAN, |l| *l);
+        println!(
+            "{sites:>8} {:>5} {solves:>7} {barrier:>20.15} {:>9.1e} {:>9} {:>10.1e} {:>7.2} {:>9}",
+            outcome.history.len(),
+            (barrier / exact - 1.0).abs(),
+            outcome.certified,
+            soft / (2.0 * anisotropy(sites)),
+            1e6 * outcome.work.seconds / sites as f64,
+            peak_gb().map_or("unknown".into(), |gb| format!("{gb:.2}")),
+        );
+        for warning in &outcome.warnings {
+            println!("{:>8} {warning}", "");
+        }
+    }
+}
+
+/// K (meV): walls are √10 sites wide on 50 sites, and as wide in comparison on any other number.
+fn anisotropy(sites: usize) -> f64 {
+    0.05 * J * (50.0 / sites as f64).powi(2)
+}
+
+fn problem(sites: usize) -> Problem {
+    let chain = Chain::open(sites);
+    let terms: Vec<Box<dyn spinneb::energy::EnergyTerm>> = vec![
+        Box::new(Exchange::uniform(&chain, &[J])),
+        Box::new(Anisotropy::uniform(sites, anisotropy(sites), Direction::Z)),
+    ];
+    let h = Hamiltonian::new(&chain, terms).expect("a valid chain");
+    let [up, down] = [Direction::Z, Direction::Z.reversed()].map(|d| Spins::uniform(sites, d));
+    let mut problem = Problem::new(chain, h, up, down);
+    problem.guess = Some(GuessSpec::Sweep(Sweep { from: Edge::Left, width: None, axis: None }));
+    problem.images = Images::Count(IMAGES);
+    problem
+}
+
+/// Factorisations that the refinement takes from the relaxed band's top.
+fn saddle_solves(problem: &Problem, outcome: &Outcome) -> usize {
+    let mut band = Band::new(&problem.hamiltonian, outcome.path.clone());
+    band.evaluate();
+    let c = 2.0 * anisotropy(outcome.path.sites());
+    let top = tops(&band, 0.0).into_iter().next();
+    top.map_or(0, |top| refine(&problem.hamiltonian, &top.m, &top.tau, c).factorisations)
+}
+
+/// Energy (meV) of the wall in the middle of the chain above the uniform state, by Newton's method on its angles:
+/// E = Σ 2J sin² ½(θ_{i+1} − θ_i) + Σ K sin² θ_i, tridiagonal, started from the continuum's wall.
+fn wall_energy(sites: usize) -> f64 {
+    let k = anisotropy(sites);
+    let width = (J / (2.0 * k)).sqrt();
+    let middle = 0.5 * (sites as f64 - 1.0);
+    let mut theta: Vec<f64> = (0..sites).map(|i| 2.0 * ((i as f64 - middle) / width).exp().atan()).collect();
+    for _ in 0..12 {
+        let (mut slope, mut diagonal, mut beside) = (vec![0.0; sites], vec![0.0; sites], vec![0.0; sites]);
+        for i in 0..sites {
+            slope[i] += k * (2.0 * theta[i]).sin();
+            diagonal[i] += 2.0 * k * (2.0 * theta[i]).cos();
+            if i + 1 < sites {
+                let step = theta[i + 1] - theta[i];
+                slope[i] -= J * step.sin();
+                slope[i + 1] += J * step.sin();
+                diagonal[i] += J * step.cos();
+                diagonal[i + 1] += J * step.cos();
+                beside[i] = -J * step.cos();
+            }
+        }
+        // the step keeps the wall antisymmetric about the middle, so that it stays on the saddle
+        let mut step = tridiagonal(&diagonal, &beside, &slope);
+        for i in 0..sites / 2 {
+            let even = 0.5 * (step[i] + step[sites - 1 - i]);
+            step[i] -= even;
+            step[sites - 1 - i] -= even;
+        }
+        theta.iter_mut().zip(&step).for_each(|(t, s)| *t -= s);
+    }
+    let site = |i: usize| {
+        let bond = if i + 1 < sites { 2.0 * J * (0.5 * (theta[i + 1] - theta[i])).sin().powi(2) } else { 0.0 };
+        bond + k * theta[i].sin().powi(2)
+    };
+    compensated((0..sites).map(site))
+}
+
+fn tridiagonal(diagonal: &[f64], beside: &[f64], rhs: &[f64]) -> Vec<f64> {
+    let n = diagonal.len();
+    let (mut d, mut x) = (diagonal.to_vec(), rhs.to_vec());
+    for i in 1..n {
+        let l = beside[i - 1] / d[i - 1];
+        d[i] -= l * beside[i - 1];
+        x[i] -= l * x[i - 1];
+    }
+    for i in (0..n).rev() {
+        let next = if i + 1 < n { beside[i] * x[i + 1] } else { 0.0 };
+        x[i] = (x[i] - next) / d[i];
+    }
+    x
+}
+
+/// Kahan's sum.
+fn compensated(values: impl Iterator<Item = f64>) -> f64 {
+    let (mut sum, mut lost) = (0.0, 0.0);
+    for v in values {
+        let y = v - lost;
+        let next = sum + y;
+        lost = (next - sum) - y;
+        sum = next;
+    }
+    sum
+}
+
+/// Most memory that the process has held so far, where the system tells.
+fn peak_gb() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|l| l.starts_with("VmHWM"))?;
+    Some(line.split_whitespace().nth(1)?.parse::<f64>().ok()? * 1024e-9)
+}
