@@ -1,5 +1,8 @@
 //! Magnetostatics against what is known by pen, and end to end.
 
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
 use serde_json::Value;
 use spinneb::drive::{Outcome, Problem, Silent, run};
 use spinneb::energy::magnetostatics::MU_0_MU_B_SQUARED;
@@ -172,4 +175,109 @@ fn the_index_counted_by_exponentials_is_that_of_all_eigenvalues() {
             }
         }
     }
+}
+
+#[test]
+fn a_wall_leaves_one_pinning_region_of_a_permalloy_wire_for_another() {
+    let wall = |center: usize| {
+        format!(
+            r#"{{"domain_wall": {{"center": {center}, "left": [1, 0, 0], "right": [-1, 0, 0], "through": [0, 1, 0]}}}}"#
+        )
+    };
+    let soft = |from: usize| {
+        let sites = format!(r#"{{"from": {from}, "to": {}}}"#, from + 10);
+        format!(r#"{{"anisotropy": {{"K": "-40 kJ/m^3", "axis": [1, 0, 0], "sites": {sites}}}}}"#)
+    };
+    let config = format!(
+        r#"{{
+      "material": {{"name": "Permalloy", "Ms": "800 kA/m", "energy": [{{"exchange": {{"A": "13 pJ/m"}}}}, {{"demag": {{}}}}]}},
+      "lattice": {{"chain": {{"sites": 126, "spacing": "5 nm", "cross_section": ["20 nm", "5 nm"]}}}},
+      "energy": [{}, {}],
+      "initial": {}, "final": {}
+    }}"#,
+        soft(28),
+        soft(88),
+        wall(33),
+        wall(93)
+    );
+    let (code, summary) = result("depinning", &config);
+    assert_eq!((code, &summary["certified"]), (Some(0), &Value::Bool(true)), "{summary}");
+    assert_eq!(summary["saddles"].as_array().unwrap().len(), 1, "{summary}");
+    // the wall moves as it is; to turn it over on the way would cost four times as much
+    let barrier = summary["barrier_meV"]["forward"].as_f64().unwrap();
+    assert!((barrier - 751.576_420_6).abs() < 1e-6, "{barrier}");
+}
+
+/// A short chain or ring of random dots or cells, with or without exchange and easy axes.
+fn random(r: &mut ChaCha8Rng, sites: usize) -> (Problem, String) {
+    let periodic = sites < 100 && r.random_range(0..4) == 0;
+    let edge = |r: &mut ChaCha8Rng| Length(r.random_range(2.0..12.0));
+    let chain = Chain {
+        periodic,
+        spacing: Some(Length(r.random_range(5.0..8.0))),
+        cross_section: Some([edge(r), edge(r)]),
+        ..Chain::open(sites)
+    };
+    let medium = Medium { chain: &chain, moment: None, saturation: Some(Magnetisation(r.random_range(3e5..1.2e6))) };
+    let far = if r.random_range(0..3) == 0 { "dipolar" } else { "demag" };
+    let long = sites > 100;
+    let axis = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.2, 1.0]][if long { 0 } else { r.random_range(0..3) }];
+    let texts = [
+        format!(r#"{{"{far}": {{}}}}"#),
+        format!(r#"{{"exchange": {{"A": "{} pJ/m"}}}}"#, [0.0, 2.0, 10.0][if long { 2 } else { r.random_range(0..3) }]),
+        format!(r#"{{"anisotropy": {{"K": "{} kJ/m^3", "axis": {axis:?}}}}}"#, r.random_range(20.0..400.0)),
+    ];
+    let build = |text: &String| serde_json::from_str::<TermSpec>(text).unwrap().member().build(&medium).unwrap();
+    let h = Hamiltonian::new(&chain, texts.iter().map(build).collect()).unwrap();
+    let up = Direction::new(axis).unwrap();
+    let [a, b] = [up, up.reversed()].map(|d| Spins::uniform(sites, d));
+    (Problem::new(chain, h, a, b), format!("{sites} sites, ring {periodic}, {texts:?}"))
+}
+
+#[test]
+fn every_certified_saddle_of_random_chains_has_one_negative_eigenvalue_by_a_dense_solver() {
+    let mut r = ChaCha8Rng::seed_from_u64(11);
+    let sizes = (0..40).map(|k| if k < 38 { 1 + k % 19 } else { 131 });
+    let chains: Vec<(Problem, String)> =
+        sizes.map(|n| if n == 2 { 3 } else { n }).map(|n| random(&mut r, n.max(3))).collect();
+    let claims: Vec<Option<bool>> = chains.par_iter().map(|(problem, text)| claim(problem, text)).collect();
+    let paths = claims.iter().flatten().count();
+    let certified = claims.iter().flatten().filter(|c| **c).count();
+    println!("{certified} of {paths} paths certified, {} chains have one minimum only", claims.len() - paths);
+    assert!(paths >= 25 && 10 * certified >= 9 * paths - 10, "only {certified} of {paths}");
+}
+
+/// Solves a chain and checks every claim of the outcome; whether it was certified, if there are two minima at all.
+fn claim(problem: &Problem, text: &str) -> Option<bool> {
+    let outcome = run(problem, &mut Silent).unwrap();
+    println!("{} {text}: {} {:?}", outcome.certified, outcome.work.seconds, outcome.warnings);
+    assert!(outcome.barrier.is_none_or(|b| b.forward_mev.is_finite() && b.backward_mev.is_finite()), "{text}");
+    if !outcome.certified {
+        return outcome.barrier.map(|_| false);
+    }
+    let h = &problem.hamiltonian;
+    for s in &outcome.saddles {
+        let m = s.spins.as_slice();
+        let mut g = vec![0.0; m.len()];
+        h.energy_gradient(m, &mut g);
+        // column by column from products, which know nothing of exponentials
+        let basis = TangentBasis::at(m);
+        let n = 2 * h.sites();
+        let mut full = vec![0.0; n * n];
+        let (mut v, mut out, mut unit) = (vec![0.0; m.len()], vec![0.0; m.len()], vec![0.0; n]);
+        for k in 0..n {
+            unit.fill(0.0);
+            unit[k] = 1.0;
+            basis.field(&unit, &mut v);
+            h.hessian_product(m, &g, &v, &mut out);
+            full[k * n..(k + 1) * n].copy_from_slice(&basis.coordinates(&out));
+        }
+        let norm = full.chunks(n).map(|row| row.iter().map(|x| x.abs()).sum::<f64>()).fold(0.0, f64::max);
+        let negative = eigenvalues_symmetric(&full, n).iter().filter(|e| **e < -1e-13 * norm).count();
+        let told = s.negative_modes.unwrap();
+        assert!(negative <= 1 && told <= 1, "{text}: {negative} negative eigenvalues, {told} told");
+        let tangent = basis.coordinates(&g);
+        assert!(tangent.iter().all(|t| t.abs() <= 1.1e-12 * norm), "{text}: not stationary");
+    }
+    Some(true)
 }

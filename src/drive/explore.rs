@@ -4,13 +4,18 @@
 //! the usual way. So several guesses are relaxed loosely, and the lowest goes on.
 
 use super::Problem;
-use crate::geometry::{Direction, Vector, vector};
+use crate::geometry::{Direction, vector};
 use crate::path::guess::{Edge, FirstGuess, Geodesic, GuessContext, GuessSpec, NoiseSpec, Rotation, Sweep, best_turn};
 use crate::spins::Spins;
 use crate::units::Angle;
 
 /// Noise that frees a swept wall from accidental symmetries (rad).
 const NOISE: f64 = 2e-3;
+
+/// Walls whose energies differ by this part are alike.
+const ALIKE: f64 = 1e-2;
+/// Images of the way on which alike walls are compared.
+const WAY: usize = 17;
 
 /// Turns by less (rad) are no rotation of the whole.
 const TURNS: f64 = 0.3;
@@ -61,22 +66,41 @@ fn rotation_axes(problem: &Problem, a: &Spins, b: &Spins) -> Vec<Direction> {
     axes
 }
 
-/// The axis about which opposite spins turn: of ±x, ±y, ±z and the symmetry axes, the one whose wall halfway is lowest.
+/// The axis about which opposite spins turn: of ±x, ±y, ±z and the symmetry axes, the one whose wall halfway is lowest. Where
+/// that hardly tells and an end holds a wall (which moves as it is if its spins turn in one sense, and is turned over in the
+/// other), the one on whose way the highest energy is lowest.
 pub fn turning_axis(problem: &Problem, a: &Spins, b: &Spins, context: &GuessContext) -> Direction {
     let h = &problem.hamiltonian;
     let cartesian = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let candidates = cartesian.iter().chain(h.symmetry_axes()).flat_map(|v| [*v, v.map(|c| -c)]);
-    let cost = |axis: Vector| -> Option<(f64, Direction)> {
-        let axis = Direction::new(axis).ok()?;
-        let wall = Sweep { from: Edge::Left, width: None, axis: Some(axis) }.path(a, b, 3, context).ok()?;
-        Some((h.energy_mev(wall.image(1)), axis))
+    let highest = |axis: Direction, images: usize| -> Option<f64> {
+        let wall = Sweep { from: Edge::Left, width: None, axis: Some(axis) }.path(a, b, images, context).ok()?;
+        Some((1..images - 1).map(|k| h.difference_mev(wall.image(k), a.as_slice())).fold(f64::MIN, f64::max))
     };
+    let axes = candidates.filter_map(|axis| Direction::new(axis).ok());
+    let halfway: Vec<(f64, Direction)> = axes.filter_map(|axis| Some((highest(axis, 3)?, axis))).collect();
+    let least = halfway.iter().map(|(e, _)| *e).fold(f64::INFINITY, f64::min);
+    let near = least + ALIKE * least.abs() + 1e-9 * h.stiffness_mev();
+    let alike: Vec<Direction> = halfway.into_iter().filter(|(e, _)| *e <= near).map(|(_, axis)| axis).collect();
+    let first = alike.first().copied().unwrap_or(Direction::X);
+    if alike.len() < 2 || !(holds_wall(a) || holds_wall(b)) {
+        return first;
+    }
+    lowest(&alike, h.stiffness_mev(), |axis| highest(axis, WAY)).unwrap_or(first)
+}
+
+/// Whether some spin is well off the line of the first.
+fn holds_wall(m: &Spins) -> bool {
+    (1..m.sites()).any(|i| vector::norm(vector::cross(m.get(0), m.get(i))) > 0.7)
+}
+
+/// The first axis of the lowest cost (meV).
+fn lowest(axes: &[Direction], stiffness: f64, cost: impl Fn(Direction) -> Option<f64>) -> Option<Direction> {
     let mut best: Option<(f64, Direction)> = None;
-    for found in candidates.filter_map(cost) {
-        let better = best.is_none_or(|(e, _)| found.0 < e - 1e-9 * h.stiffness_mev());
-        if better {
-            best = Some(found);
+    for (e, axis) in axes.iter().filter_map(|axis| Some((cost(*axis)?, *axis))) {
+        if best.is_none_or(|(least, _)| e < least - 1e-9 * stiffness) {
+            best = Some((e, axis));
         }
     }
-    best.map_or(Direction::X, |(_, axis)| axis)
+    best.map(|(_, axis)| axis)
 }
