@@ -1,6 +1,7 @@
 //! From a finished run to its outcome: tables, barrier, warnings.
 
 use super::Problem;
+use super::rates::{self, Known};
 use super::climb::Found;
 use super::ends::Relaxed;
 use super::minimum::{Link, Minimum};
@@ -69,6 +70,10 @@ pub fn outcome(
     let mut stop_reason = c.stop.to_string();
     let mut doubts = proof.doubts;
     let barrier = barrier(run.problem, band, &saddles, above_final, &c, &mut doubts, &mut stop_reason);
+    let rates = run.problem.rates.as_ref().map(|settings| {
+        let known = Known { h, links: &proof.links, saddles: &saddles, above_final, doubts: &doubts };
+        rates::of_path(&known, settings)
+    });
     let converged = c.stop.is_converged() && barrier.is_some();
     let certified = doubts.is_empty() && barrier.is_some();
     warnings.extend(doubts.into_iter().map(|d| format!("not certified: {d}")));
@@ -84,6 +89,7 @@ pub fn outcome(
         initial: end_of(&proof.ends[0]),
         final_state: end_of(&proof.ends[1]),
         intermediate_minima: minima,
+        rates,
         rejected_paths,
         images: image_table(h, band),
         profile: profile(band),
@@ -153,6 +159,7 @@ pub fn same_minimum(run: Summary) -> Outcome {
         initial: end_of(&ends[0]),
         final_state: end_of(&ends[1]),
         intermediate_minima: Vec::new(),
+        rates: None,
         rejected_paths: Vec::new(),
         images: image_table(h, &band),
         profile: Vec::new(),

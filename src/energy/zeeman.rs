@@ -40,10 +40,10 @@ impl TermBuilder for ZeemanSpec {
         let field = self.B.map(|b| b.0);
         let strength = vector::norm(field);
         let direction = vector::unit(field).unwrap_or([0.0, 0.0, 1.0]);
-        let moment = medium.moment_mu_b()?;
+        let moments = medium.moments_mub()?;
         let mut term = Zeeman { direction, b: vec![0.0; medium.chain.sites] };
         for i in medium.sites(self.sites.as_ref())? {
-            term.b[i] = moment * MU_B_MEV_PER_T * strength;
+            term.b[i] = moments[i] * MU_B_MEV_PER_T * strength;
         }
         Ok(Box::new(term))
     }

@@ -1,0 +1,134 @@
+//! Where the numbers are rough: low barriers, large fluctuations, flat tops, weak damping; with the range that each leaves.
+
+use super::determinant::PinnedHessian;
+use super::{Prefactor, RateSettings, Theory, Unstable};
+use crate::energy::Hamiltonian;
+use crate::saddle::State;
+use crate::units::K_B;
+
+/// Barriers below so many k_BT are low.
+const LOW_BARRIER: f64 = 5.0;
+/// A mean square deviation of a spin (rad²) from which the harmonic approximation is rough.
+const LARGE: f64 = 0.3;
+
+/// Thermal fluctuations of the spins about a stationary state, per k_BT.
+#[derive(Clone, Copy, Debug)]
+pub struct Fluctuations {
+    /// Largest mean square angle of the probed spins over k_BT (rad²/meV), zero modes and the descending mode apart.
+    pub mean_square_per_mev: f64,
+    /// Largest square of a spin's part in the descending mode over its |curvature| (rad²/meV); 0 at a minimum.
+    pub top_per_mev: f64,
+}
+
+impl Fluctuations {
+    /// About a minimum.
+    pub fn of_minimum(h: &Hamiltonian, state: &State, pinned: &PinnedHessian, unstable: &Unstable) -> Fluctuations {
+        let around = probes(h, unstable).into_iter().map(|i| mean_square(state, pinned, i));
+        Fluctuations { mean_square_per_mev: around.fold(0.0, f64::max), top_per_mev: 0.0 }
+    }
+
+    /// About a saddle.
+    pub fn of_saddle(h: &Hamiltonian, state: &State, pinned: &PinnedHessian, unstable: &Unstable) -> Fluctuations {
+        let own = |i: usize| part(&unstable.mode, i) / -unstable.eigenvalue_mev;
+        // the descending mode enters the inverse with its negative curvature: taken out again
+        let around = probes(h, unstable).into_iter().map(|i| mean_square(state, pinned, i) + own(i));
+        let top = (0..h.sites()).map(own).fold(0.0, f64::max);
+        Fluctuations { mean_square_per_mev: around.fold(0.0, f64::max), top_per_mev: top }
+    }
+}
+
+/// |v_i|² of a tangent vector on a site.
+fn part(v: &[f64], i: usize) -> f64 {
+    v[2 * i] * v[2 * i] + v[2 * i + 1] * v[2 * i + 1]
+}
+
+/// A few sites: the ends, the middle, and where the descending mode is largest.
+fn probes(h: &Hamiltonian, unstable: &Unstable) -> Vec<usize> {
+    let n = h.sites();
+    let largest = (0..n).fold(0, |b, i| if part(&unstable.mode, i) > part(&unstable.mode, b) { i } else { b });
+    let mut sites = vec![0, n / 2, n - 1, largest];
+    sites.sort_unstable();
+    sites.dedup();
+    sites.retain(|i| !h.is_frozen(*i));
+    sites
+}
+
+/// tr (H⁻¹)_ii: the mean square angle of spin i over k_BT (rad²/meV), zero modes apart.
+fn mean_square(state: &State, pinned: &PinnedHessian, i: usize) -> f64 {
+    let entry = |a: usize| {
+        let mut x = vec![0.0; state.slope.len()];
+        x[2 * i + a] = 1.0;
+        pinned.solve(&mut x);
+        x[2 * i + a]
+    };
+    entry(0) + entry(1)
+}
+
+/// What a user should know about the rates out of one minimum.
+pub fn warnings(
+    settings: &RateSettings,
+    barrier_mev: f64,
+    [htst, langer]: [Option<Prefactor>; 2],
+    minimum: &Fluctuations,
+    saddle: &Fluctuations,
+) -> Vec<String> {
+    let hottest = settings.temperatures_k.iter().copied().fold(0.0, f64::max);
+    let mut said = Vec::new();
+    if htst.is_none() && langer.is_none() {
+        return said;
+    }
+    let low_from = barrier_mev / (LOW_BARRIER * K_B);
+    if hottest > low_from {
+        let delta = barrier_mev / (K_B * hottest);
+        said.push(format!(
+            "above {low_from:.4} K the barrier is below {LOW_BARRIER} k_BT: the theories leave out terms of the order of \
+             k_BT/ΔE, so at {hottest} K (ΔE = {delta:.2} k_BT) the rate is known within a factor of about {:.2}",
+            1.0 + 1.0 / delta.max(1e-3)
+        ));
+    }
+    for (which, spread) in [("minimum", minimum), ("saddle", saddle)] {
+        let from = LARGE / (K_B * spread.mean_square_per_mev.max(1e-300));
+        if hottest > from {
+            let at = K_B * hottest * spread.mean_square_per_mev;
+            said.push(format!(
+                "above {from:.4} K a spin of the {which} fluctuates by more than {:.2} rad: its softest modes are not harmonic; \
+                 at {hottest} K ({:.2} rad) the rate is known within a factor of about {:.2}",
+                LARGE.sqrt(),
+                at.sqrt(),
+                1.0 + at
+            ));
+        }
+    }
+    let flat_from = LARGE / (K_B * saddle.top_per_mev.max(1e-300));
+    if hottest > flat_from {
+        let range = match (htst, langer) {
+            (Some(h), Some(l)) => {
+                format!(": the rate lies between Langer's and that of HTST, {:.3} times it", libm::exp(h.ln_hz - l.ln_hz))
+            }
+            (None, Some(_)) => {
+                let factor = (saddle.top_per_mev * K_B * hottest / LARGE).sqrt();
+                format!(": Langer's rate may be too small by a factor of up to about {factor:.2} at {hottest} K")
+            }
+            _ => ": HTST counts every return over it, and is an upper bound that may be far above the rate".into(),
+        };
+        said.push(format!("above {flat_from:.4} K the top of the path is flat over what k_BT can climb{range}"));
+    }
+    said.extend(weak_damping(settings, barrier_mev, langer));
+    said
+}
+
+/// Langer's rate needs a bath that gives the spins, on one way over the barrier, about k_BT of energy.
+fn weak_damping(settings: &RateSettings, barrier_mev: f64, langer: Option<Prefactor>) -> Option<String> {
+    langer.filter(|_| settings.wants(Theory::Langer))?;
+    let coldest = settings.temperatures_k.iter().copied().fold(f64::INFINITY, f64::min);
+    let hottest = settings.temperatures_k.iter().copied().fold(0.0, f64::max);
+    let at = |t: f64| settings.damping * barrier_mev / (K_B * t);
+    (at(hottest) < 1.0).then(|| {
+        let from = settings.damping * barrier_mev / K_B;
+        let range = format!("between {:.2e} times Langer's and that at {hottest} K", at(hottest).max(0.0));
+        let first = from.max(coldest);
+        format!(
+            "from {first:.4} K on, damping times ΔE/k_BT is below 1: the bath feeds energy slowly, and the rate lies {range}"
+        )
+    })
+}
