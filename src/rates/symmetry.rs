@@ -67,14 +67,15 @@ pub fn equivalent_saddles(
     let shifts = is_translation_symmetric(h, moments) && minima.iter().all(|m| period(m) == 1);
     let samples = samples(h.sites());
     let mut kept: Vec<Vec<f64>> = vec![saddle.to_vec()];
+    let off = if shifts_are_free { SAME + 0.6 * largest_step(saddle) } else { SAME };
     let mut by = Vec::new();
     for operation in Operation::all().skip(1) {
-        let still = |m: &[f64]| same(&operation.apply(m), m, &axes);
+        let still = |m: &[f64]| same(&operation.apply(m), m, &axes, SAME);
         if !still(minima[0]) || !still(minima[1]) || !is_symmetric(h, moments, &samples, |m| operation.apply(m)) {
             continue;
         }
         let image = operation.apply(saddle);
-        let known = |k: &Vec<f64>| same(k, &image, &axes) || (shifts && is_shifted(k, &image, &axes));
+        let known = |k: &Vec<f64>| same(k, &image, &axes, off) || (shifts && is_shifted(k, &image, &axes, off));
         if !kept.iter().any(known) {
             by.push(operation.words());
             kept.push(image);
@@ -103,7 +104,7 @@ pub(super) fn is_translation_symmetric(h: &Hamiltonian, moments: &[f64]) -> bool
 /// After how many sites a ring's state repeats.
 pub(super) fn period(m: &[f64]) -> usize {
     let n = m.len() / 3;
-    (1..n).filter(|p| n.is_multiple_of(*p)).find(|p| agree(m, m, |i| (i + p) % n)).unwrap_or(n)
+    (1..n).filter(|p| n.is_multiple_of(*p)).find(|p| agree(m, m, SAME, |i| (i + p) % n)).unwrap_or(n)
 }
 
 /// Two states without any symmetry.
@@ -147,30 +148,37 @@ fn shifted(m: &[f64], by: usize) -> Vec<f64> {
     (0..3 * n).map(|k| m[k / n * n + (k % n + by) % n]).collect()
 }
 
-/// Whether a[place(i)] and b[i] are the same spins for all i.
-fn agree(a: &[f64], b: &[f64], place: impl Fn(usize) -> usize) -> bool {
+/// How much neighbours of a ring differ at most (rad): a state that slides freely may stand half a site beside its image.
+fn largest_step(m: &[f64]) -> f64 {
+    let c = Components::new(m);
+    let n = c.sites();
+    (0..n).map(|i| vector::norm(vector::sub(c.get((i + 1) % n), c.get(i)))).fold(0.0, f64::max)
+}
+
+/// Whether a[place(i)] and b[i] are less than `off` (rad) apart for all i.
+fn agree(a: &[f64], b: &[f64], off: f64, place: impl Fn(usize) -> usize) -> bool {
     let (a, b) = (Components::new(a), Components::new(b));
     (0..a.sites()).all(|i| {
         let d = vector::sub(a.get(place(i)), b.get(i));
-        vector::dot(d, d) < SAME * SAME
+        vector::dot(d, d) < off * off
     })
 }
 
 /// The same state but for a rotation about the axis.
-fn same(a: &[f64], b: &[f64], axes: &[Vector]) -> bool {
-    agree(&turned(a, b, axes), b, |i| i)
+fn same(a: &[f64], b: &[f64], axes: &[Vector], off: f64) -> bool {
+    agree(&turned(a, b, axes), b, off, |i| i)
 }
 
 /// Whether a shift of a, turned about the axis, is b.
-fn is_shifted(a: &[f64], b: &[f64], axes: &[Vector]) -> bool {
+fn is_shifted(a: &[f64], b: &[f64], axes: &[Vector], off: f64) -> bool {
     let n = a.len() / 3;
     if axes.is_empty() {
-        return (1..n).any(|k| agree(a, b, |i| (i + k) % n));
+        return (1..n).any(|k| agree(a, b, off, |i| (i + k) % n));
     }
     // along the axis nothing turns: only where that part agrees is the whole compared
     let along = |m: &[f64], i: usize| vector::dot(Components::new(m).get(i), axes[0]);
-    let fits = |k: usize| (0..n).all(|i| (along(a, (i + k) % n) - along(b, i)).abs() < SAME);
-    (1..n).any(|k| fits(k) && same(&shifted(a, k), b, axes))
+    let fits = |k: usize| (0..n).all(|i| (along(a, (i + k) % n) - along(b, i)).abs() < off);
+    (1..n).any(|k| fits(k) && same(&shifted(a, k), b, axes, off))
 }
 
 /// a, turned about the axis to where it is nearest to b.
