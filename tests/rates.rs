@@ -360,6 +360,7 @@ fn a_chain_of_minima_is_crossed_at_the_rate_of_its_mean_first_passage() {
     };
     // solved as equations for the mean times
     let (mut step, mut total) = (0.0, 0.0);
+    assert_eq!(rates.transitions[0].equivalents.count, 1);
     for k in 0..n {
         let back = if k == 0 { 0.0 } else { ln(Way::Backward, k - 1).exp() };
         step = (1.0 + back * step) / ln(Way::Forward, k).exp();
@@ -465,4 +466,15 @@ fn low_barriers_and_weak_damping_are_warned_of_with_a_range() {
     assert!(said.contains("damping times ΔE/k_BT is below 1"), "{said}");
     let cold = solve(&with(Build::open(1).easy(1.0).hard(0.5).reversal(), settings(1, 2.0, 0.5, 1.0 / (20.0 * K_B))));
     assert_eq!(rate(&cold, Way::Forward).warnings, Vec::<String>::new());
+}
+
+#[test]
+fn walls_that_enter_a_chain_at_either_end_and_turn_either_way_are_four_paths() {
+    // walls of little more than a site, which stop at every site on their way
+    let outcome = solve(&with(Build::open(8).easy(0.4).hard(0.1).reversal(), settings(8, 2.0, 0.2, 0.5)));
+    assert!(outcome.certified && outcome.saddles.len() > 1, "{:?}", outcome.warnings);
+    let rates = outcome.rates.as_ref().expect("rates");
+    assert!(rates.transitions.iter().all(|t| t.equivalents.count == 4), "{:?}", rates.transitions[0].equivalents);
+    let [f, b] = [0, 1].map(|k| rates.transitions[k].rows[0].ln_langer_per_s.expect("Langer"));
+    assert!((f - b).abs() < 1e-9, "{f} {b}");
 }

@@ -12,7 +12,7 @@ mod name;
 mod neb;
 mod output;
 mod path;
-mod rates;
+pub mod rates;
 mod set;
 pub mod text;
 

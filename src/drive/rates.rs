@@ -3,7 +3,9 @@
 use super::minimum::Link;
 use super::outcome::SaddlePoint;
 use crate::energy::Hamiltonian;
-use crate::rates::{Crossing, RateSettings, Rates, SaddleRate, refused, saddle_rates, transitions};
+use crate::rates::{
+    Crossing, Equivalents, RateSettings, Rates, SaddleRate, equivalent_saddles, refused, saddle_rates, transitions,
+};
 
 /// What is known of a path.
 pub struct Known<'a> {
@@ -25,8 +27,21 @@ pub fn of_path(known: &Known, settings: &RateSettings) -> Rates {
         true => known.saddles.iter().enumerate().flat_map(|(k, s)| unproven(known, k, s, settings)).collect(),
         false => known.links.iter().flat_map(|l| proven(known, l, settings)).collect(),
     };
-    let transitions = transitions(&saddles, settings, doubt);
+    let transitions = transitions(&saddles, &paths(known, settings), settings, doubt);
     Rates { settings: settings.clone(), saddles, transitions }
+}
+
+/// Paths that symmetry makes of this one, between the same ends: those through other minima, since saddles between the same two
+/// minima are counted with each saddle.
+fn paths(known: &Known, settings: &RateSettings) -> Equivalents {
+    let (Some(first), Some(last)) = (known.links.first(), known.links.last()) else {
+        return Equivalents { count: 1, by: "not sought".into() };
+    };
+    if known.links.len() == 1 {
+        return Equivalents { count: 1, by: "counted with the saddle".into() };
+    }
+    let ends = [first.before.spins.as_slice(), last.after.spins.as_slice()];
+    equivalent_saddles(known.h, first.after.spins.as_slice(), ends, &settings.moments_mub, false)
 }
 
 fn proven(known: &Known, link: &Link, settings: &RateSettings) -> [SaddleRate; 2] {
@@ -55,4 +70,19 @@ fn unproven(known: &Known, number: usize, saddle: &SaddlePoint, settings: &RateS
         _ => String::new(),
     };
     refused(number, settings, barriers, &format!("the saddle is not certified{index}: {why}; {way_out}"))
+}
+
+/// What the whole run should say of its rates: each reason for a refusal once, and that some numbers are rough.
+pub fn warnings(rates: &Rates) -> Vec<String> {
+    let mut said: Vec<String> = Vec::new();
+    for (theory, reason) in rates.saddles.iter().flat_map(|r| &r.refused) {
+        let line = format!("no rate by {}: {reason}", theory.name());
+        if !said.contains(&line) {
+            said.push(line);
+        }
+    }
+    if rates.saddles.iter().any(|r| !r.warnings.is_empty()) {
+        said.push("some rates are rough: \"warnings\" of \"rates\" in summary.json give their range".into());
+    }
+    said
 }

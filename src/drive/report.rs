@@ -78,6 +78,7 @@ pub fn outcome(
     let certified = doubts.is_empty() && barrier.is_some();
     warnings.extend(doubts.into_iter().map(|d| format!("not certified: {d}")));
     warnings.extend(flat_warnings(&proof.ends, &proof.links));
+    warnings.extend(rates.as_ref().map(rates::warnings).unwrap_or_default());
     let work = run.work(band.evaluations());
     let minima = if proof.links.len() > 1 { link_minima(band, &proof.links) } else { band_minima(h, band) };
     Outcome {

@@ -52,7 +52,8 @@ impl Operation {
     }
 }
 
-/// The saddles that symmetry makes of this one, between the same two minima. `shifts_are_free`: shifts of the ring are a zero mode.
+/// The saddles (or other states) that symmetry makes of this one, beside the same two minima. `shifts_are_free`: shifts of the ring
+/// are a zero mode.
 pub fn equivalent_saddles(
     h: &Hamiltonian,
     saddle: &[f64],

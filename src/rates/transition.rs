@@ -1,7 +1,7 @@
 //! The rate of the whole path, over all its saddles.
 
 use super::passage::{TEN_YEARS_S, blocking_temperature, first_passage};
-use super::{RateSettings, Row, SaddleRate, Theory, Way};
+use super::{Equivalents, RateSettings, Row, SaddleRate, Theory, Way};
 use crate::units::K_B;
 
 /// The whole way from one end to the other: one over the mean first-passage time through the minima between.
@@ -11,6 +11,8 @@ pub struct TransitionRate {
     pub way: Way,
     /// Saddles on the way.
     pub saddles: usize,
+    /// Ways of the same kind, through other minima; the rate is over all of them.
+    pub equivalents: Equivalents,
     /// The highest saddle above the first minimum (meV).
     pub barrier_mev: f64,
     /// One row a temperature.
@@ -21,16 +23,27 @@ pub struct TransitionRate {
     pub refused: Option<String>,
 }
 
-/// The rates of the whole path in both directions, from those of its saddles (forward and backward, in path order). `doubt` is what
-/// stands against a certificate of the path.
-pub fn transitions(saddles: &[SaddleRate], settings: &RateSettings, doubt: Option<&str>) -> Vec<TransitionRate> {
+/// The rates of the whole path in both directions, from those of its saddles (forward and backward, in path order) and the number
+/// of equivalent paths. `doubt` is what stands against a certificate of the path.
+pub fn transitions(
+    saddles: &[SaddleRate],
+    paths: &Equivalents,
+    settings: &RateSettings,
+    doubt: Option<&str>,
+) -> Vec<TransitionRate> {
     if saddles.is_empty() {
         return Vec::new();
     }
-    Way::BOTH.map(|way| transition(saddles, settings, doubt, way)).into()
+    Way::BOTH.map(|way| transition(saddles, paths, settings, doubt, way)).into()
 }
 
-fn transition(saddles: &[SaddleRate], settings: &RateSettings, doubt: Option<&str>, way: Way) -> TransitionRate {
+fn transition(
+    saddles: &[SaddleRate],
+    paths: &Equivalents,
+    settings: &RateSettings,
+    doubt: Option<&str>,
+    way: Way,
+) -> TransitionRate {
     let mut onward: Vec<&SaddleRate> = saddles.iter().filter(|r| r.way == way).collect();
     let mut back: Vec<&SaddleRate> = saddles.iter().filter(|r| r.way != way).collect();
     if way == Way::Backward {
@@ -42,7 +55,8 @@ fn transition(saddles: &[SaddleRate], settings: &RateSettings, doubt: Option<&st
         let all = |rates: &[&SaddleRate]| -> Option<Vec<f64>> {
             rates.iter().map(|r| r.ln_rate_per_s(theory, t)).collect()
         };
-        (doubt.is_none()).then_some(-first_passage(&all(&onward)?, &all(&back)?))
+        let many = libm::log(paths.count as f64);
+        (doubt.is_none()).then_some(many - first_passage(&all(&onward)?, &all(&back)?))
     };
     let row = |t: f64| Row {
         temperature_k: t,
@@ -58,7 +72,8 @@ fn transition(saddles: &[SaddleRate], settings: &RateSettings, doubt: Option<&st
         true => None,
         false => doubt.map(String::from).or_else(reasons),
     };
-    TransitionRate { way, saddles: onward.len(), barrier_mev, rows, blocking_k, refused }
+    let equivalents = paths.clone();
+    TransitionRate { way, saddles: onward.len(), equivalents, barrier_mev, rows, blocking_k, refused }
 }
 
 /// The highest saddle above the first minimum (meV): up over each, down to the next.

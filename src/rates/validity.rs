@@ -80,10 +80,13 @@ pub fn warnings(
     let low_from = barrier_mev / (LOW_BARRIER * K_B);
     if hottest > low_from {
         let delta = barrier_mev / (K_B * hottest);
+        let range = match delta >= 1.0 {
+            true => format!("the rate is known within a factor of about {:.2}", 1.0 + 1.0 / delta),
+            false => "nothing holds the state back, and the numbers are no rates".into(),
+        };
         said.push(format!(
             "above {low_from:.4} K the barrier is below {LOW_BARRIER} k_BT: the theories leave out terms of the order of \
-             k_BT/ΔE, so at {hottest} K (ΔE = {delta:.2} k_BT) the rate is known within a factor of about {:.2}",
-            1.0 + 1.0 / delta.max(1e-3)
+             k_BT/ΔE, so at {hottest} K (ΔE = {delta:.2} k_BT) {range}"
         ));
     }
     for (which, spread) in [("minimum", minimum), ("saddle", saddle)] {
@@ -125,10 +128,11 @@ fn weak_damping(settings: &RateSettings, barrier_mev: f64, langer: Option<Prefac
     let at = |t: f64| settings.damping * barrier_mev / (K_B * t);
     (at(hottest) < 1.0).then(|| {
         let from = settings.damping * barrier_mev / K_B;
-        let range = format!("between {:.2e} times Langer's and that at {hottest} K", at(hottest).max(0.0));
         let first = from.max(coldest);
         format!(
-            "from {first:.4} K on, damping times ΔE/k_BT is below 1: the bath feeds energy slowly, and the rate lies {range}"
+            "from {first:.4} K on, damping times ΔE/k_BT is below 1: the bath feeds energy slowly, and the rate lies between \
+             Langer's and, at {hottest} K, {:.3} times that",
+            at(hottest)
         )
     })
 }
