@@ -250,9 +250,13 @@ mod tests {
         assert_eq!(run.threads.map(NonZeroUsize::get), Some(2));
         assert_eq!(run.set, ["a.b=1", "c=2"]);
         assert!(run.force && run.quiet && run.json && !run.resume);
-        for line in
-            ["spinneb rate results/a b -T 300K -T 4K --damping 0.2 --theory htst --json", "spinneb check a.json --set a=1", "spinneb list", "spinneb list terms", "spinneb run a.json --resume"]
-        {
+        for line in [
+            "spinneb rate results/a b -T 300K -T 4K --damping 0.2 --theory htst --json",
+            "spinneb check a.json --set a=1",
+            "spinneb list",
+            "spinneb list terms",
+            "spinneb run a.json --resume",
+        ] {
             assert!(Cli::try_parse_from(line.split(' ')).is_ok(), "{line}");
         }
     }

@@ -45,7 +45,9 @@ fn rate_one(arguments: &Rate, directory: &Path) -> Result<u8> {
     write(&loaded, &outcome, directory)?;
     if !arguments.quiet {
         outcome.warnings.iter().for_each(|warning| note(&format!("{name}: warning: {warning}")));
-        note(&format!("{name}: rates are in {place}: summary.json, and rates.csv and arrhenius.svg and .png where asked for"));
+        note(&format!(
+            "{name}: rates are in {place}: summary.json, and rates.csv and arrhenius.svg and .png where asked for"
+        ));
     }
     print(arguments, name, directory, &outcome)
 }
@@ -89,7 +91,11 @@ fn print(arguments: &Rate, name: &str, directory: &Path, outcome: &Outcome) -> R
         writeln!(out, "{line}")?;
         return Ok(code);
     }
-    writeln!(out, "{name}: {:>9} {:>10} {:>14} {:>14} {:>14}", "direction", "T (K)", "HTST (1/s)", "Langer (1/s)", "lifetime (s)")?;
+    writeln!(
+        out,
+        "{name}: {:>9} {:>10} {:>14} {:>14} {:>14}",
+        "direction", "T (K)", "HTST (1/s)", "Langer (1/s)", "lifetime (s)"
+    )?;
     for t in transitions {
         let width = name.len() + 1;
         for r in &t.rows {

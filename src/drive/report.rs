@@ -1,11 +1,11 @@
 //! From a finished run to its outcome: tables, barrier, warnings.
 
 use super::Problem;
-use super::rates::{self, Known};
 use super::climb::Found;
 use super::ends::Relaxed;
 use super::minimum::{Link, Minimum};
 use super::outcome::*;
+use super::rates::{self, Known};
 use super::relaxation::{height, prominent_maxima};
 use super::run::Candidate;
 use crate::band::{Band, Extremum};

@@ -38,9 +38,8 @@ impl General {
         let mut sign = 1.0;
         for k in 0..n {
             let last = (k + w).min(n - 1);
-            let p = (k..=last).fold(k, |p, r| {
-                if self.rows[self.at(r, k)].abs() > self.rows[self.at(p, k)].abs() { r } else { p }
-            });
+            let p = (k..=last)
+                .fold(k, |p, r| if self.rows[self.at(r, k)].abs() > self.rows[self.at(p, k)].abs() { r } else { p });
             exchange[k] = p;
             let end = (k + 2 * w).min(n - 1);
             if p != k {

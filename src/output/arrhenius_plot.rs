@@ -50,7 +50,8 @@ pub fn draw_lifetimes(rates: &Rates) -> Result<Canvas> {
     }
     let (mut canvas, frame) = plot.draw_frame()?;
     for (level, words) in [(1.0, "1 s"), (TEN_YEARS_S, "10 years")] {
-        let place = frame.place((frame.x.min, level)).filter(|p| frame.rect.grown(-8.0).contains((frame.rect.x0 + 9.0, p.1)));
+        let place =
+            frame.place((frame.x.min, level)).filter(|p| frame.rect.grown(-8.0).contains((frame.rect.x0 + 9.0, p.1)));
         if let Some((_, y)) = place.filter(|_| !plot.series.is_empty()) {
             canvas.dashed(&[(frame.rect.x0, y), (frame.rect.x1, y)], THIN_PT, GREY, (2.0, 2.0));
             canvas.text((frame.rect.x1 - 4.0, y - 2.0), Text::new(words, SMALL_PT).align(Align::Right))?;

@@ -32,11 +32,7 @@ pub fn first_passage(onward: &[f64], back: &[f64]) -> f64 {
 
 /// The temperature (K) at which the mean lifetime is `seconds`: the solution between Δ = 5000 and Δ = 1/2, from the logarithm of the
 /// lifetime (s) at a temperature (K). Nothing where the lifetime does not fall through `seconds` in between.
-pub fn blocking_temperature(
-    ln_lifetime_s: impl Fn(f64) -> Option<f64>,
-    barrier_mev: f64,
-    seconds: f64,
-) -> Option<f64> {
+pub fn blocking_temperature(ln_lifetime_s: impl Fn(f64) -> Option<f64>, barrier_mev: f64, seconds: f64) -> Option<f64> {
     let wanted = libm::log(seconds);
     let over_k = barrier_mev / crate::units::K_B;
     let (mut low, mut high) = (over_k / 5000.0, 2.0 * over_k);

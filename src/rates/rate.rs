@@ -158,7 +158,12 @@ impl SaddleRate {
 }
 
 /// A saddle without rates, in both directions, and the reason.
-pub fn refused(saddle: usize, settings: &RateSettings, barriers_mev: [Option<f64>; 2], reason: &str) -> [SaddleRate; 2] {
+pub fn refused(
+    saddle: usize,
+    settings: &RateSettings,
+    barriers_mev: [Option<f64>; 2],
+    reason: &str,
+) -> [SaddleRate; 2] {
     [0, 1].map(|side| SaddleRate {
         saddle,
         way: Way::BOTH[side],
@@ -264,7 +269,8 @@ fn computed(
         };
         let found = found.filter(|f| f.is_finite() && *f > 0.0);
         if found.is_none() {
-            let reason = "the crossing has no frequency that can be told from zero: the spins do not precess across the saddle";
+            let reason =
+                "the crossing has no frequency that can be told from zero: the spins do not precess across the saddle";
             refusals.push((theory, reason.into()));
         }
         found

@@ -137,7 +137,8 @@ fn is_symmetric(
         })
         .collect();
     let moved = operation(&marks);
-    moved.iter().zip(&marks).all(|(a, b)| a.abs() == b.abs()) && samples.iter().all(|m| keeps_energy(h, m, &operation(m)))
+    moved.iter().zip(&marks).all(|(a, b)| a.abs() == b.abs())
+        && samples.iter().all(|m| keeps_energy(h, m, &operation(m)))
 }
 
 fn keeps_energy(h: &Hamiltonian, a: &[f64], b: &[f64]) -> bool {

@@ -52,9 +52,8 @@ fn transition(
     }
     let barrier_mev = highest(&onward, &back);
     let ln_rate = |theory: Theory, t: f64| -> Option<f64> {
-        let all = |rates: &[&SaddleRate]| -> Option<Vec<f64>> {
-            rates.iter().map(|r| r.ln_rate_per_s(theory, t)).collect()
-        };
+        let all =
+            |rates: &[&SaddleRate]| -> Option<Vec<f64>> { rates.iter().map(|r| r.ln_rate_per_s(theory, t)).collect() };
         let many = libm::log(paths.count as f64);
         (doubt.is_none()).then_some(many - first_passage(&all(&onward)?, &all(&back)?))
     };
