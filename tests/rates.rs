@@ -484,3 +484,17 @@ fn walls_that_enter_a_chain_at_either_end_and_turn_either_way_are_four_paths() {
     let [f, b] = [0, 1].map(|k| rates.transitions[k].rows[0].ln_langer_per_s.expect("Langer"));
     assert!((f - b).abs() < 1e-9, "{f} {b}");
 }
+
+#[test]
+fn the_determinant_of_a_hundred_thousand_spins_is_the_product_of_its_spin_waves() {
+    let n = 100_000;
+    let (easy, hard) = (0.05, 0.02);
+    let problem = Build::open(n).easy(easy).hard(hard).reversal();
+    let state = spinneb::saddle::State::at(&problem.hamiltonian, problem.initial.as_slice().to_vec());
+    let found = spinneb::rates::log_determinant(&state.hessian, &[], 1.0);
+    // free ends: 2K + 2J (1 − cos(πk/N)), and the same with the hard axis on top
+    let wave = |k: usize| 4.0 * (PI * k as f64 / (2 * n) as f64).sin().powi(2) + 2.0 * easy;
+    let logs: Vec<f64> = (0..n).map(|k| wave(k).ln() + (wave(k) + 2.0 * hard).ln()).collect();
+    let expected = spinneb::linalg::slab::sum(&logs);
+    assert!((found - expected).abs() < 1e-8, "{found} {expected}");
+}

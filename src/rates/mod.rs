@@ -19,7 +19,7 @@
 //! doi:10.1103/PhysRevB.85.184409; determinants of chains in O(N): I. S. Lobanov, V. M. Uzdin, Comput. Phys. Commun. 269, 108136
 //! (2021), arXiv:2008.06754; Langer's theory of intermediate to high damping: J. S. Langer, Ann. Phys. 54, 258 (1969),
 //! doi:10.1016/0003-4916(69)90153-5; for spins H. B. Braun, J. Appl. Phys. 76, 6310 (1994), doi:10.1063/1.358269. HTST counts
-//! every crossing of the plane normal to e₁, also those that turn back: it is an upper bound, and far above Langer's rate on
+//! every crossing of the plane normal to e₁, also those that turn back: without damping it is an upper bound, far above the rate on
 //! plateaus. Langer's needs a bath that keeps up with the crossings: with α ΔE/k_BT below about three it is too large.
 
 mod determinant;

@@ -5,6 +5,7 @@ use super::{Prefactor, RateSettings, Unstable};
 use crate::energy::Hamiltonian;
 use crate::saddle::State;
 use crate::units::K_B;
+use std::f64::consts::PI;
 
 /// Barriers below so many k_BT are low.
 const LOW_BARRIER: f64 = 5.0;
@@ -74,55 +75,73 @@ pub fn warnings(
     minimum: &Fluctuations,
     saddle: &Fluctuations,
 ) -> Vec<String> {
-    let hottest = settings.temperatures_k.iter().copied().fold(0.0, f64::max);
-    let mut said = Vec::new();
     if htst.is_none() && langer.is_none() {
-        return said;
+        return Vec::new();
     }
-    let low_from = barrier_mev / (LOW_BARRIER * K_B);
-    if hottest > low_from {
-        let delta = barrier_mev / (K_B * hottest);
-        let range = match delta >= 1.0 {
-            true => format!("the rate is known within a factor of about {:.2}", 1.0 + 1.0 / delta),
-            false => "nothing holds the state back, and the numbers are no rates".into(),
-        };
-        said.push(format!(
-            "above {low_from:.4} K the barrier is below {LOW_BARRIER} k_BT: the theories leave out terms of the order of \
-             k_BT/ΔE, so at {hottest} K (ΔE = {delta:.2} k_BT) {range}"
-        ));
-    }
-    for (which, spread) in [("minimum", minimum), ("saddle", saddle)] {
-        let from = LARGE / (K_B * spread.mean_square_per_mev.max(1e-300));
-        if hottest > from {
-            let at = K_B * hottest * spread.mean_square_per_mev;
-            said.push(format!(
-                "above {from:.4} K a spin of the {which} fluctuates by more than {:.2} rad: its softest modes are not harmonic; \
-                 at {hottest} K ({:.2} rad) the rate is known within a factor of about {:.2}",
-                LARGE.sqrt(),
-                at.sqrt(),
-                1.0 + at
-            ));
+    let hottest = settings.temperatures_k.iter().copied().fold(0.0, f64::max);
+    let said = [
+        low_barrier(barrier_mev, hottest),
+        large_fluctuations("minimum", minimum, hottest),
+        large_fluctuations("saddle", saddle, hottest),
+        flat_top(saddle, hottest, htst, langer),
+        weak_damping(settings, barrier_mev, langer),
+    ];
+    said.into_iter().flatten().collect()
+}
+
+fn low_barrier(barrier_mev: f64, hottest: f64) -> Option<String> {
+    let from = barrier_mev / (LOW_BARRIER * K_B);
+    let delta = barrier_mev / (K_B * hottest);
+    let range = match delta >= 1.0 {
+        true => format!("the rate is known within a factor of about {:.2}", 1.0 + 1.0 / delta),
+        false => "nothing holds the state back, and the numbers are no rates".into(),
+    };
+    (hottest > from).then(|| {
+        format!(
+            "above {} the barrier is below {LOW_BARRIER} k_BT: the theories leave out terms of the order of k_BT/ΔE, so at \
+             {hottest} K (ΔE = {delta:.2} k_BT) {range}",
+            kelvin(from)
+        )
+    })
+}
+
+fn large_fluctuations(which: &str, spread: &Fluctuations, hottest: f64) -> Option<String> {
+    let from = LARGE / (K_B * spread.mean_square_per_mev.max(1e-300));
+    let angle = (K_B * hottest * spread.mean_square_per_mev).sqrt();
+    // a mode that is not harmonic is wrong by terms of the order of σ², one that is free by σ over its true extent
+    let range = match angle < PI {
+        true => format!("within a factor of about {:.2}", 1.0 + angle.min(angle * angle)),
+        false => "no better than as an order of magnitude, if at all: a mode reaches round the sphere".into(),
+    };
+    (hottest > from).then(|| {
+        format!(
+            "above {} a spin of the {which} fluctuates by more than {:.2} rad: its softest modes are not harmonic; at \
+             {hottest} K ({angle:.2} rad as if they were) the rate is known {range}",
+            kelvin(from),
+            LARGE.sqrt()
+        )
+    })
+}
+
+fn flat_top(saddle: &Fluctuations, hottest: f64, htst: Option<Prefactor>, langer: Option<Prefactor>) -> Option<String> {
+    let from = LARGE / (K_B * saddle.top_per_mev.max(1e-300));
+    let range = match (htst.map(|p| p.ln_hz), langer.map(|p| p.ln_hz)) {
+        (Some(h), Some(l)) if h > l => {
+            format!(": the rate lies between Langer's and that of HTST, {:.3} times it", libm::exp(h - l))
         }
-    }
-    let flat_from = LARGE / (K_B * saddle.top_per_mev.max(1e-300));
-    if hottest > flat_from {
-        let range = match (htst, langer) {
-            (Some(h), Some(l)) => {
-                format!(
-                    ": the rate lies between Langer's and that of HTST, {:.3} times it",
-                    libm::exp(h.ln_hz - l.ln_hz)
-                )
-            }
-            (None, Some(_)) => {
-                let factor = (saddle.top_per_mev * K_B * hottest / LARGE).sqrt();
-                format!(": Langer's rate may be too small by a factor of up to about {factor:.2} at {hottest} K")
-            }
-            _ => ": HTST counts every return over it, and is an upper bound that may be far above the rate".into(),
-        };
-        said.push(format!("above {flat_from:.4} K the top of the path is flat over what k_BT can climb{range}"));
-    }
-    said.extend(weak_damping(settings, barrier_mev, langer));
-    said
+        (_, Some(_)) => {
+            let factor = (saddle.top_per_mev * K_B * hottest / LARGE).sqrt();
+            format!(": Langer's rate may be too small by a factor of up to about {factor:.2} at {hottest} K")
+        }
+        _ => ": HTST counts every return over it, and may be far above the rate".into(),
+    };
+    (hottest > from)
+        .then(|| format!("above {} the top of the path is flat over what k_BT can climb{range}", kelvin(from)))
+}
+
+/// A temperature in a few digits.
+fn kelvin(t: f64) -> String {
+    if t < 0.01 { format!("{t:.1e} K") } else { format!("{t:.4} K") }
 }
 
 /// Langer's rate needs a bath that makes good, between two attempts, the energy that a crossing takes. Where α ΔE/k_BT is small it
@@ -137,8 +156,9 @@ fn weak_damping(settings: &RateSettings, barrier_mev: f64, langer: Option<Prefac
         let from = (settings.damping * barrier_mev / (WEAK * K_B)).max(coldest);
         let left = at(hottest) / (1.0 + at(hottest));
         format!(
-            "from {from:.4} K on, damping times ΔE/k_BT is below {WEAK}: the bath feeds energy slowly, and the rate lies between \
-             Langer's and, at {hottest} K, about {left:.3} times that"
+            "from {} on, damping times ΔE/k_BT is below {WEAK}: the bath feeds energy slowly, and the rate lies between \
+             Langer's and, at {hottest} K, about {left:.3} times that",
+            kelvin(from)
         )
     })
 }
