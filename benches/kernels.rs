@@ -26,7 +26,13 @@ fn main() {
     for sites in SIZES {
         let (h, path) = problem(sites);
         let [g, b, i] = one.install(|| [gradient(&h, &path), band(&h, &path), iteration(&h, &path)]);
-        println!("{sites:>8} {:>10.1} {:>10.1} {:>10.1} {:>12.1}", g.per_cpu(), g.per_cpu() * BYTES * 1e-3, b.per_cpu(), i.per_cpu());
+        println!(
+            "{sites:>8} {:>10.1} {:>10.1} {:>10.1} {:>12.1}",
+            g.per_cpu(),
+            g.per_cpu() * BYTES * 1e-3,
+            b.per_cpu(),
+            i.per_cpu()
+        );
     }
     let two = pool(2);
     println!("wall time of one thread over that of two:");
@@ -34,7 +40,11 @@ fn main() {
         let (h, path) = problem(sites);
         let [g1, i1] = one.install(|| [gradient(&h, &path), iteration(&h, &path)]);
         let [g2, i2] = two.install(|| [gradient(&h, &path), iteration(&h, &path)]);
-        println!("{sites:>8} gradient {:.2}  iteration {:.2}", g2.per_wall() / g1.per_wall(), i2.per_wall() / i1.per_wall());
+        println!(
+            "{sites:>8} gradient {:.2}  iteration {:.2}",
+            g2.per_wall() / g1.per_wall(),
+            i2.per_wall() / i1.per_wall()
+        );
     }
 }
 
@@ -105,7 +115,8 @@ fn gradient(h: &Hamiltonian, path: &Path) -> Figure {
     let slab = 3 * path.sites();
     let mut g = vec![0.0; (IMAGES - 2) * slab];
     measure((IMAGES - 2) * path.sites(), || {
-        let energy: Vec<f64> = g.par_chunks_mut(slab).enumerate().map(|(k, g)| h.energy_gradient(path.image(k + 1), g)).collect();
+        let energy: Vec<f64> =
+            g.par_chunks_mut(slab).enumerate().map(|(k, g)| h.energy_gradient(path.image(k + 1), g)).collect();
         assert!(energy.iter().all(|e| e.is_finite()));
     })
 }
@@ -122,10 +133,12 @@ fn iteration(h: &Hamiltonian, path: &Path) -> Figure {
     let mut band = Band::new(h, path.clone());
     let mut sweep = Sweep::new(c);
     let mut optimiser = Implicit {}.start(h.stiffness_mev());
+    let mut moves = vec![0.0; (IMAGES - 2) * 3 * sites];
     measure((IMAGES - 2) * sites, || {
         band.evaluate();
-        let step = sweep.step(&band, &[[0.0, 0.0, 1.0]]);
-        optimiser.advance(band.inner_mut(), 3 * sites, &step.moves);
+        let step = sweep.step(&band, &[[0.0, 0.0, 1.0]], &mut moves);
+        assert!(step.rotation.is_finite());
+        optimiser.advance(band.inner_mut(), 3 * sites, &moves);
     })
 }
 

@@ -1,6 +1,7 @@
 //! Views of component-major vector fields: x of all sites, y of all sites, z of all sites.
 
 use crate::geometry::Vector;
+use multiversion::multiversion;
 
 /// A vector field, read.
 #[derive(Clone, Copy, Debug)]
@@ -38,6 +39,12 @@ impl<'a> Components<'a> {
     #[inline]
     pub fn sites(&self) -> usize {
         self.x.len()
+    }
+
+    /// The sites of `range` alone.
+    #[inline]
+    pub fn range(&self, range: std::ops::Range<usize>) -> Components<'a> {
+        Components { x: &self.x[range.clone()], y: &self.y[range.clone()], z: &self.z[range] }
     }
 
     /// The vector on site i.
@@ -80,20 +87,31 @@ impl<'a> ComponentsMut<'a> {
     }
 }
 
-/// Splits a slab of 3N numbers into pieces of at most `size` sites: (first site, field) each.
-pub fn split(slab: &mut [f64], size: usize) -> Vec<(usize, ComponentsMut<'_>)> {
+/// Sites handled at a time: what belongs to them stays in the first cache.
+pub const TILE: usize = 512;
+
+/// A slab of 3N numbers in pieces of at most [`TILE`] sites: (first site, field) each.
+pub fn tiles(slab: &mut [f64]) -> impl Iterator<Item = (usize, ComponentsMut<'_>)> {
     let whole = ComponentsMut::new(slab);
-    let parts = whole.x.chunks_mut(size).zip(whole.y.chunks_mut(size)).zip(whole.z.chunks_mut(size));
-    parts.enumerate().map(|(k, ((x, y), z))| (k * size, ComponentsMut { x, y, z })).collect()
+    let parts = whole.x.chunks_mut(TILE).zip(whole.y.chunks_mut(TILE)).zip(whole.z.chunks_mut(TILE));
+    parts.enumerate().map(|(k, ((x, y), z))| (k * TILE, ComponentsMut { x, y, z }))
 }
 
 /// v ← v − (v·m) m on every site: the part of a field that is tangent to the spheres.
 pub fn project(m: &[f64], v: &mut [f64]) {
-    let m = Components::new(m);
-    let n = m.sites();
-    let v = ComponentsMut::new(v);
+    project_row(Components::new(m), ComponentsMut::new(v));
+}
+
+/// [`project`] on a row of sites.
+pub fn project_row(m: Components, v: ComponentsMut) {
+    project_slices(m, v.x, v.y, v.z);
+}
+
+#[multiversion(targets("x86_64+avx2"))]
+fn project_slices(m: Components, vx: &mut [f64], vy: &mut [f64], vz: &mut [f64]) {
+    let n = m.x.len();
     let (mx, my, mz) = (&m.x[..n], &m.y[..n], &m.z[..n]);
-    let (vx, vy, vz) = (&mut v.x[..n], &mut v.y[..n], &mut v.z[..n]);
+    let (vx, vy, vz) = (&mut vx[..n], &mut vy[..n], &mut vz[..n]);
     for i in 0..n {
         let radial = mx[i] * vx[i] + my[i] * vy[i] + mz[i] * vz[i];
         vx[i] -= radial * mx[i];

@@ -26,12 +26,12 @@ impl Laplacian {
         let (sites, reach) = (h.sites(), h.reach());
         let rim = if h.periodic() { reach } else { 0 };
         let mut m = Banded::zeros(sites - rim, reach, rim);
-        let spread = blocks.site.iter().map(spread).fold(0.0, f64::max);
+        let spread = blocks.sites().map(spread).fold(0.0, f64::max);
         m.shift(c.max(spread));
         for (k, bonds) in blocks.bond.iter().enumerate() {
             let n = k + 1;
             for i in 0..if h.periodic() { sites } else { sites.saturating_sub(n) } {
-                let j = -(bonds[i][0][0] + bonds[i][1][1] + bonds[i][2][2]) / 3.0;
+                let j = -bonds.mean(i);
                 if j != 0.0 && !h.is_frozen(i) && !h.is_frozen((i + n) % sites) {
                     m.add((i + n) % sites, i, -j);
                 }
@@ -76,7 +76,7 @@ impl Laplacian {
 }
 
 /// Largest minus smallest on-site curvature of a block, its isotropic part apart.
-fn spread(b: &[[f64; 3]; 3]) -> f64 {
+fn spread(b: [[f64; 3]; 3]) -> f64 {
     let e = eigenvalues_symmetric(&b.concat(), 3);
     e[2] - e[0]
 }

@@ -12,7 +12,9 @@
 
 mod gauge;
 mod laplacian;
+mod linearised;
 mod profile;
+mod split;
 mod springs;
 mod sweep;
 mod tangent;
@@ -23,9 +25,9 @@ pub use profile::{Extremum, Profile};
 pub use sweep::{Sweep, SweepStep};
 
 use crate::energy::Hamiltonian;
-use crate::linalg::slab;
 use crate::path::Path;
 use rayon::prelude::*;
+use split::Split;
 
 /// A path with the energies, forces and tangents of its images. The two ends never move.
 #[derive(Debug)]
@@ -37,6 +39,7 @@ pub struct Band<'h> {
     tangent: Vec<f64>,
     perpendicular: Vec<f64>,
     along: Vec<f64>,
+    largest: Vec<f64>,
     uphill: Vec<Option<usize>>,
     spacing: Vec<f64>,
     held: Vec<bool>,
@@ -54,6 +57,7 @@ impl<'h> Band<'h> {
             tangent: vec![0.0; images * slab],
             perpendicular: vec![0.0; images * slab],
             along: vec![0.0; images],
+            largest: vec![0.0; images],
             uphill: vec![None; images],
             spacing: vec![0.0; images - 1],
             held: vec![false; images],
@@ -82,36 +86,35 @@ impl<'h> Band<'h> {
             .map(|(k, g)| h.energy_gradient(path.image(k + 1), g))
             .collect();
         self.energy[1..last].copy_from_slice(&energies);
-        self.spacing = self.path.spacings();
-        self.tangents();
+        self.split_forces();
         self.evaluations += 1;
     }
 
-    /// Tangents, and the force split along and across them.
-    fn tangents(&mut self) {
-        let (slab, images) = (3 * self.path.sites(), self.path.images());
+    /// Tangents, distances, and the force split along and across the path.
+    fn split_forces(&mut self) {
+        let (slab, last) = (3 * self.path.sites(), self.path.images() - 1);
         let (h, path, energy, gradient) = (self.hamiltonian, &self.path, &self.energy, &self.gradient);
         let held = &self.held;
-        let inner = slab..(images - 1) * slab;
+        let inner = slab..last * slab;
         let tangent = self.tangent[inner.clone()].par_chunks_mut(slab);
         let across = self.perpendicular[inner].par_chunks_mut(slab);
-        let along: Vec<f64> = tangent
+        let split: Vec<Split> = tangent
             .zip(across)
             .enumerate()
             .map(|(k, (t, f))| {
                 let k = k + 1;
-                tangent::improved(path, energy, k, t);
-                h.hold_frozen(t);
-                h.force(path.image(k), &gradient[k * slab..(k + 1) * slab], f);
-                let along = slab::dot(f, t);
-                slab::add_scaled(f, -along, t);
-                if held[k] {
-                    f.fill(0.0);
-                }
-                along
+                let gradient = &gradient[k * slab..(k + 1) * slab];
+                split::image(h, [k - 1, k, k + 1].map(|k| path.image(k)), tangent::weights(energy, k), gradient, t, f)
             })
             .collect();
-        self.along[1..images - 1].copy_from_slice(&along);
+        self.spacing[0] = crate::path::distance(path.image(0), path.image(1));
+        for (k, s) in split.iter().enumerate() {
+            (self.along[k + 1], self.largest[k + 1], self.spacing[k + 1]) = (s.along, s.largest, s.after);
+        }
+        for k in (1..last).filter(|&k| held[k]) {
+            self.perpendicular[k * slab..(k + 1) * slab].fill(0.0);
+            self.largest[k] = 0.0;
+        }
         self.uphill = tangent::uphill_neighbours(&self.energy);
     }
 
@@ -200,7 +203,7 @@ impl<'h> Band<'h> {
 
     /// Largest component of the force across the path (meV).
     pub fn max_perpendicular_mev(&self) -> f64 {
-        slab::max_abs(&self.perpendicular)
+        self.largest.iter().fold(0.0, |m, x| if x.is_nan() { f64::NAN } else { x.max(m) })
     }
 
     /// The highest image between the ends.

@@ -8,12 +8,8 @@
 //! ```
 //! Henkelman, Jónsson, J. Chem. Phys. 113, 9978 (2000), doi:10.1063/1.1323224, eqs. 8–11.
 
-use crate::field::project;
-use crate::linalg::slab;
-use crate::path::Path;
-
 /// Weights of τ⁺ and τ⁻ at an image of energy `e` between `before` and `after`.
-fn weights(before: f64, e: f64, after: f64) -> (f64, f64) {
+fn raw_weights(before: f64, e: f64, after: f64) -> (f64, f64) {
     if after > e && e > before {
         return (1.0, 0.0);
     }
@@ -31,24 +27,17 @@ fn weights(before: f64, e: f64, after: f64) -> (f64, f64) {
     }
 }
 
-/// Writes the unit tangent of image k.
-pub fn improved(path: &Path, energy: &[f64], k: usize, t: &mut [f64]) {
-    let (plus, minus) = weights(energy[k - 1], energy[k], energy[k + 1]);
+/// Weights of τ⁺ and τ⁻ at image k, the larger one 1.
+pub fn weights(energy: &[f64], k: usize) -> (f64, f64) {
+    let (plus, minus) = raw_weights(energy[k - 1], energy[k], energy[k + 1]);
     let scale = plus.max(minus);
-    let (plus, minus) = (plus / scale, minus / scale);
-    let (before, here, after) = (path.image(k - 1), path.image(k), path.image(k + 1));
-    for i in 0..t.len() {
-        t[i] = plus * (after[i] - here[i]) + minus * (here[i] - before[i]);
-    }
-    project(here, t);
-    let length = slab::norm(t);
-    slab::scale(t, 1.0 / length.max(f64::MIN_POSITIVE));
+    (plus / scale, minus / scale)
 }
 
 /// The uphill neighbour of each image on a monotone slope, none at extrema and ends.
 pub fn uphill_neighbours(energy: &[f64]) -> Vec<Option<usize>> {
     let last = energy.len() - 1;
-    let one = |k: usize| match weights(energy[k - 1], energy[k], energy[k + 1]) {
+    let one = |k: usize| match raw_weights(energy[k - 1], energy[k], energy[k + 1]) {
         (1.0, 0.0) => Some(k + 1),
         (0.0, 1.0) => Some(k - 1),
         _ => None,
@@ -62,11 +51,11 @@ mod tests {
 
     #[test]
     fn on_a_slope_the_tangent_looks_uphill_and_at_an_extremum_both_ways_count() {
-        assert_eq!(weights(0.0, 1.0, 3.0), (1.0, 0.0));
-        assert_eq!(weights(3.0, 1.0, 0.0), (0.0, 1.0));
-        assert_eq!(weights(0.0, 2.0, 1.0), (2.0, 1.0));
-        assert_eq!(weights(1.0, 2.0, 0.0), (1.0, 2.0));
-        assert_eq!(weights(1.0, 1.0, 1.0), (1.0, 1.0));
+        assert_eq!(raw_weights(0.0, 1.0, 3.0), (1.0, 0.0));
+        assert_eq!(raw_weights(3.0, 1.0, 0.0), (0.0, 1.0));
+        assert_eq!(raw_weights(0.0, 2.0, 1.0), (2.0, 1.0));
+        assert_eq!(raw_weights(1.0, 2.0, 0.0), (1.0, 2.0));
+        assert_eq!(raw_weights(1.0, 1.0, 1.0), (1.0, 1.0));
         assert_eq!(uphill_neighbours(&[0.0, 1.0, 3.0, 2.0, 0.0]), [None, Some(2), None, Some(2), None]);
     }
 }

@@ -134,10 +134,7 @@ fn way_down(h: &Hamiltonian, p: &Point, hessian: &Banded, basis: &TangentBasis) 
     if lifted.factor().negatives() == 0 {
         return None;
     }
-    let known = orthonormal(
-        h.rotation_modes(&p.m, &h.symmetry_axes_at(&p.m)).iter().map(|z| basis.coordinates(z)).collect(),
-        1e-6,
-    );
+    let known = orthonormal(h.symmetry_axes_at(&p.m).iter().map(|axis| basis.rotation(*axis)).collect(), 1e-6);
     let mode = lowest_modes(hessian, 1, &known).into_iter().next()?;
     if mode.value > -1e-7 * h.stiffness_mev() {
         return None;

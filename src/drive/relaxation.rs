@@ -41,12 +41,6 @@ pub struct Relaxation<'a> {
     pub observer: &'a mut dyn Observer,
 }
 
-/// What the optimiser follows, and how far the band still has to go.
-struct Look {
-    direction: Vec<f64>,
-    rotation: f64,
-}
-
 /// Watches the predicted rotation: a sweep that runs in circles is damped, and what makes no progress ends.
 struct Progress {
     best: f64,
@@ -89,6 +83,7 @@ impl Relaxation<'_> {
         let mut sweep = Sweep::new(self.scales.stiffness_mev);
         let tolerance = self.settings.tolerance;
         let mut progress = Progress::new(method.follows());
+        let mut direction = vec![0.0; band.inner_mut().len()];
         loop {
             self.align(band);
             band.evaluate();
@@ -99,22 +94,26 @@ impl Relaxation<'_> {
                 return Stop::Converged { rotation, tolerance: LOOSE };
             }
             let climbing = self.climbing(band, goal);
-            let look = self.look(band, &mut sweep, method.follows(), &climbing);
-            self.record(band, look.rotation);
-            if !look.rotation.is_finite() || !force.is_finite() {
+            let rotation = match method.follows() {
+                Follows::Sweep => sweep.step(band, self.axes, &mut direction).rotation,
+                follows => self.along_forces(band, follows, &climbing, &mut direction),
+            };
+            self.record(band, rotation);
+            if !rotation.is_finite() || !force.is_finite() {
                 return Stop::NotFinite;
             }
-            if goal == Goal::Tight && look.rotation <= tolerance {
-                return Stop::Converged { rotation: look.rotation, tolerance };
+            if goal == Goal::Tight && rotation <= tolerance {
+                return Stop::Converged { rotation, tolerance };
             }
             if band.evaluations() >= limit {
-                return Stop::MaxEvaluations { evaluations: band.evaluations(), rotation: look.rotation, tolerance };
+                return Stop::MaxEvaluations { evaluations: band.evaluations(), rotation, tolerance };
             }
-            if let Some(evaluations) = progress.stalled(look.rotation) {
-                return Stop::Stalled { evaluations, rotation: look.rotation, tolerance };
+            if let Some(evaluations) = progress.stalled(rotation) {
+                return Stop::Stalled { evaluations, rotation, tolerance };
             }
-            let mut direction = look.direction;
-            slab::scale(&mut direction, progress.damping);
+            if progress.damping != 1.0 {
+                slab::scale(&mut direction, progress.damping);
+            }
             optimiser.advance(band.inner_mut(), size, &direction);
         }
     }
@@ -123,15 +122,11 @@ impl Relaxation<'_> {
         align_rotations(band.path_mut(), self.axes);
     }
 
-    fn look(&self, band: &Band, sweep: &mut Sweep, follows: Follows, climbing: &[usize]) -> Look {
-        if follows == Follows::Sweep {
-            let step = sweep.step(band, self.axes);
-            return Look { direction: step.moves, rotation: step.rotation };
-        }
+    /// Writes what the methods that follow forces want to be shown; the rotation that still seems needed (rad).
+    fn along_forces(&self, band: &Band, follows: Follows, climbing: &[usize], y: &mut [f64]) -> f64 {
         let slab = 3 * band.path().sites();
-        let mut y = vec![0.0; (band.images() - 2) * slab];
-        let Some(laplacian) = self.laplacian else { return Look { direction: y, rotation: f64::NAN } };
-        laplacian.rotations(band, &mut y);
+        let Some(laplacian) = self.laplacian else { return f64::NAN };
+        laplacian.rotations(band, y);
         let rotation = y.chunks(slab).map(rotation_of).fold(0.0, f64::max);
         let c = self.scales.stiffness_mev;
         if follows == Follows::Preconditioned {
@@ -139,7 +134,7 @@ impl Relaxation<'_> {
             for k in 1..band.images() - 1 {
                 slab::add_scaled(&mut y[(k - 1) * slab..k * slab], shifts[k], band.tangent(k));
             }
-            return Look { direction: y, rotation };
+            return rotation;
         }
         for k in (1..band.images() - 1).filter(|&k| !band.is_held(k)) {
             let f = &mut y[(k - 1) * slab..k * slab];
@@ -147,7 +142,7 @@ impl Relaxation<'_> {
             let along = if climbing.contains(&k) { -band.along(k) } else { c * band.spring_pull(k) };
             slab::add_scaled(f, along, band.tangent(k));
         }
-        Look { direction: y, rotation }
+        rotation
     }
 
     /// The images that climb: every prominent maximum, once the band is loosely relaxed.

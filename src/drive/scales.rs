@@ -66,8 +66,7 @@ fn on_site_gap(h: &Hamiltonian) -> f64 {
     let own = h.varying_blocks(Components::new(&zero));
     let blocks = own.as_ref().unwrap_or(h.constant_blocks());
     let mut gaps: Vec<f64> = blocks
-        .site
-        .iter()
+        .sites()
         .map(|b| {
             let e = eigenvalues_symmetric(&b.concat(), 3);
             e[1] - e[0]
@@ -84,8 +83,7 @@ fn exchange_stiffness(h: &Hamiltonian) -> f64 {
         .bond
         .iter()
         .map(|bonds| {
-            let mut j: Vec<f64> =
-                bonds.iter().map(|b| -(b[0][0] + b[1][1] + b[2][2]) / 3.0).filter(|j| *j != 0.0).collect();
+            let mut j: Vec<f64> = (0..h.sites()).map(|i| -bonds.mean(i)).filter(|j| *j != 0.0).collect();
             j.sort_by(f64::total_cmp);
             j.get(j.len() / 2).copied().unwrap_or(0.0)
         })

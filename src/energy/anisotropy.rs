@@ -12,9 +12,9 @@ use crate::error::Result;
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, Vector, vector};
 use crate::lattice::Selection;
-use crate::linalg::slab::accumulate;
 use crate::registry::Described;
 use crate::units::SiteEnergy;
+use multiversion::multiversion;
 use serde::Deserialize;
 use std::ops::Range;
 
@@ -45,15 +45,15 @@ impl TermBuilder for AnisotropySpec {
     fn build(&self, medium: &Medium) -> Result<Box<dyn EnergyTerm>> {
         let k = medium.site_energy_mev(self.K).map_err(|e| e.within("K"))?;
         let k2 = self.K2.map_or(Ok(0.0), |k2| medium.site_energy_mev(k2)).map_err(|e| e.within("K2"))?;
-        let mut term = Anisotropy {
-            axis: self.axis.vector(),
-            k: vec![0.0; medium.chain.sites],
-            k2: vec![0.0; medium.chain.sites],
+        let on_sites = |value: f64| -> Result<Vec<f64>> {
+            let mut list = vec![0.0; medium.chain.sites];
+            for i in medium.sites(self.sites.as_ref())? {
+                list[i] = value;
+            }
+            Ok(list)
         };
-        for i in medium.sites(self.sites.as_ref())? {
-            (term.k[i], term.k2[i]) = (k, k2);
-        }
-        Ok(Box::new(term))
+        let k2 = if k2 == 0.0 { Vec::new() } else { on_sites(k2)? };
+        Ok(Box::new(Anisotropy { axis: self.axis.vector(), k: on_sites(k)?, k2 }))
     }
 }
 
@@ -64,23 +64,54 @@ pub struct Anisotropy {
     pub axis: Vector,
     /// K of each site.
     pub k: Vec<f64>,
-    /// K₂ of each site.
+    /// K₂ of each site; empty where there is none.
     pub k2: Vec<f64>,
 }
 
 impl Anisotropy {
     /// The same K (meV) on all sites.
     pub fn uniform(sites: usize, k: f64, axis: Direction) -> Anisotropy {
-        Anisotropy { axis: axis.vector(), k: vec![k; sites], k2: vec![0.0; sites] }
+        Anisotropy { axis: axis.vector(), k: vec![k; sites], k2: Vec::new() }
     }
 
-    /// Energy of one spin above its reference, as squares of what is small: 1 − c² = |m − c e|².
-    #[inline]
-    fn site(k: f64, k2: f64, c: f64, rest2: f64) -> f64 {
-        let quadratic = if k > 0.0 { k * rest2 } else { -k * c * c };
-        let quartic = if k2 > 0.0 { k2 * rest2 * (1.0 + c * c) } else { -k2 * c * c * c * c };
-        quadratic + quartic
+    /// ∂²E/∂c² of site i, c = m·e.
+    fn curvature(&self, i: usize, c: f64) -> f64 {
+        -(2.0 * self.k[i] + 12.0 * self.k2.get(i).unwrap_or(&0.0) * c * c)
     }
+}
+
+/// The second-order part of a row of sites. Counted as squares of what is small: 1 − c² = |m − c e|².
+#[multiversion(targets("x86_64+avx2"))]
+fn add_quadratic(
+    k: &[f64],
+    e: Vector,
+    m: Components,
+    gx: &mut [f64],
+    gy: &mut [f64],
+    gz: &mut [f64],
+    density: &mut [f64],
+) {
+    let n = k.len();
+    let (x, y, z) = (&m.x[..n], &m.y[..n], &m.z[..n]);
+    let (gx, gy, gz, density) = (&mut gx[..n], &mut gy[..n], &mut gz[..n], &mut density[..n]);
+    for i in 0..n {
+        let c = x[i] * e[0] + y[i] * e[1] + z[i] * e[2];
+        let (rx, ry, rz) = (x[i] - c * e[0], y[i] - c * e[1], z[i] - c * e[2]);
+        let across = rx * rx + ry * ry + rz * rz;
+        density[i] += k[i].abs() * if k[i] > 0.0 { across } else { c * c };
+        let slope = 2.0 * k[i] * c;
+        gx[i] -= slope * e[0];
+        gy[i] -= slope * e[1];
+        gz[i] -= slope * e[2];
+    }
+}
+
+/// The fourth-order part of one spin: energy above its reference, and slope along e. 1 − c⁴ = |m − c e|² (1 + c²).
+fn quartic(k2: f64, m: Vector, e: Vector) -> (f64, f64) {
+    let c = vector::dot(m, e);
+    let rest = vector::sub(m, vector::scale(c, e));
+    let energy = if k2 > 0.0 { k2 * vector::dot(rest, rest) * (1.0 + c * c) } else { -k2 * c * c * c * c };
+    (energy, -4.0 * k2 * c * c * c)
 }
 
 impl EnergyTerm for Anisotropy {
@@ -92,36 +123,20 @@ impl EnergyTerm for Anisotropy {
         -self.k.iter().chain(&self.k2).map(|k| k.max(0.0)).sum::<f64>()
     }
 
-    fn add_density(&self, m: Components, density: &mut [f64]) {
-        for i in 0..m.sites() {
-            let c = vector::dot(m.get(i), self.axis);
-            let rest = vector::sub(m.get(i), vector::scale(c, self.axis));
-            density[i] += Anisotropy::site(self.k[i], self.k2[i], c, vector::dot(rest, rest));
+    fn add_gradient(&self, m: Components, mut g: ComponentsMut, density: &mut [f64], range: Range<usize>) {
+        let here = m.range(range.clone());
+        add_quadratic(&self.k[range.clone()], self.axis, here, g.x, g.y, g.z, density);
+        for (i, k2) in self.k2.get(range).unwrap_or_default().iter().enumerate() {
+            let (energy, slope) = quartic(*k2, here.get(i), self.axis);
+            density[i] += energy;
+            g.add(i, vector::scale(slope, self.axis));
         }
-    }
-
-    fn add_gradient(&self, m: Components, g: ComponentsMut, range: Range<usize>) -> f64 {
-        let (lo, hi, len) = (range.start, range.end, range.len());
-        let [ex, ey, ez] = self.axis;
-        let (x, y, z) = (&m.x[lo..hi], &m.y[lo..hi], &m.z[lo..hi]);
-        let (k1, k2) = (&self.k[lo..hi], &self.k2[lo..hi]);
-        let (gx, gy, gz) = (&mut g.x[..len], &mut g.y[..len], &mut g.z[..len]);
-        let at = |i: usize, lane: &mut f64| {
-            let c = x[i] * ex + y[i] * ey + z[i] * ez;
-            let (rx, ry, rz) = (x[i] - c * ex, y[i] - c * ey, z[i] - c * ez);
-            *lane += Anisotropy::site(k1[i], k2[i], c, rx * rx + ry * ry + rz * rz);
-            let slope = -(2.0 * k1[i] * c + 4.0 * k2[i] * c * c * c);
-            gx[i] += slope * ex;
-            gy[i] += slope * ey;
-            gz[i] += slope * ez;
-        };
-        accumulate(len, at)
     }
 
     fn add_hessian_product(&self, m: Components, v: Components, mut out: ComponentsMut) {
         for i in 0..m.sites() {
             let c = vector::dot(m.get(i), self.axis);
-            let curvature = -(2.0 * self.k[i] + 12.0 * self.k2[i] * c * c);
+            let curvature = self.curvature(i, c);
             out.add(i, vector::scale(curvature * vector::dot(v.get(i), self.axis), self.axis));
         }
     }
@@ -129,7 +144,7 @@ impl EnergyTerm for Anisotropy {
     fn add_blocks(&self, m: Components, blocks: &mut Blocks) {
         for i in 0..m.sites() {
             let c = vector::dot(m.get(i), self.axis);
-            blocks.add_axial(i, -(2.0 * self.k[i] + 12.0 * self.k2[i] * c * c), self.axis);
+            blocks.add_axial(i, self.curvature(i, c), self.axis);
         }
     }
 
@@ -154,6 +169,7 @@ impl EnergyTerm for Anisotropy {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::energy::density_of;
 
     #[test]
     fn an_easy_axis_costs_k_sine_squared_and_a_hard_axis_k_cosine_squared() {
@@ -166,8 +182,7 @@ mod tests {
             (0.0, -3.0, 3.0 * c.powi(4)),
         ] {
             let term = Anisotropy { axis: [0.0, 0.0, 1.0], k: vec![k], k2: vec![k2] };
-            let mut density = [0.0];
-            term.add_density(Components::new(&m), &mut density);
+            let density = density_of(&term, &m);
             assert!((density[0] - expected).abs() < 1e-15);
             let total = -k * c * c - k2 * c.powi(4);
             assert!((term.reference_mev() + density[0] - total).abs() < 1e-15);

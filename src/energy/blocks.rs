@@ -1,6 +1,6 @@
 //! The Euclidean Hessian of a short-ranged chain as 3 × 3 blocks: one a site, one a bond of each shell.
 
-use crate::geometry::Vector;
+use crate::geometry::{Vector, vector};
 
 /// A 3 × 3 matrix, row by row.
 pub type Block = [Vector; 3];
@@ -8,39 +8,92 @@ pub type Block = [Vector; 3];
 /// Blocks of ∂²E/∂m∂m (meV).
 #[derive(Clone, Debug)]
 pub struct Blocks {
-    /// Diagonal blocks, symmetric.
-    pub site: Vec<Block>,
-    /// `bond[n − 1][i]` couples site i (rows) to site i + n (columns); its transpose is understood.
-    pub bond: Vec<Vec<Block>>,
+    /// Diagonal blocks, symmetric: xx, yy, zz, yz, zx and xy of all sites.
+    pub site: [Vec<f64>; 6],
+    /// Shell n − 1 couples every site i (rows) to site i + n (columns); the transposes are understood.
+    pub bond: Vec<Bonds>,
+}
+
+/// The couplings of one shell, a multiple of the unit matrix and the rest of each.
+#[derive(Clone, Debug)]
+pub struct Bonds {
+    /// s of s·1, for every bond.
+    pub isotropic: Vec<f64>,
+    /// What is not isotropic, for every bond; empty where no term has any.
+    pub rest: Vec<Block>,
+}
+
+impl Bonds {
+    /// Adds a block to bond i.
+    pub fn add(&mut self, i: usize, block: Block) {
+        if self.rest.is_empty() {
+            self.rest = vec![[[0.0; 3]; 3]; self.isotropic.len()];
+        }
+        for r in 0..3 {
+            self.rest[i][r] = vector::add(self.rest[i][r], block[r]);
+        }
+    }
+
+    /// The block of bond i times v.
+    #[inline(always)]
+    pub fn multiply(&self, i: usize, v: Vector) -> Vector {
+        let isotropic = vector::scale(self.isotropic[i], v);
+        if self.rest.is_empty() { isotropic } else { vector::add(isotropic, multiply(&self.rest[i], v)) }
+    }
+
+    /// A third of the block's trace.
+    pub fn mean(&self, i: usize) -> f64 {
+        let trace = |b: &Block| (b[0][0] + b[1][1] + b[2][2]) / 3.0;
+        self.isotropic[i] + self.rest.get(i).map_or(0.0, trace)
+    }
 }
 
 impl Blocks {
     /// Zero blocks for shells 1 … `reach`; every shell has one (possibly unused) bond a site.
     pub fn zeros(sites: usize, reach: usize) -> Blocks {
-        Blocks { site: vec![[[0.0; 3]; 3]; sites], bond: vec![vec![[[0.0; 3]; 3]; sites]; reach] }
+        let bonds = Bonds { isotropic: vec![0.0; sites], rest: Vec::new() };
+        Blocks { site: [(); 6].map(|()| vec![0.0; sites]), bond: vec![bonds; reach] }
     }
 
     /// Adds s·1 to a site's block.
     pub fn add_isotropic(&mut self, site: usize, s: f64) {
         for c in 0..3 {
-            self.site[site][c][c] += s;
+            self.site[c][site] += s;
         }
     }
 
     /// Adds s·e eᵀ to a site's block.
     pub fn add_axial(&mut self, site: usize, s: f64, e: Vector) {
-        for r in 0..3 {
-            for c in 0..3 {
-                self.site[site][r][c] += s * e[r] * e[c];
-            }
+        let [x, y, z] = e;
+        for (c, product) in [x * x, y * y, z * z, y * z, z * x, x * y].into_iter().enumerate() {
+            self.site[c][site] += s * product;
         }
+    }
+
+    /// Adds a symmetric block to a site's.
+    pub fn add_site(&mut self, site: usize, b: Block) {
+        for (c, value) in [b[0][0], b[1][1], b[2][2], b[1][2], b[2][0], b[0][1]].into_iter().enumerate() {
+            self.site[c][site] += value;
+        }
+    }
+
+    /// A site's block.
+    #[inline(always)]
+    pub fn at_site(&self, i: usize) -> Block {
+        let [xx, yy, zz, yz, zx, xy] = [0, 1, 2, 3, 4, 5].map(|c: usize| self.site[c][i]);
+        [[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]]
+    }
+
+    /// The blocks of all sites.
+    pub fn sites(&self) -> impl Iterator<Item = Block> + '_ {
+        (0..self.site[0].len()).map(|i| self.at_site(i))
     }
 }
 
 /// A v.
-#[inline]
+#[inline(always)]
 pub fn multiply(a: &Block, v: Vector) -> Vector {
-    [0, 1, 2].map(|r| a[r][0] * v[0] + a[r][1] * v[1] + a[r][2] * v[2])
+    [vector::dot(a[0], v), vector::dot(a[1], v), vector::dot(a[2], v)]
 }
 
 /// The matrix [d]× with vᵀ M w = d·(v × w).

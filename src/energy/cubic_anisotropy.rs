@@ -13,6 +13,7 @@ use crate::geometry::{Direction, Vector, vector};
 use crate::lattice::Selection;
 use crate::registry::Described;
 use crate::units::SiteEnergy;
+use multiversion::multiversion;
 use serde::Deserialize;
 use std::ops::Range;
 
@@ -67,23 +68,6 @@ impl CubicAnisotropy {
         self.axes.map(|e| vector::dot(m, e))
     }
 
-    /// Σ α_i²α_j² over pairs, and for K < 0 counted from the diagonal's ⅓: ⅓ − Σ = ⅙ Σ (α_i² − α_j²)².
-    fn site(k: f64, a: Vector) -> f64 {
-        let [p, q, r] = a.map(|c| c * c);
-        if k >= 0.0 {
-            k * (p * q + q * r + r * p)
-        } else {
-            -k / 6.0 * ((p - q).powi(2) + (q - r).powi(2) + (r - p).powi(2))
-        }
-    }
-
-    fn slope(&self, i: usize, m: Vector) -> Vector {
-        let a = self.cosines(m);
-        let [p, q, r] = a.map(|c| c * c);
-        let along = [a[0] * (q + r), a[1] * (r + p), a[2] * (p + q)];
-        (0..3).fold([0.0; 3], |g, e| vector::add(g, vector::scale(2.0 * self.k[i] * along[e], self.axes[e])))
-    }
-
     fn curvature(&self, i: usize, m: Vector) -> Block {
         let a = self.cosines(m);
         let mut block = [[0.0; 3]; 3];
@@ -102,6 +86,35 @@ impl CubicAnisotropy {
     }
 }
 
+/// A row of sites. For K < 0 the energy is counted from the diagonal's ⅓: ⅓ − Σ α_i²α_j² = ⅙ Σ (α_i² − α_j²)².
+#[multiversion(targets("x86_64+avx2"))]
+fn add_row(
+    k: &[f64],
+    axes: [Vector; 3],
+    m: Components,
+    gx: &mut [f64],
+    gy: &mut [f64],
+    gz: &mut [f64],
+    density: &mut [f64],
+) {
+    let n = k.len();
+    let (x, y, z) = (&m.x[..n], &m.y[..n], &m.z[..n]);
+    let (gx, gy, gz, density) = (&mut gx[..n], &mut gy[..n], &mut gz[..n], &mut density[..n]);
+    let [e, f, h] = axes;
+    for i in 0..n {
+        let a = x[i] * e[0] + y[i] * e[1] + z[i] * e[2];
+        let b = x[i] * f[0] + y[i] * f[1] + z[i] * f[2];
+        let c = x[i] * h[0] + y[i] * h[1] + z[i] * h[2];
+        let (p, q, r) = (a * a, b * b, c * c);
+        let uneven = (p - q) * (p - q) + (q - r) * (q - r) + (r - p) * (r - p);
+        density[i] += k[i].abs() * if k[i] > 0.0 { p * q + q * r + r * p } else { uneven / 6.0 };
+        let (s, t, u) = (2.0 * k[i] * a * (q + r), 2.0 * k[i] * b * (r + p), 2.0 * k[i] * c * (p + q));
+        gx[i] += s * e[0] + t * f[0] + u * h[0];
+        gy[i] += s * e[1] + t * f[1] + u * h[1];
+        gz[i] += s * e[2] + t * f[2] + u * h[2];
+    }
+}
+
 impl EnergyTerm for CubicAnisotropy {
     fn name(&self) -> &'static str {
         CubicAnisotropySpec::NAME
@@ -111,21 +124,8 @@ impl EnergyTerm for CubicAnisotropy {
         self.k.iter().map(|k| k.min(0.0) / 3.0).sum()
     }
 
-    fn add_density(&self, m: Components, density: &mut [f64]) {
-        for i in 0..m.sites() {
-            density[i] += CubicAnisotropy::site(self.k[i], self.cosines(m.get(i)));
-        }
-    }
-
-    fn add_gradient(&self, m: Components, mut g: ComponentsMut, range: Range<usize>) -> f64 {
-        let mut energy = 0.0;
-        for i in range.clone() {
-            if self.k[i] != 0.0 {
-                g.add(i - range.start, self.slope(i, m.get(i)));
-                energy += CubicAnisotropy::site(self.k[i], self.cosines(m.get(i)));
-            }
-        }
-        energy
+    fn add_gradient(&self, m: Components, g: ComponentsMut, density: &mut [f64], range: Range<usize>) {
+        add_row(&self.k[range.clone()], self.axes, m.range(range), g.x, g.y, g.z, density);
     }
 
     fn add_hessian_product(&self, m: Components, v: Components, mut out: ComponentsMut) {
@@ -136,10 +136,7 @@ impl EnergyTerm for CubicAnisotropy {
 
     fn add_blocks(&self, m: Components, blocks: &mut Blocks) {
         for i in 0..m.sites() {
-            let b = self.curvature(i, m.get(i));
-            for r in 0..3 {
-                blocks.site[i][r] = vector::add(blocks.site[i][r], b[r]);
-            }
+            blocks.add_site(i, self.curvature(i, m.get(i)));
         }
     }
 
@@ -163,6 +160,7 @@ impl EnergyTerm for CubicAnisotropy {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::energy::density_of;
 
     #[test]
     fn an_edge_costs_nothing_a_face_diagonal_a_quarter_and_a_body_diagonal_a_third() {
@@ -170,8 +168,7 @@ mod tests {
         let (f, b) = (0.5f64.sqrt(), (1.0f64 / 3.0).sqrt());
         for k in [2.0, -2.0] {
             for (m, share) in [([0.0, 1.0, 0.0], 0.0), ([f, f, 0.0], 0.25), ([b, -b, b], 1.0 / 3.0)] {
-                let mut density = [0.0];
-                term(k).add_density(Components::new(&m), &mut density);
+                let density = density_of(&term(k), &m);
                 assert!((term(k).reference_mev() + density[0] - k * share).abs() < 1e-15);
             }
         }

@@ -15,6 +15,7 @@ use crate::geometry::{Direction, Vector, vector};
 use crate::lattice::{Chain, Selection};
 use crate::registry::Described;
 use crate::units::BondEnergy;
+use multiversion::multiversion;
 use serde::Deserialize;
 use std::ops::Range;
 
@@ -73,6 +74,24 @@ impl Dmi {
     }
 }
 
+/// The run of sites from `lo` on whose two neighbours need no wrapping.
+#[multiversion(targets("x86_64+avx2"))]
+fn add_run(term: &Dmi, lo: usize, m: Components, gx: &mut [f64], gy: &mut [f64], gz: &mut [f64], density: &mut [f64]) {
+    let n = gx.len();
+    let (here, next, previous) = (m.range(lo..lo + n), m.range(lo + 1..lo + 1 + n), m.range(lo - 1..lo - 1 + n));
+    let (dp, dm, [ex, ey, ez]) = (&term.d[lo..lo + n], &term.d[lo - 1..lo - 1 + n], term.direction);
+    let (gy, gz, density) = (&mut gy[..n], &mut gz[..n], &mut density[..n]);
+    for i in 0..n {
+        let (px, py, pz) = (dp[i] * next.x[i], dp[i] * next.y[i], dp[i] * next.z[i]);
+        let (wx, wy, wz) = (px - dm[i] * previous.x[i], py - dm[i] * previous.y[i], pz - dm[i] * previous.z[i]);
+        gx[i] += wy * ez - wz * ey;
+        gy[i] += wz * ex - wx * ez;
+        gz[i] += wx * ey - wy * ex;
+        let turn = (here.y[i] * pz - here.z[i] * py, here.z[i] * px - here.x[i] * pz, here.x[i] * py - here.y[i] * px);
+        density[i] += ex * turn.0 + ey * turn.1 + ez * turn.2;
+    }
+}
+
 impl EnergyTerm for Dmi {
     fn name(&self) -> &'static str {
         DmiSpec::NAME
@@ -82,33 +101,20 @@ impl EnergyTerm for Dmi {
         0.0
     }
 
-    fn add_density(&self, m: Components, density: &mut [f64]) {
-        let n = m.sites();
-        for i in 0..n {
-            if self.d[i] != 0.0 {
-                let turn = vector::cross(m.get(i), m.get((i + 1) % n));
-                density[i] += self.d[i] * vector::dot(self.direction, turn);
-            }
+    fn add_gradient(&self, m: Components, mut g: ComponentsMut, density: &mut [f64], range: Range<usize>) {
+        let (first, last, n) = (range.start, range.end, m.sites());
+        let lo = first.max(1).min(last);
+        let hi = last.min(n - 1).max(lo);
+        for i in (first..lo).chain(hi..last) {
+            let (previous, next) = ((i + n - 1) % n, (i + 1) % n);
+            g.add(i - first, self.slope(self.d[i], self.d[previous], m.get(next), m.get(previous)));
+            density[i - first] += self.d[i] * vector::dot(self.direction, vector::cross(m.get(i), m.get(next)));
         }
-    }
-
-    fn add_gradient(&self, m: Components, mut g: ComponentsMut, range: Range<usize>) -> f64 {
-        let n = m.sites();
-        let first = range.start;
-        let mut energy = 0.0;
-        let mut at = |i: usize, previous: usize, next: usize, g: &mut ComponentsMut| {
-            let p = m.get(next);
-            g.add(i - first, self.slope(self.d[i], self.d[previous], p, m.get(previous)));
-            if self.d[i] != 0.0 {
-                energy += self.d[i] * vector::dot(self.direction, vector::cross(m.get(i), p));
-            }
-        };
-        for i in range {
-            let previous = if i == 0 { n - 1 } else { i - 1 };
-            let next = if i + 1 == n { 0 } else { i + 1 };
-            at(i, previous, next, &mut g);
+        let run = lo - first..hi - first;
+        if !run.is_empty() {
+            let (gx, gy, gz) = (&mut g.x[run.clone()], &mut g.y[run.clone()], &mut g.z[run.clone()]);
+            add_run(self, lo, m, gx, gy, gz, &mut density[run]);
         }
-        energy
     }
 
     fn add_hessian_product(&self, _: Components, v: Components, mut out: ComponentsMut) {
@@ -122,10 +128,7 @@ impl EnergyTerm for Dmi {
     fn add_blocks(&self, _: Components, blocks: &mut Blocks) {
         for (i, &d) in self.d.iter().enumerate() {
             if d != 0.0 {
-                let b = cross_block(vector::scale(d, self.direction));
-                for r in 0..3 {
-                    blocks.bond[0][i][r] = vector::add(blocks.bond[0][i][r], b[r]);
-                }
+                blocks.bond[0].add(i, cross_block(vector::scale(d, self.direction)));
             }
         }
     }
@@ -146,13 +149,12 @@ impl EnergyTerm for Dmi {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::energy::density_of;
 
     #[test]
     fn a_right_handed_quarter_turn_about_d_costs_plus_d() {
         let m = [1.0, 0.0, 0.0, 1.0, 0.0, 0.0];
         let term = Dmi { direction: [0.0, 0.0, 1.0], d: vec![2.0, 0.0] };
-        let mut density = [0.0; 2];
-        term.add_density(Components::new(&m), &mut density);
-        assert_eq!(density, [2.0, 0.0]);
+        assert_eq!(density_of(&term, &m), [2.0, 0.0]);
     }
 }

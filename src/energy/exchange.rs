@@ -14,9 +14,9 @@ use crate::error::{Error, Result};
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Vector, vector};
 use crate::lattice::{Chain, Selection};
-use crate::linalg::slab::accumulate;
 use crate::registry::Described;
 use crate::units::{Energy, ExchangeStiffness};
+use multiversion::multiversion;
 use serde::Deserialize;
 use std::ops::Range;
 
@@ -78,33 +78,17 @@ pub struct Exchange {
     pub shells: Vec<Vec<f64>>,
 }
 
-/// One shell's coefficients and fields on the run of sites `i` whose partners `i − n` and `i + n` need no wrapping.
-struct Run<'a> {
-    n: usize,
-    j: &'a [f64],
-    m: Components<'a>,
-}
-
-impl Run<'_> {
-    /// Adds the gradient on sites lo … hi; returns the energy of the bonds that start there.
-    #[inline]
-    fn add(&self, lo: usize, hi: usize, gx: &mut [f64], gy: &mut [f64], gz: &mut [f64]) -> f64 {
-        let (n, m, len) = (self.n, self.m, hi - lo);
-        let (jp, jm) = (&self.j[lo..hi], &self.j[lo - n..hi - n]);
-        let (x0, xp, xm) = (&m.x[lo..hi], &m.x[lo + n..hi + n], &m.x[lo - n..hi - n]);
-        let (y0, yp, ym) = (&m.y[lo..hi], &m.y[lo + n..hi + n], &m.y[lo - n..hi - n]);
-        let (z0, zp, zm) = (&m.z[lo..hi], &m.z[lo + n..hi + n], &m.z[lo - n..hi - n]);
-        let (gx, gy, gz) = (&mut gx[..len], &mut gy[..len], &mut gz[..len]);
-        let at = |k: usize, lane: &mut f64| {
-            let (ap, am) = (jp[k].abs(), jm[k].abs());
-            let (sp, sm) = (1f64.copysign(jp[k]), 1f64.copysign(jm[k]));
-            let (dx, dy, dz) = (x0[k] - sp * xp[k], y0[k] - sp * yp[k], z0[k] - sp * zp[k]);
-            *lane += ap * (dx * dx + dy * dy + dz * dz);
-            gx[k] += ap * dx + am * (x0[k] - sm * xm[k]);
-            gy[k] += ap * dy + am * (y0[k] - sm * ym[k]);
-            gz[k] += ap * dz + am * (z0[k] - sm * zm[k]);
-        };
-        0.5 * accumulate(len, at)
+/// One component's share of one shell, on the run of sites from `lo` on whose partners i ± n need no wrapping.
+#[multiversion(targets("x86_64+avx2"))]
+fn add_run(n: usize, lo: usize, j: &[f64], x: &[f64], g: &mut [f64], density: &mut [f64]) {
+    let hi = lo + g.len();
+    let (here, next, previous) = (&x[lo..hi], &x[lo + n..hi + n], &x[lo - n..hi - n]);
+    let (jp, jm, density) = (&j[lo..hi], &j[lo - n..hi - n], &mut density[..g.len()]);
+    for k in 0..g.len() {
+        let up = here[k] - 1f64.copysign(jp[k]) * next[k];
+        let down = here[k] - 1f64.copysign(jm[k]) * previous[k];
+        density[k] += 0.5 * jp[k].abs() * up * up;
+        g[k] += jp[k].abs() * up + jm[k].abs() * down;
     }
 }
 
@@ -149,21 +133,8 @@ impl EnergyTerm for Exchange {
         -self.shells.iter().flatten().map(|j| j.abs()).sum::<f64>()
     }
 
-    fn add_density(&self, m: Components, density: &mut [f64]) {
-        for (k, j) in self.shells.iter().enumerate() {
-            let (n, sites) = (k + 1, j.len());
-            for i in 0..sites {
-                if j[i] != 0.0 {
-                    let d = Exchange::deviation(&m, j[i], i, (i + n) % sites);
-                    density[i] += 0.5 * j[i].abs() * vector::dot(d, d);
-                }
-            }
-        }
-    }
-
-    fn add_gradient(&self, m: Components, mut g: ComponentsMut, range: Range<usize>) -> f64 {
+    fn add_gradient(&self, m: Components, mut g: ComponentsMut, density: &mut [f64], range: Range<usize>) {
         let (first, last) = (range.start, range.end);
-        let mut energy = 0.0;
         for (k, j) in self.shells.iter().enumerate() {
             let (n, sites) = (k + 1, j.len());
             let lo = first.max(n).min(last);
@@ -171,15 +142,15 @@ impl EnergyTerm for Exchange {
             for i in (first..lo).chain(hi..last) {
                 let (v, e) = Exchange::edge(j, n, &m, i);
                 g.add(i - first, v);
-                energy += e;
+                density[i - first] += e;
             }
-            if hi > lo {
-                let g = g.reborrow();
-                energy +=
-                    Run { n, j, m }.add(lo, hi, &mut g.x[lo - first..], &mut g.y[lo - first..], &mut g.z[lo - first..]);
+            let run = lo - first..hi - first;
+            if !run.is_empty() {
+                add_run(n, lo, j, m.x, &mut g.x[run.clone()], &mut density[run.clone()]);
+                add_run(n, lo, j, m.y, &mut g.y[run.clone()], &mut density[run.clone()]);
+                add_run(n, lo, j, m.z, &mut g.z[run.clone()], &mut density[run]);
             }
         }
-        energy
     }
 
     fn add_hessian_product(&self, _: Components, v: Components, mut out: ComponentsMut) {
@@ -203,9 +174,7 @@ impl EnergyTerm for Exchange {
                 if j[i] != 0.0 {
                     blocks.add_isotropic(i, j[i].abs());
                     blocks.add_isotropic((i + n) % sites, j[i].abs());
-                    for c in 0..3 {
-                        blocks.bond[k][i][c][c] -= j[i];
-                    }
+                    blocks.bond[k].isotropic[i] -= j[i];
                 }
             }
         }
@@ -227,17 +196,14 @@ impl EnergyTerm for Exchange {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::energy::density_of;
 
     #[test]
     fn two_spins_at_right_angles_cost_the_bond_energy_and_an_antiferromagnet_prefers_opposite_ones() {
         let m = [1.0, 0.0, 0.0, 1.0, 0.0, 0.0];
         let term = Exchange { shells: vec![vec![3.0, 0.0]] };
-        let mut density = [0.0; 2];
-        term.add_density(Components::new(&m), &mut density);
-        assert_eq!((term.reference_mev(), density), (-3.0, [3.0, 0.0]));
+        assert_eq!((term.reference_mev(), density_of(&term, &m)), (-3.0, vec![3.0, 0.0]));
         let opposite = [0.0, 0.0, 0.0, 0.0, 1.0, -1.0];
-        let mut density = [0.0; 2];
-        Exchange { shells: vec![vec![-3.0, 0.0]] }.add_density(Components::new(&opposite), &mut density);
-        assert_eq!(density, [0.0; 2]);
+        assert_eq!(density_of(&Exchange { shells: vec![vec![-3.0, 0.0]] }, &opposite), [0.0; 2]);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{Blocks, EnergyTerm};
 use crate::error::Result;
-use crate::field::{Components, ComponentsMut, split};
+use crate::field::{Components, ComponentsMut, TILE, tiles};
 use crate::geometry::{Direction, Vector, vector};
 use crate::lattice::Chain;
 use crate::linalg::slab;
@@ -10,8 +10,6 @@ use crate::spins::Spins;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Sites handled at a time: their spins, gradient and coefficients stay in the first cache.
-const TILE: usize = 512;
 /// From this many sites on, the tiles of one image are shared among threads.
 const LONG: usize = 32 * 1024;
 
@@ -21,6 +19,7 @@ pub struct Hamiltonian {
     sites: usize,
     periodic: bool,
     frozen: Vec<bool>,
+    has_frozen: bool,
     terms: Vec<Box<dyn EnergyTerm>>,
     blocks: Blocks,
     reach: usize,
@@ -44,6 +43,7 @@ impl Hamiltonian {
         let mut h = Hamiltonian {
             sites: chain.sites,
             periodic: chain.periodic,
+            has_frozen: frozen.contains(&true),
             frozen,
             terms,
             blocks: Blocks::zeros(0, 0),
@@ -53,8 +53,8 @@ impl Hamiltonian {
             evaluations: AtomicUsize::new(0),
         };
         h.blocks = h.blocks_of(|t| t.is_quadratic(), Components::new(&vec![0.0; 3 * h.sites]));
-        let diagonal = |b: &super::blocks::Block| b[0][0].abs() + b[1][1].abs() + b[2][2].abs();
-        h.stiffness = h.blocks.site.iter().map(diagonal).fold(1e-280, f64::max);
+        let diagonal = |b: super::blocks::Block| b[0][0].abs() + b[1][1].abs() + b[2][2].abs();
+        h.stiffness = h.blocks.sites().map(diagonal).fold(1e-280, f64::max);
         for axis in [Direction::X, Direction::Y, Direction::Z] {
             let mut g = vec![0.0; 3 * h.sites];
             h.energy_gradient(Spins::uniform(h.sites, axis).as_slice(), &mut g);
@@ -95,7 +95,7 @@ impl Hamiltonian {
 
     /// Whether any site never moves.
     pub fn has_frozen(&self) -> bool {
-        self.frozen.contains(&true)
+        self.has_frozen
     }
 
     /// The terms, in the order of the config.
@@ -124,19 +124,6 @@ impl Hamiltonian {
         self.axes.iter().copied().filter(fixed).collect()
     }
 
-    /// The fields axis × m (3N numbers each): directions in which the energy does not change.
-    pub fn rotation_modes(&self, m: &[f64], axes: &[Vector]) -> Vec<Vec<f64>> {
-        let m = Components::new(m);
-        let field = |axis: &Vector| {
-            let mut z = vec![0.0; 3 * self.sites];
-            for i in 0..self.sites {
-                ComponentsMut::new(&mut z).set(i, vector::cross(*axis, m.get(i)));
-            }
-            z
-        };
-        axes.iter().map(field).collect()
-    }
-
     /// Energy of the terms' reference states (meV): E = reference + energy above it.
     pub fn reference_mev(&self) -> f64 {
         self.terms.iter().map(|t| t.reference_mev()).sum()
@@ -151,13 +138,16 @@ impl Hamiltonian {
             g.x.fill(0.0);
             g.y.fill(0.0);
             g.z.fill(0.0);
-            self.terms.iter().map(|t| t.add_gradient(m, g.reborrow(), range.clone())).sum()
+            let mut density = [0.0; TILE];
+            for t in &self.terms {
+                t.add_gradient(m, g.reborrow(), &mut density[..range.len()], range.clone());
+            }
+            slab::sum(&density[..range.len()])
         };
-        let tiles = split(g, TILE);
         let sums: Vec<f64> = if self.sites >= LONG {
-            tiles.into_par_iter().map(tile).collect()
+            tiles(g).collect::<Vec<_>>().into_par_iter().map(tile).collect()
         } else {
-            tiles.into_iter().map(tile).collect()
+            tiles(g).map(tile).collect()
         };
         slab::sum(&sums)
     }
@@ -178,9 +168,13 @@ impl Hamiltonian {
 
     /// Clears a vector field on the frozen sites.
     pub fn hold_frozen(&self, v: &mut [f64]) {
-        if self.has_frozen() {
-            let mut v = ComponentsMut::new(v);
-            for i in (0..self.sites).filter(|&i| self.frozen[i]) {
+        self.hold_frozen_row(0, ComponentsMut::new(v));
+    }
+
+    /// Clears a row of a vector field, from site `first` on, on the frozen sites.
+    pub fn hold_frozen_row(&self, first: usize, mut v: ComponentsMut) {
+        if self.has_frozen {
+            for i in (0..v.x.len()).filter(|i| self.frozen[first + i]) {
                 v.set(i, [0.0; 3]);
             }
         }
@@ -190,7 +184,7 @@ impl Hamiltonian {
     pub fn density(&self, m: &[f64]) -> Vec<f64> {
         let mut density = vec![0.0; self.sites];
         for t in &self.terms {
-            t.add_density(Components::new(m), &mut density);
+            super::add_density(t.as_ref(), m, &mut density);
         }
         density
     }
@@ -199,9 +193,7 @@ impl Hamiltonian {
     pub fn energies_mev(&self, m: &[f64]) -> Vec<(&'static str, f64)> {
         let mut sums: Vec<(&'static str, f64)> = Vec::new();
         for t in &self.terms {
-            let mut density = vec![0.0; self.sites];
-            t.add_density(Components::new(m), &mut density);
-            let e = t.reference_mev() + slab::sum(&density);
+            let e = t.reference_mev() + slab::sum(&super::density_of(t.as_ref(), m));
             match sums.iter_mut().find(|(name, _)| *name == t.name()) {
                 Some((_, sum)) => *sum += e,
                 None => sums.push((t.name(), e)),

@@ -7,94 +7,296 @@
 //! along its basis vector a; shells 1 … r give the half-bandwidth 2r + 1, and the last r sites of a ring are the rim.
 
 use super::Hamiltonian;
-use super::blocks::{Blocks, multiply};
+use super::blocks::{Blocks, Bonds, multiply};
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Vector, tangent_basis, vector};
 use crate::linalg::Banded;
+use multiversion::multiversion;
+use std::ops::Range;
 
-/// Two orthonormal tangent vectors a site.
+/// Two orthonormal tangent vectors a site, each as a component-major field.
 #[derive(Clone, Debug, Default)]
 pub struct TangentBasis {
-    pairs: Vec<[Vector; 2]>,
+    first: Vec<f64>,
+    second: Vec<f64>,
 }
 
 impl TangentBasis {
     /// The basis at a configuration.
     pub fn at(m: &[f64]) -> TangentBasis {
-        let m = Components::new(m);
-        let pairs = (0..m.sites()).map(|i| tangent_basis(m.get(i)).into()).collect();
-        TangentBasis { pairs }
+        let mut basis = TangentBasis::default();
+        basis.set(m);
+        basis
+    }
+
+    /// Makes it the basis at `m`, in the memory it has.
+    pub fn set(&mut self, m: &[f64]) {
+        self.first.resize(m.len(), 0.0);
+        self.second.resize(m.len(), 0.0);
+        let (e, f) = (ComponentsMut::new(&mut self.first), ComponentsMut::new(&mut self.second));
+        write_basis(Components::new(m), e.x, e.y, e.z, f.x, f.y, f.z);
+    }
+
+    /// The two vectors at site i.
+    #[inline(always)]
+    pub fn pair(&self, i: usize) -> [Vector; 2] {
+        let n = self.first.len() / 3;
+        let vector = |slab: &[f64]| [slab[i], slab[n + i], slab[2 * n + i]];
+        [vector(&self.first), vector(&self.second)]
+    }
+
+    /// The two fields on a row of sites.
+    #[inline(always)]
+    fn range(&self, row: Range<usize>) -> (Components<'_>, Components<'_>) {
+        (Components::new(&self.first).range(row.clone()), Components::new(&self.second).range(row))
     }
 
     /// Tangent coordinates (2N) of a vector field (3N).
     pub fn coordinates(&self, v: &[f64]) -> Vec<f64> {
-        let v = Components::new(v);
-        let mut t = Vec::with_capacity(2 * v.sites());
-        for (i, [e, f]) in self.pairs.iter().enumerate() {
-            t.push(vector::dot(*e, v.get(i)));
-            t.push(vector::dot(*f, v.get(i)));
-        }
+        let mut t = Vec::new();
+        self.write_coordinates(v, &mut t);
         t
+    }
+
+    /// [`coordinates`](Self::coordinates) into the memory of `t`.
+    pub fn write_coordinates(&self, v: &[f64], t: &mut Vec<f64>) {
+        t.clear();
+        t.resize(2 * v.len() / 3, 0.0);
+        self.add_coordinates(1.0, v, t);
+    }
+
+    /// Tangent coordinates (2N) of a rotation of all spins about `axis`: a direction in which the energy does not change,
+    /// where the axis is one of symmetry.
+    pub fn rotation(&self, axis: Vector) -> Vec<f64> {
+        let mut t = Vec::new();
+        self.write_rotation(axis, &mut t);
+        t
+    }
+
+    /// [`rotation`](Self::rotation) into the memory of `t`: of axis × m, whose coordinates are axis·f and −axis·e.
+    pub fn write_rotation(&self, axis: Vector, t: &mut Vec<f64>) {
+        t.resize(2 * self.first.len() / 3, 0.0);
+        write_rotation(axis, Components::new(&self.first), Components::new(&self.second), t);
+    }
+
+    /// Adds s times the tangent coordinates (2N) of a vector field (3N) to `t`.
+    pub fn add_coordinates(&self, s: f64, v: &[f64], t: &mut [f64]) {
+        add_coordinates(s, Components::new(&self.first), Components::new(&self.second), Components::new(v), t);
     }
 
     /// Writes the vector field (3N) of tangent coordinates (2N).
     pub fn field(&self, t: &[f64], v: &mut [f64]) {
-        let mut v = ComponentsMut::new(v);
-        for (i, [e, f]) in self.pairs.iter().enumerate() {
-            v.set(i, vector::add(vector::scale(t[2 * i], *e), vector::scale(t[2 * i + 1], *f)));
-        }
+        let v = ComponentsMut::new(v);
+        let (e, f) = (Components::new(&self.first), Components::new(&self.second));
+        write_component(t, e.x, f.x, v.x);
+        write_component(t, e.y, f.y, v.y);
+        write_component(t, e.z, f.z, v.z);
     }
 }
 
-/// An empty matrix of the shape that [`assemble`] fills.
-pub(super) fn shape(sites: usize, reach: usize, periodic: bool) -> Banded {
-    let rim = if periodic { reach } else { 0 };
-    Banded::zeros(2 * (sites - rim), 2 * reach + 1, 2 * rim)
+#[multiversion(targets("x86_64+avx2"))]
+fn write_basis(
+    m: Components,
+    ex: &mut [f64],
+    ey: &mut [f64],
+    ez: &mut [f64],
+    fx: &mut [f64],
+    fy: &mut [f64],
+    fz: &mut [f64],
+) {
+    let n = m.x.len();
+    let (x, y, z) = (&m.x[..n], &m.y[..n], &m.z[..n]);
+    let (ex, ey, ez) = (&mut ex[..n], &mut ey[..n], &mut ez[..n]);
+    let (fx, fy, fz) = (&mut fx[..n], &mut fy[..n], &mut fz[..n]);
+    for i in 0..n {
+        let (e, f) = tangent_basis([x[i], y[i], z[i]]);
+        (ex[i], ey[i], ez[i]) = (e[0], e[1], e[2]);
+        (fx[i], fy[i], fz[i]) = (f[0], f[1], f[2]);
+    }
+}
+
+#[multiversion(targets("x86_64+avx2"))]
+fn add_coordinates(s: f64, e: Components, f: Components, v: Components, t: &mut [f64]) {
+    let n = v.x.len();
+    let (vx, vy, vz) = (&v.x[..n], &v.y[..n], &v.z[..n]);
+    let (ex, ey, ez) = (&e.x[..n], &e.y[..n], &e.z[..n]);
+    let (fx, fy, fz) = (&f.x[..n], &f.y[..n], &f.z[..n]);
+    let t = &mut t[..2 * n];
+    for i in 0..n {
+        t[2 * i] += s * (ex[i] * vx[i] + ey[i] * vy[i] + ez[i] * vz[i]);
+        t[2 * i + 1] += s * (fx[i] * vx[i] + fy[i] * vy[i] + fz[i] * vz[i]);
+    }
+}
+
+#[multiversion(targets("x86_64+avx2"))]
+fn write_rotation(axis: Vector, e: Components, f: Components, t: &mut [f64]) {
+    let n = e.x.len();
+    let (ex, ey, ez) = (&e.x[..n], &e.y[..n], &e.z[..n]);
+    let (fx, fy, fz) = (&f.x[..n], &f.y[..n], &f.z[..n]);
+    let t = &mut t[..2 * n];
+    for i in 0..n {
+        t[2 * i] = axis[0] * fx[i] + axis[1] * fy[i] + axis[2] * fz[i];
+        t[2 * i + 1] = -(axis[0] * ex[i] + axis[1] * ey[i] + axis[2] * ez[i]);
+    }
+}
+
+#[multiversion(targets("x86_64+avx2"))]
+fn write_component(t: &[f64], e: &[f64], f: &[f64], v: &mut [f64]) {
+    let n = v.len();
+    let (t, e, f) = (&t[..2 * n], &e[..n], &f[..n]);
+    for i in 0..n {
+        v[i] = t[2 * i] * e[i] + t[2 * i + 1] * f[i];
+    }
 }
 
 /// The Riemannian Hessian at `m`, where the Euclidean gradient is `g`. A frozen site has a stiff diagonal and no couplings.
 pub fn assemble(h: &Hamiltonian, m: &[f64], g: &[f64], basis: &TangentBasis) -> Banded {
-    let mut matrix = shape(h.sites(), h.reach(), h.periodic());
-    let own;
-    let blocks = match h.varying_blocks(Components::new(m)) {
-        Some(b) => {
-            own = b;
-            &own
-        }
-        None => h.constant_blocks(),
-    };
-    let (m, g) = (Components::new(m), Components::new(g));
-    for i in 0..h.sites() {
-        if h.is_frozen(i) {
-            matrix.add(2 * i, 2 * i, h.stiffness_mev());
-            matrix.add(2 * i + 1, 2 * i + 1, h.stiffness_mev());
-            continue;
-        }
-        let radial = vector::dot(m.get(i), g.get(i));
-        let [e, f] = basis.pairs[i];
-        let (ae, af) = (multiply(&blocks.site[i], e), multiply(&blocks.site[i], f));
-        matrix.add(2 * i, 2 * i, vector::dot(e, ae) - radial);
-        matrix.add(2 * i + 1, 2 * i, vector::dot(f, ae));
-        matrix.add(2 * i + 1, 2 * i + 1, vector::dot(f, af) - radial);
-    }
-    add_bonds(h, blocks, basis, &mut matrix);
+    let mut matrix = Banded::default();
+    assemble_shifted(h, m, g, basis, 0.0, &mut matrix);
     matrix
 }
 
-fn add_bonds(h: &Hamiltonian, blocks: &Blocks, basis: &TangentBasis, matrix: &mut Banded) {
-    let sites = h.sites();
-    for (k, bonds) in blocks.bond.iter().enumerate() {
-        let n = k + 1;
-        let last = if h.periodic() { sites } else { sites.saturating_sub(n) };
-        for i in 0..last {
-            let j = (i + n) % sites;
-            if h.is_frozen(i) || h.is_frozen(j) {
-                continue;
+/// [`assemble`] of H + shift·1 into the memory of `matrix`.
+pub fn assemble_shifted(h: &Hamiltonian, m: &[f64], g: &[f64], basis: &TangentBasis, shift: f64, matrix: &mut Banded) {
+    let rim = if h.periodic() { h.reach() } else { 0 };
+    matrix.reset(2 * (h.sites() - rim), 2 * h.reach() + 1, 2 * rim);
+    let own = h.varying_blocks(Components::new(m));
+    let parts = Parts {
+        h,
+        m: Components::new(m),
+        g: Components::new(g),
+        blocks: own.as_ref().unwrap_or(h.constant_blocks()),
+        basis,
+        shift,
+    };
+    let plain = if h.has_frozen() { 0 } else { (h.sites() - rim).saturating_sub(h.reach()) };
+    parts.write_plain(plain, matrix);
+    for i in plain..h.sites() {
+        parts.add_site(i, matrix);
+    }
+}
+
+/// Sites in one pass of the kernels.
+const ROW: usize = 256;
+
+/// (ee, fe, ff) of a row of sites.
+#[multiversion(targets("x86_64+avx2"))]
+fn diagonals(parts: &Parts, row: Range<usize>, out: &mut [[f64; ROW]; 4]) {
+    let n = row.len().min(ROW);
+    let [xx, yy, zz, yz, zx, xy] = [0, 1, 2, 3, 4, 5].map(|c: usize| &parts.blocks.site[c][row.clone()][..n]);
+    let (m, g) = (parts.m.range(row.clone()), parts.g.range(row.clone()));
+    let (e, f) = parts.basis.range(row);
+    let [ee, fe, ff, _] = out;
+    for i in 0..n {
+        let radial = m.x[i] * g.x[i] + m.y[i] * g.y[i] + m.z[i] * g.z[i];
+        let stiff = parts.shift - radial;
+        let ax = xx[i] * e.x[i] + xy[i] * e.y[i] + zx[i] * e.z[i];
+        let ay = xy[i] * e.x[i] + yy[i] * e.y[i] + yz[i] * e.z[i];
+        let az = zx[i] * e.x[i] + yz[i] * e.y[i] + zz[i] * e.z[i];
+        let bx = xx[i] * f.x[i] + xy[i] * f.y[i] + zx[i] * f.z[i];
+        let by = xy[i] * f.x[i] + yy[i] * f.y[i] + yz[i] * f.z[i];
+        let bz = zx[i] * f.x[i] + yz[i] * f.y[i] + zz[i] * f.z[i];
+        ee[i] = e.x[i] * ax + e.y[i] * ay + e.z[i] * az + stiff;
+        fe[i] = f.x[i] * ax + f.y[i] * ay + f.z[i] * az;
+        ff[i] = f.x[i] * bx + f.y[i] * by + f.z[i] * bz + stiff;
+    }
+}
+
+/// The couplings (e e', e f', f e', f f') of a row of sites to their partners' e' and f', n sites on.
+#[multiversion(targets("x86_64+avx2"))]
+fn couplings(parts: &Parts, bonds: &Bonds, n: usize, row: Range<usize>, out: &mut [[f64; ROW]; 4]) {
+    let length = row.len().min(ROW);
+    let ((e, f), (p, q)) = (parts.basis.range(row.clone()), parts.basis.range(row.start + n..row.end + n));
+    let j = &bonds.isotropic[row.clone()][..length];
+    let [ep, eq, fp, fq] = out;
+    for i in 0..length {
+        ep[i] = j[i] * (e.x[i] * p.x[i] + e.y[i] * p.y[i] + e.z[i] * p.z[i]);
+        eq[i] = j[i] * (e.x[i] * q.x[i] + e.y[i] * q.y[i] + e.z[i] * q.z[i]);
+        fp[i] = j[i] * (f.x[i] * p.x[i] + f.y[i] * p.y[i] + f.z[i] * p.z[i]);
+        fq[i] = j[i] * (f.x[i] * q.x[i] + f.y[i] * q.y[i] + f.z[i] * q.z[i]);
+    }
+    if !bonds.rest.is_empty() {
+        for (i, block) in bonds.rest[row].iter().enumerate() {
+            let (e, f) = (e.get(i), f.get(i));
+            let (ap, aq) = (multiply(block, p.get(i)), multiply(block, q.get(i)));
+            ep[i] += vector::dot(e, ap);
+            eq[i] += vector::dot(e, aq);
+            fp[i] += vector::dot(f, ap);
+            fq[i] += vector::dot(f, aq);
+        }
+    }
+}
+
+/// What a Hessian is made of.
+struct Parts<'a> {
+    h: &'a Hamiltonian,
+    m: Components<'a>,
+    g: Components<'a>,
+    blocks: &'a Blocks,
+    basis: &'a TangentBasis,
+    shift: f64,
+}
+
+impl Parts<'_> {
+    /// (ee, fe, ff) of a site.
+    #[inline(always)]
+    fn diagonal(&self, i: usize) -> (f64, f64, f64) {
+        let [e, f] = self.basis.pair(i);
+        let block = self.blocks.at_site(i);
+        let stiff = self.shift - vector::dot(self.m.get(i), self.g.get(i));
+        let (ae, af) = (multiply(&block, e), multiply(&block, f));
+        (vector::dot(e, ae) + stiff, vector::dot(f, ae), vector::dot(f, af) + stiff)
+    }
+
+    /// The couplings of site i to its partner j of a shell: rows (e, f) of j, columns (e, f) of i.
+    #[inline(always)]
+    fn coupling(&self, bonds: &Bonds, i: usize, j: usize) -> [[f64; 2]; 2] {
+        let ([e, f], [p, q]) = (self.basis.pair(i), self.basis.pair(j));
+        let (ap, aq) = (bonds.multiply(i, p), bonds.multiply(i, q));
+        [[vector::dot(e, ap), vector::dot(f, ap)], [vector::dot(e, aq), vector::dot(f, aq)]]
+    }
+
+    /// Writes the columns of the sites before `end`, all of whose later partners come after them in the band: the entries
+    /// from the diagonal down, row after row of sites.
+    fn write_plain(&self, end: usize, matrix: &mut Banded) {
+        let mut entries = [[0.0; ROW]; 4];
+        for first in (0..end).step_by(ROW) {
+            let here = first..end.min(first + ROW);
+            let columns = || here.clone().zip(0..);
+            diagonals(self, here.clone(), &mut entries);
+            let [ee, fe, ff, _] = &entries;
+            for ((_, i), pair) in columns().zip(matrix.column_pairs(first)) {
+                let second = pair.len() / 2;
+                (pair[0], pair[1], pair[second]) = (ee[i], fe[i], ff[i]);
             }
-            for (b, f) in basis.pairs[j].iter().enumerate() {
-                let column = multiply(&bonds[i], *f);
-                for (a, e) in basis.pairs[i].iter().enumerate() {
-                    matrix.add(2 * j + b, 2 * i + a, vector::dot(*e, column));
+            for (k, bonds) in self.blocks.bond.iter().enumerate() {
+                couplings(self, bonds, k + 1, here.clone(), &mut entries);
+                let [ee, ef, fe, ff] = &entries;
+                for ((_, i), pair) in columns().zip(matrix.column_pairs(first)) {
+                    let second = pair.len() / 2 - 1;
+                    (pair[2 * k + 2], pair[second + 2 * k + 2]) = (ee[i], fe[i]);
+                    (pair[2 * k + 3], pair[second + 2 * k + 3]) = (ef[i], ff[i]);
+                }
+            }
+        }
+    }
+
+    /// Adds a site and the bonds that start there, wherever their partners are.
+    fn add_site(&self, i: usize, matrix: &mut Banded) {
+        let (sites, h) = (self.h.sites(), self.h);
+        let (ee, fe, ff) = match h.is_frozen(i) {
+            true => (h.stiffness_mev() + self.shift, 0.0, h.stiffness_mev() + self.shift),
+            false => self.diagonal(i),
+        };
+        matrix.add(2 * i, 2 * i, ee);
+        matrix.add(2 * i + 1, 2 * i, fe);
+        matrix.add(2 * i + 1, 2 * i + 1, ff);
+        for (k, bonds) in self.blocks.bond.iter().enumerate() {
+            let (n, j) = (k + 1, (i + k + 1) % sites);
+            if (i + n < sites || h.periodic()) && !h.is_frozen(i) && !h.is_frozen(j) {
+                for (b, row) in self.coupling(bonds, i, j).iter().enumerate() {
+                    matrix.add(2 * j + b, 2 * i, row[0]);
+                    matrix.add(2 * j + b, 2 * i + 1, row[1]);
                 }
             }
         }

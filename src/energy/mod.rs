@@ -17,12 +17,12 @@ mod spec;
 mod zeeman;
 
 pub use anisotropy::{Anisotropy, AnisotropySpec};
-pub use blocks::Blocks;
+pub use blocks::{Blocks, Bonds};
 pub use cubic_anisotropy::{CubicAnisotropy, CubicAnisotropySpec};
 pub use dmi::{Dmi, DmiSpec};
 pub use exchange::{Exchange, ExchangeSpec};
 pub use hamiltonian::Hamiltonian;
-pub use hessian::{TangentBasis, assemble};
+pub use hessian::{TangentBasis, assemble, assemble_shifted};
 pub use spec::{Medium, TermBuilder, TermSpec};
 pub use zeeman::{Zeeman, ZeemanSpec};
 
@@ -30,6 +30,19 @@ use crate::field::{Components, ComponentsMut};
 use crate::geometry::Vector;
 use std::fmt::Debug;
 use std::ops::Range;
+
+/// Each site's share of a term's energy above its reference (meV), at the configuration `m` (3N components).
+pub fn density_of(term: &dyn EnergyTerm, m: &[f64]) -> Vec<f64> {
+    let mut density = vec![0.0; m.len() / 3];
+    add_density(term, m, &mut density);
+    density
+}
+
+/// Adds [`density_of`] a term.
+fn add_density(term: &dyn EnergyTerm, m: &[f64], density: &mut [f64]) {
+    let mut gradient = vec![0.0; m.len()];
+    term.add_gradient(Components::new(m), ComponentsMut::new(&mut gradient), density, 0..m.len() / 3);
+}
 
 /// One contribution to the energy of a chain of N classical unit spins.
 ///
@@ -43,12 +56,9 @@ pub trait EnergyTerm: Debug + Send + Sync {
     /// Energy of the reference state (meV), a constant.
     fn reference_mev(&self) -> f64;
 
-    /// Adds each site's share of the energy above the reference (meV); a bond's energy belongs to its lower site.
-    fn add_density(&self, m: Components, density: &mut [f64]);
-
-    /// Adds ∂E/∂m (meV) on the sites of `range` to `g` (which covers just them), as if the components were free.
-    /// Returns the energy density summed over `range`.
-    fn add_gradient(&self, m: Components, g: ComponentsMut, range: Range<usize>) -> f64;
+    /// Adds ∂E/∂m (meV) on the sites of `range` to `g`, as if the components were free, and each site's share of the energy
+    /// above the reference (meV) to `density`; a bond's energy belongs to its lower site. Both cover just `range`.
+    fn add_gradient(&self, m: Components, g: ComponentsMut, density: &mut [f64], range: Range<usize>);
 
     /// Adds (∂²E/∂m∂m) v (meV) to `out`.
     fn add_hessian_product(&self, m: Components, v: Components, out: ComponentsMut);

@@ -59,6 +59,13 @@ pub fn exp(s: Vector, v: Vector) -> Vector {
     unit_or(add(scale(cos, s), scale(sinc, v)), s)
 }
 
+/// [`exp`] for |v| ≤ ½, to the same bits, without a branch: loops over it vectorise.
+#[inline(always)]
+pub(crate) fn exp_short(s: Vector, v: Vector) -> Vector {
+    let x = dot(v, v);
+    unit_or(add(scale(polynomial(&COS, x), s), scale(polynomial(&SINC, x), v)), s)
+}
+
 /// cos √x and sinc √x.
 #[inline]
 fn cos_sinc(x: f64) -> (f64, f64) {

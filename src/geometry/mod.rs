@@ -26,6 +26,7 @@ pub use angle::angle;
 pub use arc::{Arc, Steps};
 pub use basis::tangent_basis;
 pub use direction::Direction;
+pub(crate) use exp_log::exp_short;
 pub use exp_log::{exp, log, log_about};
 pub use filter::low_pass;
 pub use lerp::{lerp, nlerp};

@@ -4,21 +4,22 @@
 //!   ⎡ T   Rᵀ ⎤   T: n × n, half-bandwidth w          (the open chain)
 //!   ⎣ R   C  ⎦   R: b × n dense, C: b × b             (the sites that close a ring)
 //! ```
-//! The factorisation A = L D Lᵀ without pivoting costs O(n (w + b)²) and gives solutions, the inertia (Sylvester: the
-//! signs of D are those of the eigenvalues) and ln|det|.
+//! Factorised by [`Ldl`].
+
+use super::{Ldl, slab};
 
 /// A symmetric matrix of `inner` banded unknowns followed by `border` unknowns coupled to all.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Banded {
-    inner: usize,
-    width: usize,
-    border: usize,
+    pub(super) inner: usize,
+    pub(super) width: usize,
+    pub(super) border: usize,
     /// Column by column, diagonal first: band[j (w+1) + k] = A[j+k][j].
-    band: Vec<f64>,
+    pub(super) band: Vec<f64>,
     /// rim[j b + r] = A[n+r][j].
-    rim: Vec<f64>,
+    pub(super) rim: Vec<f64>,
     /// corner[r b + s] = A[n+r][n+s], lower half used.
-    corner: Vec<f64>,
+    pub(super) corner: Vec<f64>,
 }
 
 impl Banded {
@@ -31,6 +32,16 @@ impl Banded {
             band: vec![0.0; (inner + width) * (width + 1)],
             rim: vec![0.0; inner * border],
             corner: vec![0.0; border * border],
+        }
+    }
+
+    /// Makes it a zero matrix of the given shape, in the memory it has.
+    pub fn reset(&mut self, inner: usize, width: usize, border: usize) {
+        (self.inner, self.width, self.border) = (inner, width, border);
+        let lengths = [(inner + width) * (width + 1), inner * border, border * border];
+        for (entries, length) in [&mut self.band, &mut self.rim, &mut self.corner].into_iter().zip(lengths) {
+            entries.clear();
+            entries.resize(length, 0.0);
         }
     }
 
@@ -58,6 +69,12 @@ impl Banded {
         } else {
             self.corner[(i - self.inner) * self.border + j - self.inner] += v;
         }
+    }
+
+    /// The columns 2i and 2i + 1 together, for each i from `first` on, from the diagonal down: w + 1 entries each.
+    pub fn column_pairs(&mut self, first: usize) -> impl Iterator<Item = &mut [f64]> {
+        let pair = 2 * (self.width + 1);
+        self.band[first * pair..self.inner * (self.width + 1)].chunks_exact_mut(pair)
     }
 
     /// Entry (i, j); zero outside the band.
@@ -142,176 +159,16 @@ impl Banded {
         sums.into_iter().fold(0.0, f64::max)
     }
 
-    /// A = L D Lᵀ. A pivot smaller than the rounding error of the matrix is replaced by that error's size, sign kept.
-    pub fn factor(mut self) -> Ldl {
-        let floor = 4.0 * f64::EPSILON * self.norm1().max(1e-280);
-        match (self.width, self.border) {
-            (1, 0) => eliminate(&mut self, 1, 0, floor),
-            (3, 0) => eliminate(&mut self, 3, 0, floor),
-            (3, 2) => eliminate(&mut self, 3, 2, floor),
-            (5, 0) => eliminate(&mut self, 5, 0, floor),
-            (w, b) => eliminate(&mut self, w, b, floor),
-        }
-        Ldl { a: self }
-    }
-}
-
-/// Right-looking elimination in place; `w` and `b` are passed so that constants propagate.
-#[inline(always)]
-fn eliminate(m: &mut Banded, w: usize, b: usize, floor: f64) {
-    let stride = w + 1;
-    for j in 0..m.inner {
-        let (head, tail) = m.band.split_at_mut((j + 1) * stride);
-        let column = &mut head[j * stride..];
-        let d = guarded(column[0], floor);
-        column[0] = d;
-        let inverse = 1.0 / d;
-        for k in 1..=w {
-            let l = column[k] * inverse;
-            let target = &mut tail[(k - 1) * stride..k * stride];
-            for q in k..=w {
-                target[q - k] -= l * column[q];
-            }
-        }
-        if b > 0 {
-            let (rim, later) = m.rim.split_at_mut((j + 1) * b);
-            let rim = &mut rim[j * b..];
-            for k in 1..=w.min(m.inner - 1 - j) {
-                let l = column[k] * inverse;
-                for r in 0..b {
-                    later[(k - 1) * b + r] -= l * rim[r];
-                }
-            }
-            for r in 0..b {
-                let l = rim[r] * inverse;
-                for s in 0..=r {
-                    m.corner[r * b + s] -= l * rim[s];
-                }
-            }
-            for r in 0..b {
-                rim[r] *= inverse;
-            }
-        }
-        for k in 1..=w {
-            column[k] *= inverse;
-        }
-    }
-    for j in 0..b {
-        let d = guarded(m.corner[j * b + j], floor);
-        m.corner[j * b + j] = d;
-        for r in j + 1..b {
-            let l = m.corner[r * b + j] / d;
-            for s in j + 1..=r {
-                m.corner[r * b + s] -= l * m.corner[s * b + j];
-            }
-        }
-        for r in j + 1..b {
-            m.corner[r * b + j] /= d;
-        }
-    }
-}
-
-#[inline(always)]
-fn guarded(d: f64, floor: f64) -> f64 {
-    if d.abs() < floor { if d < 0.0 { -floor } else { floor } } else { d }
-}
-
-/// The factors L and D of a [`Banded`] matrix.
-#[derive(Clone, Debug)]
-pub struct Ldl {
-    a: Banded,
-}
-
-impl Ldl {
-    fn pivots(&self) -> impl Iterator<Item = f64> + '_ {
-        let (s, b) = (self.a.width + 1, self.a.border);
-        let band = (0..self.a.inner).map(move |j| self.a.band[j * s]);
-        band.chain((0..b).map(move |r| self.a.corner[r * b + r]))
+    /// A = L D Lᵀ, in the memory of A. A pivot smaller than the rounding error of the matrix is replaced by that error's
+    /// size, sign kept.
+    pub fn factor(self) -> Ldl {
+        Ldl::of(self)
     }
 
-    /// Number of negative eigenvalues of A.
-    pub fn negatives(&self) -> usize {
-        self.pivots().filter(|d| *d < 0.0).count()
-    }
-
-    /// ln|det A|.
-    pub fn log_abs_determinant(&self) -> f64 {
-        self.pivots().map(|d| libm::log(d.abs())).sum()
-    }
-
-    /// Solves A X = B in place for `columns` right-hand sides, interleaved: x[j columns + c].
-    pub fn solve(&self, x: &mut [f64], columns: usize) {
-        let (w, b) = (self.a.width, self.a.border);
-        match (w, b, columns) {
-            (3, 0, 1) => substitute(&self.a, 3, 0, 1, x),
-            (3, 0, 2) => substitute(&self.a, 3, 0, 2, x),
-            (3, 0, 3) => substitute(&self.a, 3, 0, 3, x),
-            (5, 0, 1) => substitute(&self.a, 5, 0, 1, x),
-            (5, 0, 2) => substitute(&self.a, 5, 0, 2, x),
-            (3, 2, 1) => substitute(&self.a, 3, 2, 1, x),
-            _ => substitute(&self.a, w, b, columns, x),
-        }
-    }
-}
-
-#[inline(always)]
-fn substitute(m: &Banded, w: usize, b: usize, c: usize, x: &mut [f64]) {
-    let n = m.inner;
-    let stride = w + 1;
-    for j in 0..n {
-        let l = &m.band[j * stride..(j + 1) * stride];
-        let (head, tail) = x.split_at_mut((j + 1) * c);
-        let xj = &head[j * c..];
-        for k in 1..=w.min(n - 1 - j) {
-            for q in 0..c {
-                tail[(k - 1) * c + q] -= l[k] * xj[q];
-            }
-        }
-        for r in 0..b {
-            let rim = m.rim[j * b + r];
-            for q in 0..c {
-                tail[(n + r - j - 1) * c + q] -= rim * xj[q];
-            }
-        }
-    }
-    for r in 0..b {
-        for s in 0..r {
-            for q in 0..c {
-                x[(n + r) * c + q] -= m.corner[r * b + s] * x[(n + s) * c + q];
-            }
-        }
-    }
-    for r in 0..b {
-        for q in 0..c {
-            x[(n + r) * c + q] /= m.corner[r * b + r];
-        }
-    }
-    for r in (0..b).rev() {
-        for s in r + 1..b {
-            for q in 0..c {
-                x[(n + r) * c + q] -= m.corner[s * b + r] * x[(n + s) * c + q];
-            }
-        }
-    }
-    for j in (0..n).rev() {
-        let l = &m.band[j * stride..(j + 1) * stride];
-        let (head, tail) = x.split_at_mut((j + 1) * c);
-        let xj = &mut head[j * c..];
-        let inverse = 1.0 / l[0];
-        for q in 0..c {
-            xj[q] *= inverse;
-        }
-        for k in 1..=w.min(n - 1 - j) {
-            for q in 0..c {
-                xj[q] -= l[k] * tail[(k - 1) * c + q];
-            }
-        }
-        for r in 0..b {
-            let rim = m.rim[j * b + r];
-            for q in 0..c {
-                xj[q] -= rim * tail[(n + r - j - 1) * c + q];
-            }
-        }
+    /// About the largest column sum, from one quick pass: the largest entry times the number of entries in a column.
+    pub(super) fn size(&self) -> f64 {
+        let largest = slab::max_abs(&self.band).max(slab::max_abs(&self.rim)).max(slab::max_abs(&self.corner));
+        largest * (2 * self.width + 1 + self.border) as f64
     }
 }
 

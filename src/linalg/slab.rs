@@ -1,20 +1,28 @@
 //! Long vectors: sums in eight lanes, in a fixed order, so that they vectorise and give the same bits everywhere.
 
+use multiversion::multiversion;
+
 /// a · b.
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     if a.len() > 4096 {
         let half = (a.len() / 2).next_multiple_of(8);
         return dot(&a[..half], &b[..half]) + dot(&a[half..], &b[half..]);
     }
-    let mut lanes = [0.0; 8];
-    let (a8, b8) = (a.chunks_exact(8), b.chunks_exact(8));
-    let rest: f64 = a8.remainder().iter().zip(b8.remainder()).map(|(x, y)| x * y).sum();
-    for (x, y) in a8.zip(b8) {
+    dot_short(a, b)
+}
+
+#[multiversion(targets("x86_64+avx2"))]
+fn dot_short(a: &[f64], b: &[f64]) -> f64 {
+    let (mut low, mut high) = ([0.0; 8], [0.0; 8]);
+    let (a16, b16) = (a.chunks_exact(16), b.chunks_exact(16));
+    let rest: f64 = a16.remainder().iter().zip(b16.remainder()).map(|(x, y)| x * y).sum();
+    for (x, y) in a16.zip(b16) {
         for l in 0..8 {
-            lanes[l] += x[l] * y[l];
+            low[l] += x[l] * y[l];
+            high[l] += x[8 + l] * y[8 + l];
         }
     }
-    fold(lanes) + rest
+    fold(low) + fold(high) + rest
 }
 
 /// Σ a.
@@ -40,29 +48,26 @@ pub fn fold(a: [f64; 8]) -> f64 {
     ((a[0] + a[4]) + (a[1] + a[5])) + ((a[2] + a[6]) + (a[3] + a[7]))
 }
 
-/// What `at` adds up over 0 … `len`, eight lanes at a time: the loop of the energy kernels.
-#[inline(always)]
-pub fn accumulate(len: usize, mut at: impl FnMut(usize, &mut f64)) -> f64 {
-    let mut lanes = [0.0; 8];
-    let whole = len - len % 8;
-    for k in (0..whole).step_by(8) {
-        for (l, lane) in lanes.iter_mut().enumerate() {
-            at(k + l, lane);
-        }
-    }
-    let mut rest = 0.0;
-    for k in whole..len {
-        at(k, &mut rest);
-    }
-    fold(lanes) + rest
-}
-
 /// |a|.
 pub fn norm(a: &[f64]) -> f64 {
     dot(a, a).sqrt()
 }
 
+/// |a − b|, the straight distance.
+pub fn distance(a: &[f64], b: &[f64]) -> f64 {
+    let tile = |(a, b): (&[f64], &[f64])| {
+        let mut difference = [0.0; 512];
+        for (d, (a, b)) in difference.iter_mut().zip(a.iter().zip(b)) {
+            *d = a - b;
+        }
+        dot(&difference, &difference)
+    };
+    let squares: f64 = a.chunks(512).zip(b.chunks(512)).map(tile).sum();
+    squares.sqrt()
+}
+
 /// y ← y + s x.
+#[multiversion(targets("x86_64+avx2"))]
 pub fn add_scaled(y: &mut [f64], s: f64, x: &[f64]) {
     for (y, x) in y.iter_mut().zip(x) {
         *y += s * x;
@@ -76,9 +81,23 @@ pub fn scale(y: &mut [f64], s: f64) {
     }
 }
 
-/// The largest |a_k|; NaN if any entry is NaN.
+/// The largest |a_k|; NaN if any entry is NaN or infinite.
+#[multiversion(targets("x86_64+avx2"))]
 pub fn max_abs(a: &[f64]) -> f64 {
-    a.iter().fold(0.0, |m: f64, x| if m.is_nan() || x.is_nan() { f64::NAN } else { m.max(x.abs()) })
+    let (mut largest, mut poison) = ([0.0; 8], [0.0; 8]);
+    let mut look = |lane: usize, x: f64| {
+        largest[lane] = if x.abs() > largest[lane] { x.abs() } else { largest[lane] };
+        poison[lane] += 0.0 * x;
+    };
+    for eight in a.chunks_exact(8) {
+        for l in 0..8 {
+            look(l, eight[l]);
+        }
+    }
+    for x in a.chunks_exact(8).remainder() {
+        look(0, *x);
+    }
+    largest.iter().fold(0.0, |m: f64, x| m.max(*x)) + fold(poison)
 }
 
 #[cfg(test)]
@@ -96,5 +115,9 @@ mod tests {
         }
         assert!(max_abs(&[1.0, f64::NAN, 2.0]).is_nan());
         assert_eq!(max_abs(&[1.0, -3.0]), 3.0);
+        let mut many: Vec<f64> = (0..99).map(|k| -k as f64).collect();
+        assert_eq!((max_abs(&many), distance(&many, &[0.0; 99])), (98.0, norm(&many)));
+        many[17] = f64::NAN;
+        assert!(max_abs(&many).is_nan());
     }
 }

@@ -9,7 +9,7 @@ mod resample;
 pub use resample::blend;
 
 use crate::field::Components;
-use crate::geometry::angle;
+use crate::sphere::angles_between;
 use crate::spins::Spins;
 use ndarray::Array3;
 use rayon::prelude::*;
@@ -96,13 +96,10 @@ impl Path {
 
 /// Geodesic distance √Σθ² of two configurations (rad).
 pub fn distance(a: &[f64], b: &[f64]) -> f64 {
-    let (a, b) = (Components::new(a), Components::new(b));
-    let squares: Vec<f64> = (0..a.sites()).map(|i| angle(a.get(i), b.get(i)).powi(2)).collect();
-    crate::linalg::slab::sum(&squares).sqrt()
+    angles_between(Components::new(a), Components::new(b)).0.sqrt()
 }
 
 /// The largest angle between spins of the same site (rad).
 pub fn largest_angle(a: &[f64], b: &[f64]) -> f64 {
-    let (a, b) = (Components::new(a), Components::new(b));
-    (0..a.sites()).map(|i| angle(a.get(i), b.get(i))).fold(0.0, f64::max)
+    angles_between(Components::new(a), Components::new(b)).1
 }

@@ -34,8 +34,8 @@ impl State {
         let mut slope = basis.coordinates(&force);
         slab::scale(&mut slope, -1.0);
         let hessian = assemble(h, &m, &gradient, &basis);
-        let modes = h.rotation_modes(&m, &h.symmetry_axes_at(&m));
-        let zeros = orthonormal(modes.iter().map(|z| basis.coordinates(z)).collect(), 1e-6);
+        let zeros = h.symmetry_axes_at(&m).iter().map(|axis| basis.rotation(*axis)).collect();
+        let zeros = orthonormal(zeros, 1e-6);
         State { m, energy_mev, gradient, basis, slope, hessian, zeros }
     }
 
