@@ -41,10 +41,13 @@ pub fn growth_rate(
 impl Linearised<'_> {
     fn eigenvalue(&self, mode: &[f64], lambda1: f64) -> Option<f64> {
         let (mut sigma, mut x) = self.guess(mode, lambda1)?;
+        let hessian = self.hessian();
         let (mut low, mut high) = (0.0, f64::INFINITY);
         let mut before = f64::INFINITY;
+        // the descending curvature is known to the rounding error of the Hessian, and λ₊ goes with it
+        let rounding = (4.0 * f64::EPSILON * self.saddle.hessian.norm1() / -lambda1).clamp(1e-13, 1e-2);
         for _ in 0..ROUNDS {
-            let factors = self.matrix(sigma).factor();
+            let factors = self.shifted(&hessian, sigma).factor();
             if factors.sign() > 0.0 {
                 high = sigma;
             } else {
@@ -58,9 +61,9 @@ impl Linearised<'_> {
             }
             let next = sigma - 1.0 / growth;
             let (aligned, change) = ((growth.abs() / size - 1.0).abs(), (next - sigma).abs());
-            // x was an eigenvector already, and its eigenvalue changes no more, or only by rounding
-            let settled = (aligned < 1e-12 && change <= 1e-13 * sigma)
-                || (aligned < 1e-9 && change <= 1e-6 * sigma && change >= 0.5 * before);
+            // x was an eigenvector already, and its eigenvalue changes by rounding only
+            let settled =
+                aligned < 1e-9 && (change <= rounding * sigma || (change <= 1e-6 * sigma && change >= 0.5 * before));
             before = change;
             if settled || high - low <= 4.0 * f64::EPSILON * low {
                 return Some(if next > 0.0 && settled { next } else { sigma });
@@ -128,8 +131,8 @@ impl Linearised<'_> {
         y
     }
 
-    /// M(σ).
-    fn matrix(&self, sigma: f64) -> General {
+    /// H, in the order of the band.
+    fn hessian(&self) -> General {
         let (n, reach) = (self.sites(), self.h.reach());
         let spread = if self.h.periodic() { 2 * reach } else { reach };
         let mut matrix = General::zeros(2 * n, 2 * spread + 1);
@@ -146,11 +149,19 @@ impl Linearised<'_> {
                     }
                 }
             }
-            let s = sigma * self.slowness[i];
-            matrix.add(2 * p, 2 * p, s * self.damping);
-            matrix.add(2 * p + 1, 2 * p + 1, s * self.damping);
-            matrix.add(2 * p, 2 * p + 1, s);
-            matrix.add(2 * p + 1, 2 * p, -s);
+        }
+        matrix
+    }
+
+    /// M(σ) from H.
+    fn shifted(&self, hessian: &General, sigma: f64) -> General {
+        let mut matrix = hessian.clone();
+        for i in 0..self.sites() {
+            let (p, s) = (2 * self.place(i), sigma * self.slowness[i]);
+            matrix.add(p, p, s * self.damping);
+            matrix.add(p + 1, p + 1, s * self.damping);
+            matrix.add(p, p + 1, s);
+            matrix.add(p + 1, p, -s);
         }
         matrix
     }

@@ -5,7 +5,9 @@ use super::passage::{TEN_YEARS_S, blocking_temperature};
 use super::refusal::{conserved_moment, unfit};
 use super::validity::{Fluctuations, warnings};
 use super::zero_modes::ZeroMode;
-use super::{Equivalents, RateSettings, Theory, ZeroKind, equivalent_saddles, growth_rate, unstable_mode, zero_modes};
+use super::{
+    Equivalents, RateSettings, Theory, Unstable, ZeroKind, equivalent_saddles, growth_rate, unstable_mode, zero_modes,
+};
 use crate::energy::Hamiltonian;
 use crate::saddle::{Spectrum, State};
 use crate::spins::Spins;
@@ -196,6 +198,8 @@ pub fn saddle_rates(h: &Hamiltonian, number: usize, crossing: &Crossing, setting
 struct Well {
     state: State,
     zeros: Vec<ZeroMode>,
+    /// The descending mode of a saddle.
+    unstable: Option<Unstable>,
     pinned: PinnedHessian,
 }
 
@@ -205,12 +209,26 @@ impl Well {
         state: State,
         settings: &RateSettings,
         spectrum: &Spectrum,
-        thermal_mev: f64,
+        valley: Option<&[f64]>,
     ) -> Result<Well, String> {
+        let thermal_mev = K_B * settings.temperatures_k.iter().copied().fold(f64::INFINITY, f64::min);
         let zeros = zero_modes(h, &state, &settings.moments_mub, spectrum.flat, spectrum.floor_mev, thermal_mev)?;
         let directions: Vec<Vec<f64>> = zeros.iter().flat_map(|z| z.modes.clone()).collect();
-        let pinned = PinnedHessian::new(&state.hessian, &directions, h.stiffness_mev() / 3.0);
-        Ok(Well { state, zeros, pinned })
+        let unstable = match valley {
+            None => None,
+            Some(valley) => {
+                Some(unstable_mode(&state, valley, &directions).ok_or("a descending mode that could not be computed")?)
+            }
+        };
+        let descending = unstable.as_ref().map(|u| &u.mode[..]);
+        let pinned = PinnedHessian::new(&state.hessian, &directions, descending, h.stiffness_mev() / 3.0);
+        Ok(Well { state, zeros, unstable, pinned })
+    }
+
+    /// ln|det'H|, the descending mode's |λ₁| included.
+    fn log_determinant(&self) -> f64 {
+        let own = self.unstable.as_ref().map_or(0.0, |u| libm::log(-u.eigenvalue_mev));
+        self.pinned.log_determinant() + own
     }
 
     fn count(&self) -> usize {
@@ -236,18 +254,16 @@ fn computed(
     if let Some(reason) = unfit(crossing) {
         return Err(reason);
     }
-    let thermal_mev = K_B * settings.temperatures_k.iter().copied().fold(f64::INFINITY, f64::min);
-    let top = Well::new(h, crossing.saddle.clone(), settings, crossing.spectrum, thermal_mev)
+    let top = Well::new(h, crossing.saddle.clone(), settings, crossing.spectrum, Some(crossing.valley))
         .map_err(|e| format!("the saddle has {e}"))?;
     let well = |side: usize| {
         let state = State::at(h, crossing.minima[side].as_slice().to_vec());
-        Well::new(h, state, settings, crossing.minima_spectra[side], thermal_mev)
+        Well::new(h, state, settings, crossing.minima_spectra[side], None)
             .map_err(|e| format!("the minimum {} it has {e}", ["before", "after"][side]))
     };
     let wells = [well(0)?, well(1)?];
-    let directions: Vec<Vec<f64>> = top.zeros.iter().flat_map(|z| z.modes.clone()).collect();
-    let Some(unstable) = unstable_mode(&top.state, crossing.valley, &directions) else {
-        return Err("the saddle's descending mode could not be computed".into());
+    let Some(unstable) = top.unstable.clone() else {
+        return Err("the saddle has no descending mode".into());
     };
     let gyration = settings.gyration_per_s_mev();
     let mut refusals = Vec::new();
@@ -280,9 +296,10 @@ fn computed(
     let minima = crossing.minima.map(|m| m.as_slice());
     let equivalents = equivalent_saddles(h, &top.state.m, minima, &settings.moments_mub, translating);
     let spread_top = Fluctuations::of_saddle(h, &top.state, &top.pinned, &unstable);
+    let vague = crossing.spectrum.floor_mev / -unstable.eigenvalue_mev;
     Ok([0, 1].map(|side| {
         let bottom = &wells[side];
-        let entropy = 0.5 * (bottom.pinned.log_determinant() - top.pinned.log_determinant());
+        let entropy = 0.5 * (bottom.log_determinant() - top.log_determinant());
         let exponent = 0.5 * (bottom.count() as f64 - top.count() as f64);
         let volumes = top.ln_volume() - bottom.ln_volume();
         let prefactor = |frequency_per_s: f64| Prefactor {
@@ -305,7 +322,7 @@ fn computed(
             rows: Vec::new(),
             blocking_k: [None, None],
             refused: refusals.clone(),
-            warnings: warnings(settings, barriers[side], [htst, langer], &spread, &spread_top),
+            warnings: warnings(settings, barriers[side], [htst, langer], &spread, &spread_top, vague),
         }
     }))
 }

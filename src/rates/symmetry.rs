@@ -66,13 +66,17 @@ pub fn equivalent_saddles(
         return Equivalents { count: 1, by: "not sought: the energy has no axis".into() };
     }
     let shifts = is_translation_symmetric(h, moments) && minima.iter().all(|m| period(m) == 1);
-    let samples = samples(h.sites());
+    let sample = sample(h.sites());
+    let energy_mev = h.energy_mev(&sample);
     let mut kept: Vec<Vec<f64>> = vec![saddle.to_vec()];
     let off = if shifts_are_free { SAME + 0.6 * largest_step(saddle) } else { SAME };
     let mut by = Vec::new();
     for operation in Operation::all().skip(1) {
         let still = |m: &[f64]| same(&operation.apply(m), m, &axes, SAME);
-        if !still(minima[0]) || !still(minima[1]) || !is_symmetric(h, moments, &samples, |m| operation.apply(m)) {
+        if !still(minima[0])
+            || !still(minima[1])
+            || !is_symmetric(h, moments, &sample, energy_mev, |m| operation.apply(m))
+        {
             continue;
         }
         let image = operation.apply(saddle);
@@ -96,10 +100,10 @@ pub fn equivalent_saddles(
 
 /// Whether a ring's shift by one site leaves the energy and the moments as they are.
 pub(super) fn is_translation_symmetric(h: &Hamiltonian, moments: &[f64]) -> bool {
-    h.periodic()
-        && !h.has_frozen()
-        && moments.iter().all(|n| *n == moments[0])
-        && samples(h.sites()).iter().all(|m| keeps_energy(h, m, &shifted(m, 1)))
+    h.periodic() && !h.has_frozen() && moments.iter().all(|n| *n == moments[0]) && {
+        let m = sample(h.sites());
+        keeps_energy(h, h.energy_mev(&m), &shifted(&m, 1))
+    }
 }
 
 /// After how many sites a ring's state repeats.
@@ -108,23 +112,22 @@ pub(super) fn period(m: &[f64]) -> usize {
     (1..n).filter(|p| n.is_multiple_of(*p)).find(|p| agree(m, m, SAME, |i| (i + p) % n)).unwrap_or(n)
 }
 
-/// Two states without any symmetry.
-fn samples(sites: usize) -> [Vec<f64>; 2] {
+/// A state without any symmetry: what leaves its energy as it is leaves all energies so.
+fn sample(sites: usize) -> Vec<f64> {
     let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(0x5a3e);
-    [0, 1].map(|_| {
-        let mut m = vec![0.0; 3 * sites];
-        for i in 0..sites {
-            let v = [0, 1, 2].map(|_| random.random_range(-1.0..1.0));
-            ComponentsMut::new(&mut m).set(i, vector::unit_or(v, [0.6, 0.0, 0.8]));
-        }
-        m
-    })
+    let mut m = vec![0.0; 3 * sites];
+    for i in 0..sites {
+        let v = [0, 1, 2].map(|_| random.random_range(-1.0..1.0));
+        ComponentsMut::new(&mut m).set(i, vector::unit_or(v, [0.6, 0.0, 0.8]));
+    }
+    m
 }
 
 fn is_symmetric(
     h: &Hamiltonian,
     moments: &[f64],
-    samples: &[Vec<f64>],
+    sample: &[f64],
+    energy_mev: f64,
     operation: impl Fn(&[f64]) -> Vec<f64>,
 ) -> bool {
     // moments and frozen sites, marked in a field that only the sites' order can change
@@ -137,12 +140,11 @@ fn is_symmetric(
         })
         .collect();
     let moved = operation(&marks);
-    moved.iter().zip(&marks).all(|(a, b)| a.abs() == b.abs())
-        && samples.iter().all(|m| keeps_energy(h, m, &operation(m)))
+    moved.iter().zip(&marks).all(|(a, b)| a.abs() == b.abs()) && keeps_energy(h, energy_mev, &operation(sample))
 }
 
-fn keeps_energy(h: &Hamiltonian, a: &[f64], b: &[f64]) -> bool {
-    (h.energy_mev(a) - h.energy_mev(b)).abs() <= 1e-12 * h.stiffness_mev() * (h.sites() as f64)
+fn keeps_energy(h: &Hamiltonian, energy_mev: f64, m: &[f64]) -> bool {
+    (energy_mev - h.energy_mev(m)).abs() <= 1e-12 * h.stiffness_mev() * (h.sites() as f64)
 }
 
 fn shifted(m: &[f64], by: usize) -> Vec<f64> {

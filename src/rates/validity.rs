@@ -11,6 +11,8 @@ use std::f64::consts::PI;
 const LOW_BARRIER: f64 = 5.0;
 /// A mean square deviation of a spin (rad²) from which the harmonic approximation is rough.
 const LARGE: f64 = 0.3;
+/// A relative error of the descending curvature that is worth a word.
+const VAGUE: f64 = 1e-6;
 /// Damping times ΔE/k_BT below which the bath feeds energy slowly.
 const WEAK: f64 = 3.0;
 
@@ -33,8 +35,7 @@ impl Fluctuations {
     /// About a saddle.
     pub fn of_saddle(h: &Hamiltonian, state: &State, pinned: &PinnedHessian, unstable: &Unstable) -> Fluctuations {
         let own = |i: usize| part(&unstable.mode, i) / -unstable.eigenvalue_mev;
-        // the descending mode enters the inverse with its negative curvature: taken out again
-        let around = probes(h, unstable).into_iter().map(|i| mean_square(state, pinned, i) + own(i));
+        let around = probes(h, unstable).into_iter().map(|i| mean_square(state, pinned, i));
         let top = (0..h.sites()).map(own).fold(0.0, f64::max);
         Fluctuations { mean_square_per_mev: around.fold(0.0, f64::max), top_per_mev: top }
     }
@@ -67,13 +68,15 @@ fn mean_square(state: &State, pinned: &PinnedHessian, i: usize) -> f64 {
     entry(0) + entry(1)
 }
 
-/// What a user should know about the rates out of one minimum.
+/// What a user should know about the rates out of one minimum. `vague` is the rounding error of the saddle's descending curvature,
+/// relative to it.
 pub fn warnings(
     settings: &RateSettings,
     barrier_mev: f64,
     [htst, langer]: [Option<Prefactor>; 2],
     minimum: &Fluctuations,
     saddle: &Fluctuations,
+    vague: f64,
 ) -> Vec<String> {
     if htst.is_none() && langer.is_none() {
         return Vec::new();
@@ -85,6 +88,7 @@ pub fn warnings(
         large_fluctuations("saddle", saddle, hottest),
         flat_top(saddle, hottest, htst, langer),
         weak_damping(settings, barrier_mev, langer),
+        vague_curvature(vague, langer),
     ];
     said.into_iter().flatten().collect()
 }
@@ -137,6 +141,15 @@ fn flat_top(saddle: &Fluctuations, hottest: f64, htst: Option<Prefactor>, langer
     };
     (hottest > from)
         .then(|| format!("above {} the top of the path is flat over what k_BT can climb{range}", kelvin(from)))
+}
+
+/// Langer's rate goes with the root of the descending curvature, which may be little more than rounding.
+fn vague_curvature(vague: f64, langer: Option<Prefactor>) -> Option<String> {
+    langer.filter(|_| vague > VAGUE)?;
+    Some(format!(
+        "the curvature of the descending mode is known to {:.1e} of itself only, and Langer's rate to half of that",
+        vague
+    ))
 }
 
 /// A temperature in a few digits.
