@@ -64,7 +64,12 @@ fn the_reference_is_met_by_both_theories_at_all_dampings() {
 
 #[test]
 fn a_moment_twice_as_large_halves_the_prefactor_and_the_closed_form_is_met() {
-    let (k, hard) = (2.0, 0.7);
+    for (k, hard) in [(2.0, 0.7), (1.0, 2.0), (1.0, 1.0), (0.3, 5.0)] {
+        one_spin(k, hard);
+    }
+}
+
+fn one_spin(k: f64, hard: f64) {
     let prefactors = [1.0, 2.0].map(|moment| {
         let problem = Build::open(1).easy(k).hard(hard).reversal();
         let outcome = solve(&with(problem, settings(1, moment, 0.3, 5.0)));

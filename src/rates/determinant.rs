@@ -8,13 +8,15 @@
 //! exactly: what is added makes the zero eigenvalues positive and of ordinary size, and its effect is divided out in closed form.
 //! The same limit as that of the bordered matrix [H Z; Zᵀ 0], whose determinant is (−1)^P det'H.
 //!
-//! The descending mode t of a saddle may be all but flat. It is left out the same way, and the pin taken back through a second
-//! border column, so that no small number is divided by (see `Pinned` of the module `saddle`):
+//! The descending mode t of a saddle is left out too. Its eigenvalue λ₁ is divided out if it is well above the rounding error; if it
+//! is all but flat, it is pinned as well, and the pin taken back through a second border column, so that no small number is
+//! divided by (see `Pinned` of the module `saddle`):
 //!
 //! ```text
 //! C = [t, −e],  S = diag(0, 1/κ) − Cᵀ(H' + κ e eᵀ)⁻¹C,    det'H/λ₁ = −κ det(H' + κ e eᵀ) det S / (κ^P det(EᵀZ)²)
 //! ```
 
+use super::Unstable;
 use crate::linalg::{Banded, Ldl, slab};
 use crate::saddle::pin;
 
@@ -23,12 +25,16 @@ use crate::saddle::pin;
 pub struct PinnedHessian {
     matrix: Banded,
     factors: Ldl,
+    /// Modes that are left out as they are: zero modes, and a stiff descending one.
     zeros: Vec<Vec<f64>>,
     descending: Option<Descending>,
     log_determinant: f64,
 }
 
-/// The border that leaves the descending mode out.
+/// From this part of ‖H‖₁ on an eigenvalue is no small number. (A pin on a stiff mode could make the matrix singular.)
+const STIFF: f64 = 1e-5;
+
+/// The border that leaves a flat descending mode out.
 #[derive(Debug)]
 struct Descending {
     columns: [Vec<f64>; 2],
@@ -39,16 +45,21 @@ struct Descending {
 impl PinnedHessian {
     /// Of a Hessian (meV) with these orthonormal zero modes and, at a saddle, its descending mode (unit, orthogonal to them); κ is
     /// the stiffness of the pins (meV).
-    pub fn new(hessian: &Banded, zeros: &[Vec<f64>], descending: Option<&[f64]>, kappa: f64) -> PinnedHessian {
+    pub fn new(hessian: &Banded, zeros: &[Vec<f64>], descending: Option<&Unstable>, kappa: f64) -> PinnedHessian {
         let mut matrix = hessian.clone();
         let mut used = Vec::new();
         let columns: Vec<Vec<f64>> = zeros.iter().map(|z| pin(&mut matrix, z, &mut used, kappa)).collect();
-        let soft = descending.map(|t| (t.to_vec(), pin(&mut matrix, t, &mut used, kappa)));
+        let flat = descending.filter(|u| -u.eigenvalue_mev < STIFF * hessian.norm1());
+        let soft = flat.map(|u| (u.mode.clone(), pin(&mut matrix, &u.mode, &mut used, kappa)));
         let factors = matrix.clone().factor();
         let overlaps: Vec<f64> = columns.iter().flat_map(|e| zeros.iter().map(move |z| slab::dot(e, z))).collect();
         let added = zeros.len() as f64 * libm::log(kappa) + 2.0 * libm::log(determinant(&overlaps, zeros.len()).abs());
         let log_determinant = factors.log_abs_determinant() - added;
         let mut pinned = PinnedHessian { matrix, factors, zeros: zeros.to_vec(), descending: None, log_determinant };
+        if let Some(u) = descending.filter(|_| soft.is_none()) {
+            pinned.log_determinant -= libm::log(-u.eigenvalue_mev);
+            pinned.zeros.push(u.mode.clone());
+        }
         if let Some((t, mut e)) = soft {
             slab::scale(&mut e, -1.0);
             pinned.leave_out([t, e], kappa);
@@ -175,7 +186,8 @@ mod tests {
                     a.add(i, j, (0..n).map(|k| value(k) * axes[k][i] * axes[k][j]).sum());
                 }
             }
-            let pinned = PinnedHessian::new(&a, &[], Some(&axes[0]), 3.0);
+            let descending = Unstable { eigenvalue_mev: -lambda, mode: axes[0].clone() };
+            let pinned = PinnedHessian::new(&a, &[], Some(&descending), 3.0);
             assert!((pinned.log_determinant() - libm::log(720.0)).abs() < 1e-12, "{lambda}");
             let mut x = axes[1].clone();
             slab::add_scaled(&mut x, 2.0, &axes[0]);

@@ -220,8 +220,7 @@ impl Well {
                 Some(unstable_mode(&state, valley, &directions).ok_or("a descending mode that could not be computed")?)
             }
         };
-        let descending = unstable.as_ref().map(|u| &u.mode[..]);
-        let pinned = PinnedHessian::new(&state.hessian, &directions, descending, h.stiffness_mev() / 3.0);
+        let pinned = PinnedHessian::new(&state.hessian, &directions, unstable.as_ref(), h.stiffness_mev() / 3.0);
         Ok(Well { state, zeros, unstable, pinned })
     }
 
