@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::geometry::Direction;
-use crate::units::Length;
+use crate::units::{Length, Moment};
 use serde::de::{MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
@@ -38,6 +38,19 @@ pub struct Chain {
     /// Spins that never move.
     #[serde(default)]
     pub frozen: Vec<Frozen>,
+    /// Sites whose moment is not the material's.
+    #[serde(default)]
+    pub moments: Vec<SiteMoment>,
+}
+
+/// Sites with a moment of their own.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SiteMoment {
+    /// Which ones.
+    pub sites: Selection,
+    /// The moment of each.
+    pub moment: Moment,
 }
 
 /// Spins that never move.
@@ -54,7 +67,15 @@ pub struct Frozen {
 impl Chain {
     /// A chain of `sites` sites, open, without a length scale.
     pub fn open(sites: usize) -> Chain {
-        Chain { sites, spacing: None, periodic: false, cross_section: None, direction: None, frozen: Vec::new() }
+        Chain {
+            sites,
+            spacing: None,
+            periodic: false,
+            cross_section: None,
+            direction: None,
+            frozen: Vec::new(),
+            moments: Vec::new(),
+        }
     }
 
     /// A ring of `sites` sites, without a length scale.
@@ -96,6 +117,19 @@ impl Chain {
         }
         for (k, f) in self.frozen.iter().enumerate() {
             f.sites.indices(self.sites, "site").map_err(|e| e.within(&format!("frozen[{k}].sites")))?;
+        }
+        let mut entry: Vec<Option<usize>> = vec![None; if self.moments.is_empty() { 0 } else { self.sites }];
+        for (k, m) in self.moments.iter().enumerate() {
+            for i in m.sites.indices(self.sites, "site").map_err(|e| e.within(&format!("moments[{k}].sites")))? {
+                if let Some(first) = entry[i].replace(k) {
+                    let message = format!("site {i} has a moment of its own already, in moments[{first}]");
+                    return Err(Error::invalid(format!("moments[{k}]"), message));
+                }
+            }
+            if m.moment.0 < 0.0 {
+                let message = "found a negative value: a spin is the direction of its moment, so this is not negative";
+                return Err(Error::invalid(format!("moments[{k}].moment"), message));
+            }
         }
         Ok(())
     }

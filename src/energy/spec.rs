@@ -47,6 +47,19 @@ impl Medium<'_> {
         }
     }
 
+    /// Moment of every site (μ_B): the material's, or the site's own.
+    pub fn moments_mub(&self) -> Result<Vec<f64>> {
+        let n = self.chain.sites;
+        let mut own = vec![None; n];
+        for m in &self.chain.moments {
+            for i in m.sites.indices(n, "site").map_err(|e| e.within("sites"))? {
+                own[i] = Some(m.moment.0);
+            }
+        }
+        let common = if own.iter().all(|m| m.is_some()) { 0.0 } else { self.moment_mu_b()? };
+        Ok(own.into_iter().map(|m| m.unwrap_or(common)).collect())
+    }
+
     /// Energy a site (meV).
     pub fn site_energy_mev(&self, k: SiteEnergy) -> Result<f64> {
         match k {
