@@ -2,10 +2,14 @@
 
 pub mod check;
 pub mod list;
+pub mod rate;
 pub mod run;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use spinneb::config::rates;
 use spinneb::error::Error;
+use spinneb::rates::Theory;
+use spinneb::units::Temperature;
 use std::io::{self, ErrorKind, Write};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -29,6 +33,7 @@ Examples:
   spinneb check configs/wall.json       what would run, and whether the config is right
   spinneb run configs/wall.json         find the path; results in results/wall/
   spinneb list terms                    what can be written in a config
+  spinneb rate results/wall --temperature 300K     how long the states live
 
 Exit codes:
   0    converged and certified
@@ -46,6 +51,8 @@ pub enum Command {
     Check(Check),
     /// List what a config can ask for, with a line about each
     List(List),
+    /// Rates and lifetimes over the saddles of results that are there already
+    Rate(Rate),
 }
 
 /// The arguments of `run`.
@@ -108,6 +115,66 @@ pub struct Check {
     /// Change a value of the config first, as in `run`; may be given several times
     #[arg(long, value_name = "KEY.PATH=JSON")]
     pub set: Vec<String>,
+}
+
+/// The arguments of `rate`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+The path is found anew from the result's config.json, since a result does not hold its saddles to all digits; the files of
+the result are written again, with its rates.
+
+Examples:
+  spinneb rate results/wall --temperature \"300 K\"
+  spinneb rate results/* --temperature \"4 K\" --temperature \"77 K\" --damping 0.05 --theory langer")]
+pub struct Rate {
+    /// Folders with finished results
+    #[arg(required = true, value_name = "RESULT_DIR")]
+    pub results: Vec<PathBuf>,
+
+    /// A temperature with its unit; may be given several times
+    #[arg(short = 'T', long, required = true, value_name = "QUANTITY", value_parser = temperature)]
+    pub temperature: Vec<Temperature>,
+
+    /// Gilbert damping
+    #[arg(long, default_value = "0.1", value_name = "ALPHA", value_parser = damping)]
+    pub damping: f64,
+
+    /// g factor
+    #[arg(long, default_value = "2.0", value_name = "G", value_parser = g_factor)]
+    pub g_factor: f64,
+
+    /// htst or langer; may be given twice [default: both]
+    #[arg(long, value_name = "THEORY", value_parser = rates::theory)]
+    pub theory: Vec<Theory>,
+
+    /// Number of threads; results do not depend on it [default: all cores]
+    #[arg(short, long, value_name = "N")]
+    pub threads: Option<NonZeroUsize>,
+
+    /// No progress and no messages, only errors
+    #[arg(short, long)]
+    pub quiet: bool,
+
+    /// Print one line of JSON for each result on stdout instead of the table
+    #[arg(long)]
+    pub json: bool,
+}
+
+fn temperature(text: &str) -> Result<Temperature, String> {
+    let t: Temperature = text.parse().map_err(|e: Error| e.to_string())?;
+    rates::checked_temperature(t)
+}
+
+fn damping(text: &str) -> Result<f64, String> {
+    rates::checked_damping(plain_number(text)?)
+}
+
+fn g_factor(text: &str) -> Result<f64, String> {
+    rates::checked_g_factor(plain_number(text)?)
+}
+
+fn plain_number(text: &str) -> Result<f64, String> {
+    text.parse().map_err(|_| format!("found {text:?}, expected a number"))
 }
 
 /// The arguments of `list`.
@@ -183,9 +250,13 @@ mod tests {
         assert_eq!(run.threads.map(NonZeroUsize::get), Some(2));
         assert_eq!(run.set, ["a.b=1", "c=2"]);
         assert!(run.force && run.quiet && run.json && !run.resume);
-        for line in
-            ["spinneb check a.json --set a=1", "spinneb list", "spinneb list terms", "spinneb run a.json --resume"]
-        {
+        for line in [
+            "spinneb rate results/a b -T 300K -T 4K --damping 0.2 --theory htst --json",
+            "spinneb check a.json --set a=1",
+            "spinneb list",
+            "spinneb list terms",
+            "spinneb run a.json --resume",
+        ] {
             assert!(Cli::try_parse_from(line.split(' ')).is_ok(), "{line}");
         }
     }
@@ -205,6 +276,11 @@ mod tests {
             "spinneb list nothing",
             "spinneb run a.json --threads 0",
             "spinneb walk a.json",
+            "spinneb rate results/a",
+            "spinneb rate results/a --temperature 300",
+            "spinneb rate results/a --temperature 300meV",
+            "spinneb rate results/a -T 3K --theory kramers",
+            "spinneb rate results/a -T 3K --damping=-1",
         ] {
             assert_eq!(Cli::try_parse_from(line.split(' ')).unwrap_err().exit_code(), 2, "{line}");
         }

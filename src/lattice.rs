@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::geometry::Direction;
-use crate::units::Length;
+use crate::units::{Length, Moment};
 use serde::de::{MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
@@ -41,6 +41,19 @@ pub struct Chain {
     /// Sites without a spin: nothing acts on them, and they on nothing.
     #[serde(default)]
     pub vacant: Option<Selection>,
+    /// Sites whose moment is not the material's.
+    #[serde(default)]
+    pub moments: Vec<SiteMoment>,
+}
+
+/// Sites with a moment of their own.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SiteMoment {
+    /// Which ones.
+    pub sites: Selection,
+    /// The moment of each.
+    pub moment: Moment,
 }
 
 /// Spins that never move.
@@ -65,6 +78,7 @@ impl Chain {
             direction: None,
             frozen: Vec::new(),
             vacant: None,
+            moments: Vec::new(),
         }
     }
 
@@ -130,6 +144,19 @@ impl Chain {
         }
         if self.is_vacant()?.iter().all(|v| *v) {
             return Err(Error::invalid("vacant", "all sites are vacant: no spin is left"));
+        }
+        let mut entry: Vec<Option<usize>> = vec![None; if self.moments.is_empty() { 0 } else { self.sites }];
+        for (k, m) in self.moments.iter().enumerate() {
+            for i in m.sites.indices(self.sites, "site").map_err(|e| e.within(&format!("moments[{k}].sites")))? {
+                if let Some(first) = entry[i].replace(k) {
+                    let message = format!("site {i} has a moment of its own already, in moments[{first}]");
+                    return Err(Error::invalid(format!("moments[{k}]"), message));
+                }
+            }
+            if m.moment.0 < 0.0 {
+                let message = "found a negative value: a spin is the direction of its moment, so this is not negative";
+                return Err(Error::invalid(format!("moments[{k}].moment"), message));
+            }
         }
         Ok(())
     }

@@ -9,6 +9,7 @@
 //! | [`config`] | the JSON of a run |
 //! | [`output`] | files and figures |
 //! | [`drive`] | a whole run: ends, first paths, band, saddles, proof |
+//! | [`rates`] | lifetimes of states |
 //! | [`band`], [`saddle`] | the force on a path; saddles to machine precision |
 //! | [`energy`], [`path`], [`optimise`] | energy terms; first paths; methods that move spins |
 //! | [`state`] | spin states |
@@ -27,6 +28,7 @@ pub mod linalg;
 pub mod optimise;
 pub mod output;
 pub mod path;
+pub mod rates;
 pub mod registry;
 pub mod saddle;
 pub mod sphere;

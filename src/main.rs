@@ -11,6 +11,7 @@ fn main() -> ExitCode {
         Command::Run(arguments) => cli::run::run(&arguments),
         Command::Check(arguments) => cli::check::check(&arguments),
         Command::List(arguments) => cli::list::list(&arguments),
+        Command::Rate(arguments) => cli::rate::rate(&arguments),
     };
     ExitCode::from(done.unwrap_or_else(|error| cli::report(&error)))
 }

@@ -97,10 +97,31 @@ fn a_permalloy_wire_is_reversed_by_a_wall_that_enters_at_one_end() {
 }
 
 #[test]
+fn a_cobalt_chain_holds_its_magnetisation_for_minutes_at_4_kelvin_and_not_at_20() {
+    let out = tempfile::tempdir().unwrap();
+    let done = spinneb(&root(), &["run", "configs/cobalt_chain.json", "--out", out.path().to_str().unwrap(), "--json"]);
+    assert_eq!(done.status.code(), Some(0), "{}", String::from_utf8_lossy(&done.stderr));
+    // the walls of a chain with J and K of this size sit on its sites, hard axis K/10: between the continuum's 4 √(JK/2) and 2J
+    let (forward, backward) = barriers(&serde_json::from_slice(&done.stdout).unwrap());
+    let (j, k) = (7.5f64, 2.0);
+    assert!(0.95 * 4.0 * (j * k / 2.0).sqrt() < forward && forward < 2.0 * j, "{forward}");
+    assert!((forward - backward).abs() < 1e-9 * forward);
+    let summary: Value = serde_json::from_slice(&fs::read(out.path().join("summary.json")).unwrap()).unwrap();
+    let whole = &summary["transition_rates"][0];
+    assert_eq!((whole["direction"].as_str(), whole["equivalent_paths"].as_u64()), (Some("forward"), Some(4)));
+    let lifetime = |k: usize| whole["temperatures"][k]["lifetime_s"].as_f64().unwrap();
+    assert!(100.0 < lifetime(0) && lifetime(0) < 1000.0, "{}", lifetime(0));
+    assert!(lifetime(7) < 1e-6);
+    for file in ["rates.csv", "arrhenius.svg", "arrhenius.png"] {
+        assert!(out.path().join(file).metadata().is_ok_and(|m| m.len() > 1000), "{file}");
+    }
+}
+
+#[test]
 fn every_shipped_config_is_tested_and_checks() {
     let configs = root().join("configs");
     let mut tested: BTreeSet<String> = SHIPPED.iter().map(|(name, ..)| name.to_string()).collect();
-    tested.extend(["ring_nucleus".into(), "nanowire_pinning".into(), "permalloy_wire".into()]);
+    tested.extend(["ring_nucleus", "nanowire_pinning", "permalloy_wire", "cobalt_chain"].map(String::from));
     assert_eq!(names(&configs, ".json"), tested);
     for name in tested {
         let done = spinneb(&configs, &["check", &format!("{name}.json")]);

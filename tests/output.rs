@@ -66,6 +66,7 @@ fn outcome(path: Path, length: f64, energy: impl Fn(f64) -> f64) -> Outcome {
         final_state: end(energy(length)),
         intermediate_minima: Vec::new(),
         rejected_paths: Vec::new(),
+        rates: None,
         images: ImageTable {
             reaction_coordinate_rad: s,
             energy_mev: above.iter().map(|e| e - 500.0).collect(),

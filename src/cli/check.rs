@@ -4,6 +4,7 @@ use super::{Check, USAGE, report, worse};
 use anyhow::Result;
 use spinneb::config::{Loaded, expected_images, load, memory, needed_bytes};
 use spinneb::drive::{Images, Problem, Scales};
+use spinneb::rates::RateSettings;
 use std::io::{self, Write};
 
 /// Checks all configs and prints what each would run.
@@ -42,11 +43,23 @@ fn print(out: &mut impl Write, loaded: &Loaded, problem: &Problem) -> io::Result
     row("guess", problem.guess.as_ref().map_or("all natural ones".into(), |g| g.name().into()))?;
     row("images", images(problem, &scales))?;
     row("optimiser", format!("{} to {:e} rad", problem.neb.optimiser.name(), problem.neb.tolerance))?;
+    if let Some(rates) = &problem.rates {
+        row("rates", asked_for(rates))?;
+    }
     row("memory", format!("about {}", memory::shown(needed_bytes(problem, &scales))))?;
     for kind in loaded.config.output.left_out() {
         row("warning", format!("output.formats: \"{kind}\" cannot be written by this version and is left out"))?;
     }
     Ok(())
+}
+
+fn asked_for(rates: &RateSettings) -> String {
+    let t = &rates.temperatures_k;
+    let (low, high) = t.iter().fold((f64::INFINITY, 0.0f64), |(l, h), t| (l.min(*t), h.max(*t)));
+    let temperatures =
+        if t.len() == 1 { format!("at {low} K") } else { format!("at {} temperatures, {low} K to {high} K", t.len()) };
+    let theories: Vec<&str> = rates.theories.iter().map(|t| t.name()).collect();
+    format!("{temperatures}, by {}, damping {}, g {}", theories.join(" and "), rates.damping, rates.g_factor)
 }
 
 fn material(loaded: &Loaded) -> String {

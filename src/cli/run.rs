@@ -10,6 +10,7 @@ use spinneb::output::disk::{self, Destination};
 use spinneb::output::{Group, Kind, RunReport, known_files, render_files};
 use std::collections::HashMap;
 use std::io::{self, Write};
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -17,9 +18,7 @@ const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// Runs all configs, one after the other. Nothing starts before all of them are known to be right.
 pub fn run(arguments: &Run) -> Result<u8> {
-    if let Some(n) = arguments.threads {
-        rayon::ThreadPoolBuilder::new().num_threads(n.get()).build_global().context("the threads cannot be started")?;
-    }
+    start_threads(arguments.threads)?;
     let mut code = 0;
     let mut loaded = Vec::new();
     for path in &arguments.configs {
@@ -45,6 +44,14 @@ pub fn run(arguments: &Run) -> Result<u8> {
         code = worse(code, run_one(arguments, one, directory).unwrap_or_else(|error| report(&error)));
     }
     Ok(code)
+}
+
+/// As many threads as asked for.
+pub(super) fn start_threads(count: Option<NonZeroUsize>) -> Result<()> {
+    if let Some(n) = count {
+        rayon::ThreadPoolBuilder::new().num_threads(n.get()).build_global().context("the threads cannot be started")?;
+    }
+    Ok(())
 }
 
 /// Where the results of a config go.
@@ -88,23 +95,37 @@ fn run_one(arguments: &Run, loaded: &Loaded, directory: &Path) -> Result<u8> {
         say(&format!("{name}: {place} holds the finished result of this config already; --force runs it again"));
         return print(arguments, name, directory, &stored);
     }
-    let mut progress = Progress { name, quiet: arguments.quiet, last: Instant::now() };
-    let mut outcome = drive::run(&problem, &mut progress)?;
-    outcome.work.seconds = started.elapsed().as_secs_f64();
-    for kind in loaded.config.output.left_out() {
-        outcome.warnings.push(format!("output.formats: \"{kind}\" cannot be written by this version and is left out"));
-    }
+    let mut progress = Progress::new(name, arguments.quiet);
+    let outcome = outcome(loaded, &problem, &mut progress, started)?;
     write(loaded, &outcome, directory)?;
     for warning in &outcome.warnings {
         say(&format!("{name}: warning: {warning}"));
     }
     let stored = Stored::of(&outcome);
+    if let Some(line) = super::rate::lifetimes(&outcome) {
+        say(&format!("{name}: {line}"));
+    }
     let proof = if outcome.certified { "certified" } else { "not certified" };
     say(&format!("{name}: {}, {proof}; {}; results in {place}", barrier(&outcome), outcome.stop_reason));
     print(arguments, name, directory, &stored)
 }
 
-fn write(loaded: &Loaded, outcome: &Outcome, directory: &Path) -> spinneb::error::Result<()> {
+/// The outcome of a config's problem, as it is written.
+pub(super) fn outcome(
+    loaded: &Loaded,
+    problem: &drive::Problem,
+    observer: &mut dyn Observer,
+    started: Instant,
+) -> Result<Outcome> {
+    let mut outcome = drive::run(problem, observer)?;
+    outcome.work.seconds = started.elapsed().as_secs_f64();
+    for kind in loaded.config.output.left_out() {
+        outcome.warnings.push(format!("output.formats: \"{kind}\" cannot be written by this version and is left out"));
+    }
+    Ok(outcome)
+}
+
+pub(super) fn write(loaded: &Loaded, outcome: &Outcome, directory: &Path) -> spinneb::error::Result<()> {
     let (name, sha) = (loaded.name.as_str(), loaded.sha256.as_str());
     let run = RunReport { name, version: VERSION, config_sha256: sha, config_text: &loaded.as_run, outcome };
     let output = &loaded.config.output;
@@ -171,13 +192,17 @@ fn print(arguments: &Run, name: &str, directory: &Path, stored: &Stored) -> Resu
 }
 
 /// Progress in plain lines, at most one a second and one a stage.
-struct Progress<'a> {
+pub(super) struct Progress<'a> {
     name: &'a str,
     quiet: bool,
     last: Instant,
 }
 
-impl Progress<'_> {
+impl<'a> Progress<'a> {
+    pub(super) fn new(name: &'a str, quiet: bool) -> Progress<'a> {
+        Progress { name, quiet, last: Instant::now() }
+    }
+
     fn say(&mut self, words: &str) {
         if !self.quiet {
             note(&format!("{}: {words}", self.name));

@@ -10,6 +10,7 @@ use crate::lattice::{Chain, Lattice};
 use crate::linalg::slab;
 use crate::path::guess::GuessContext;
 use crate::path::largest_angle;
+use crate::rates::RateSettings;
 use crate::spins::Spins;
 use crate::state::{StateContext, StateSpec};
 
@@ -59,9 +60,33 @@ impl Loaded {
         problem.refine = config.saddle.refine;
         problem.certify = config.saddle.certify;
         problem.neb = config.neb.settings();
+        problem.rates = self.rates(chain)?;
         self.affordable(needed_bytes(&problem, &scales), Some(expected_images(&problem, &scales)))?;
         guess(&problem, &scales).map_err(here)?;
         Ok(problem)
+    }
+
+    /// What rates are asked for, with the moments of the sites.
+    fn rates(&self, chain: &Chain) -> Result<Option<RateSettings>> {
+        let Some(config) = &self.config.rates else { return Ok(None) };
+        let none = |e: Error| match e {
+            Error::Invalid { .. } => Error::invalid(
+                "rates",
+                "a rate needs the moments of the sites, which say how fast they precess: give the material a \"moment\" \
+                 (\"2 mu_B\") or \"Ms\" (\"800 kA/m\", with the lattice's \"spacing\" and \"cross_section\")",
+            ),
+            other => other,
+        };
+        let moments = self.medium(chain).moments_mub().map_err(|e| self.text.locate(none(e)))?;
+        if let Some(i) = moments.iter().position(|n| *n <= 0.0) {
+            let message = format!("the moment of site {i} is 0, so it has no precession: a rate needs moments above 0");
+            return Err(self.text.locate(Error::invalid("rates", message)));
+        }
+        Ok(Some(config.settings(moments)))
+    }
+
+    fn medium<'a>(&self, chain: &'a Chain) -> Medium<'a> {
+        Medium { chain, moment: self.material.moment, saturation: self.material.Ms }
     }
 
     /// All term specs: the material's, then the config's, each with the place where it stands.
@@ -75,7 +100,7 @@ impl Loaded {
 
     /// The material's terms and the config's, with numbers a site.
     fn terms(&self, chain: &Chain) -> Result<Vec<Box<dyn EnergyTerm>>> {
-        let medium = Medium { chain, moment: self.material.moment, saturation: self.material.Ms };
+        let medium = self.medium(chain);
         let mut terms = Vec::new();
         let mut largest = 0.0f64;
         for (spec, own, place) in self.specs() {

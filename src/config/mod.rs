@@ -12,6 +12,7 @@ mod name;
 mod neb;
 mod output;
 mod path;
+pub mod rates;
 mod set;
 pub mod text;
 
@@ -22,6 +23,7 @@ pub use name::Name;
 pub use neb::{NebConfig, SaddleConfig};
 pub use output::OutputConfig;
 pub use path::{ImageCount, PathConfig};
+pub use rates::{RatesConfig, Temperatures};
 
 use crate::energy::TermSpec;
 use crate::lattice::Lattice;
@@ -62,6 +64,9 @@ pub struct Config {
     /// What is done with the saddles.
     #[serde(default)]
     pub saddle: SaddleConfig,
+    /// Rates and lifetimes; none if absent.
+    #[serde(default)]
+    pub rates: Option<RatesConfig>,
     /// What is written.
     #[serde(default)]
     pub output: OutputConfig,

@@ -7,6 +7,7 @@ mod explore;
 mod minimum;
 mod outcome;
 mod problem;
+mod rates;
 mod relaxation;
 mod report;
 mod run;

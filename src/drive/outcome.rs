@@ -1,6 +1,7 @@
 //! What a run found: everything that is written to disk is a function of an [`Outcome`].
 
 use crate::path::Path;
+use crate::rates::Rates;
 use crate::spins::Spins;
 
 /// A finished run.
@@ -24,6 +25,8 @@ pub struct Outcome {
     pub final_state: EndPoint,
     /// Minima between the ends.
     pub intermediate_minima: Vec<IntermediateMinimum>,
+    /// Rates and lifetimes, where they were asked for.
+    pub rates: Option<Rates>,
     /// Other paths that were tried.
     pub rejected_paths: Vec<RejectedPath>,
     /// The spins.

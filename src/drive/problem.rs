@@ -4,6 +4,7 @@ use crate::energy::Hamiltonian;
 use crate::lattice::Chain;
 use crate::optimise::{Implicit, OptimiserSpec};
 use crate::path::guess::{GuessSpec, NoiseSpec};
+use crate::rates::RateSettings;
 use crate::spins::Spins;
 
 /// Two states of a chain, and how to look for the path between them.
@@ -33,6 +34,8 @@ pub struct Problem {
     pub certify: bool,
     /// How the band is relaxed.
     pub neb: NebSettings,
+    /// Rates over the saddles; none if absent.
+    pub rates: Option<RateSettings>,
 }
 
 impl Problem {
@@ -52,6 +55,7 @@ impl Problem {
             refine: true,
             certify: true,
             neb,
+            rates: None,
         }
     }
 }

@@ -5,6 +5,7 @@ use super::climb::Found;
 use super::ends::Relaxed;
 use super::minimum::{Link, Minimum};
 use super::outcome::*;
+use super::rates::{self, Known};
 use super::relaxation::{height, prominent_maxima};
 use super::run::Candidate;
 use crate::band::{Band, Extremum};
@@ -69,10 +70,15 @@ pub fn outcome(
     let mut stop_reason = c.stop.to_string();
     let mut doubts = proof.doubts;
     let barrier = barrier(run.problem, band, &saddles, above_final, &c, &mut doubts, &mut stop_reason);
+    let rates = run.problem.rates.as_ref().map(|settings| {
+        let known = Known { h, links: &proof.links, saddles: &saddles, above_final, doubts: &doubts };
+        rates::of_path(&known, settings)
+    });
     let converged = c.stop.is_converged() && barrier.is_some();
     let certified = doubts.is_empty() && barrier.is_some();
     warnings.extend(doubts.into_iter().map(|d| format!("not certified: {d}")));
     warnings.extend(flat_warnings(&proof.ends, &proof.links));
+    warnings.extend(rates.as_ref().map(rates::warnings).unwrap_or_default());
     let work = run.work(band.evaluations());
     let minima = if proof.links.len() > 1 { link_minima(band, &proof.links) } else { band_minima(h, band) };
     Outcome {
@@ -84,6 +90,7 @@ pub fn outcome(
         initial: end_of(&proof.ends[0]),
         final_state: end_of(&proof.ends[1]),
         intermediate_minima: minima,
+        rates,
         rejected_paths,
         images: image_table(h, band),
         profile: profile(band),
@@ -153,6 +160,7 @@ pub fn same_minimum(run: Summary) -> Outcome {
         initial: end_of(&ends[0]),
         final_state: end_of(&ends[1]),
         intermediate_minima: Vec::new(),
+        rates: None,
         rejected_paths: Vec::new(),
         images: image_table(h, &band),
         profile: Vec::new(),

@@ -9,10 +9,13 @@
 use super::EnergyTerm;
 use super::magnetostatics::{Magnetostatics, Row, Shape};
 use super::spec::{Medium, TermBuilder};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::geometry::Direction;
 use crate::registry::Described;
 use serde::Deserialize;
+
+/// Most that width and thickness may differ from the spacing, as a factor: beyond, the closed forms lose their digits.
+const SLENDER: f64 = 1000.0;
 
 /// `{}`.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
@@ -29,12 +32,21 @@ impl TermBuilder for DemagSpec {
     fn build(&self, medium: &Medium) -> Result<Box<dyn EnergyTerm>> {
         let [width, thickness] = medium.edges_nm()?;
         let spacing = medium.spacing_nm()?;
+        for edge in [width, thickness] {
+            if !(1.0 / SLENDER..=SLENDER).contains(&(edge / spacing)) {
+                let message = format!(
+                    "a cell is {spacing} nm × {width} nm × {thickness} nm: the edges of a cell may differ by a factor of {SLENDER} \
+                     from the spacing, not more"
+                );
+                return Err(Error::invalid("", message));
+            }
+        }
         let row = Row {
             shape: Shape::Cells { width: width / spacing, thickness: thickness / spacing },
             volume_nm3: spacing * width * thickness,
             periodic: medium.chain.periodic,
             direction: medium.chain.direction.unwrap_or(Direction::X),
         };
-        Ok(Box::new(Magnetostatics::new(DemagSpec::NAME, &row, medium.moments_mub()?)))
+        Ok(Box::new(Magnetostatics::new(DemagSpec::NAME, &row, medium.acting_moments_mub()?)))
     }
 }

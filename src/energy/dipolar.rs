@@ -38,6 +38,6 @@ impl TermBuilder for DipolarSpec {
             periodic: medium.chain.periodic,
             direction: medium.chain.direction.unwrap_or(Direction::X),
         };
-        Ok(Box::new(Magnetostatics::new(DipolarSpec::NAME, &row, medium.moments_mub()?)))
+        Ok(Box::new(Magnetostatics::new(DipolarSpec::NAME, &row, medium.acting_moments_mub()?)))
     }
 }

@@ -51,6 +51,19 @@ impl Medium<'_> {
         }
     }
 
+    /// Moment of every site (μ_B): the material's, or the site's own.
+    pub fn moments_mub(&self) -> Result<Vec<f64>> {
+        let n = self.chain.sites;
+        let mut own = vec![None; n];
+        for m in &self.chain.moments {
+            for i in m.sites.indices(n, "site").map_err(|e| e.within("sites"))? {
+                own[i] = Some(m.moment.0);
+            }
+        }
+        let common = if own.iter().all(|m| m.is_some()) { 0.0 } else { self.moment_mu_b()? };
+        Ok(own.into_iter().map(|m| m.unwrap_or(common)).collect())
+    }
+
     /// Energy a site (meV).
     pub fn site_energy_mev(&self, k: SiteEnergy) -> Result<f64> {
         match k {
@@ -72,11 +85,10 @@ impl Medium<'_> {
         Ok(2.0 * a.over_length(self.section_nm2()? / self.spacing_nm()?).0)
     }
 
-    /// Moment of every site (μ_B), 0 where it is vacant.
-    pub fn moments_mub(&self) -> Result<Vec<f64>> {
-        let mut moments = vec![0.0; self.chain.sites];
-        let moment = self.moment_mu_b()?;
-        self.sites(None)?.into_iter().for_each(|i| moments[i] = moment);
+    /// [`moments_mub`](Self::moments_mub), 0 where a site is vacant.
+    pub fn acting_moments_mub(&self) -> Result<Vec<f64>> {
+        let (mut moments, vacant) = (self.moments_mub()?, self.chain.is_vacant()?);
+        moments.iter_mut().zip(vacant).filter(|(_, vacant)| *vacant).for_each(|(moment, _)| *moment = 0.0);
         Ok(moments)
     }
 

@@ -40,10 +40,10 @@ impl TermBuilder for ZeemanSpec {
         let field = self.B.map(|b| b.0);
         let strength = vector::norm(field);
         let direction = vector::unit(field).unwrap_or([0.0, 0.0, 1.0]);
-        let moment = medium.moment_mu_b()?;
+        let moments = medium.moments_mub()?;
         let mut term = Zeeman { direction, b: vec![0.0; medium.chain.sites] };
         for i in medium.sites(self.sites.as_ref())? {
-            term.b[i] = moment * MU_B_MEV_PER_T * strength;
+            term.b[i] = moments[i] * MU_B_MEV_PER_T * strength;
         }
         Ok(Box::new(term))
     }
@@ -115,6 +115,19 @@ impl EnergyTerm for Zeeman {
 mod tests {
     use super::*;
     use crate::energy::density_of;
+    use crate::lattice::{Chain, SiteMoment};
+    use crate::units::Moment;
+
+    #[test]
+    fn a_site_with_a_moment_of_its_own_feels_its_own_energy() {
+        let mut chain = Chain::open(3);
+        chain.moments = vec![SiteMoment { sites: Selection::List(vec![1]), moment: Moment(4.0) }];
+        let medium = Medium { chain: &chain, moment: Some(Moment(2.0)), saturation: None };
+        assert_eq!(medium.moments_mub().unwrap(), [2.0, 4.0, 2.0]);
+        let spec: ZeemanSpec = serde_json::from_str(r#"{"B": ["0 T", "0 T", "1 T"]}"#).unwrap();
+        let term = spec.build(&medium).unwrap();
+        assert!((term.reference_mev() + 8.0 * MU_B_MEV_PER_T).abs() < 1e-15);
+    }
 
     #[test]
     fn a_moment_along_the_field_is_the_reference_and_against_it_costs_twice_mu_b() {

@@ -4,7 +4,7 @@
 //! Open chains of short reach have a path of their own, with the next columns in registers: what follows a pivot waits for
 //! nothing but that pivot.
 
-use super::{Banded, TailLdl};
+use super::{Banded, TailLdl, slab};
 use multiversion::multiversion;
 
 /// The factors L and D of a [`Banded`] matrix.
@@ -59,7 +59,7 @@ impl Ldl {
 
     /// ln|det A|.
     pub fn log_abs_determinant(&self) -> f64 {
-        self.pivots().map(|d| libm::log(d.abs())).sum()
+        slab::sum(&self.pivots().map(|d| libm::log(d.abs())).collect::<Vec<f64>>())
     }
 
     /// x = A⁻¹ a and y = A⁻¹ b, in one pass over the factors; `room` is room to work in.

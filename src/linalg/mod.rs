@@ -1,9 +1,10 @@
-//! Linear algebra of chains: banded symmetric matrices, with or without a long-ranged tail, their LDLᵀ, the small dense matrices
-//! beside them, the Fourier transform, and numbers of twice the digits.
+//! Linear algebra of chains: banded symmetric matrices, with or without a long-ranged tail, and their LDLᵀ, banded ones without
+//! symmetry and their LU, the small dense matrices beside them, the Fourier transform, and numbers of twice the digits.
 
 mod banded;
 mod double_double;
 mod fft;
+mod general;
 mod ldl;
 mod lowest;
 pub mod slab;
@@ -15,6 +16,7 @@ mod tridiagonal;
 pub use banded::Banded;
 pub use double_double::DoubleDouble;
 pub use fft::Fft;
+pub use general::{General, Lu};
 pub use ldl::Ldl;
 pub use lowest::{Mode, lowest_modes, rayleigh_ritz};
 pub use small::{eigen_symmetric, eigenvalues_symmetric, solve_dense};

@@ -9,11 +9,11 @@ use std::fmt::Write;
 
 /// What `csv` writes.
 pub(super) const SUMMARY: &str =
-    "path.csv, profile.csv, history.csv: energies by image, interpolated, and by iteration";
+    "path.csv, profile.csv, history.csv: energies by image, interpolated, and by iteration; with rates rates.csv";
 
 /// All tables.
 pub(super) fn formats() -> Vec<Box<dyn Format>> {
-    vec![Box::new(PathCsv), Box::new(ProfileCsv), Box::new(HistoryCsv)]
+    vec![Box::new(PathCsv), Box::new(ProfileCsv), Box::new(HistoryCsv), Box::new(super::RatesCsv)]
 }
 
 /// `path.csv`.
@@ -95,9 +95,11 @@ fn column_name(term: &str) -> String {
     term.chars().map(|c| if c.is_whitespace() || matches!(c, ',' | '"') { '_' } else { c }).collect()
 }
 
-enum Cell {
+pub(super) enum Cell {
     Whole(usize),
     Real(f64),
+    Word(String),
+    Missing,
 }
 
 fn whole(values: impl IntoIterator<Item = usize>) -> Vec<Cell> {
@@ -108,23 +110,23 @@ fn real(values: &[f64]) -> Vec<Cell> {
     values.iter().copied().map(Cell::Real).collect()
 }
 
-/// Columns under their names.
-struct Table {
+/// Columns under their names; a cell may be empty.
+pub(super) struct Table {
     file: &'static str,
     columns: Vec<(String, Vec<Cell>)>,
 }
 
 impl Table {
-    fn new(file: &'static str) -> Table {
+    pub(super) fn new(file: &'static str) -> Table {
         Table { file, columns: Vec::new() }
     }
 
-    fn add(&mut self, name: &str, cells: Vec<Cell>) {
+    pub(super) fn add(&mut self, name: &str, cells: Vec<Cell>) {
         self.columns.push((name.into(), cells));
     }
 
     /// An error where a column is too short or too long or a number is not finite.
-    fn render(&self) -> Result<Vec<u8>> {
+    pub(super) fn render(&self) -> Result<Vec<u8>> {
         let rows = self.columns.first().map_or(0, |(_, cells)| cells.len());
         if let Some((name, cells)) = self.columns.iter().find(|(_, cells)| cells.len() != rows) {
             return Err(Error::Numerical(format!("{}: {name} has {} rows, not {rows}", self.file, cells.len())));
@@ -144,6 +146,8 @@ impl Table {
     fn write_cell(&self, text: &mut String, name: &str, row: usize, cell: &Cell) -> Result<()> {
         let written = match cell {
             Cell::Whole(n) => write!(text, "{n}"),
+            Cell::Word(word) => write!(text, "{word}"),
+            Cell::Missing => Ok(()),
             Cell::Real(v) if v.is_finite() => write!(text, "{v:?}"),
             Cell::Real(v) => {
                 return Err(Error::Numerical(format!(

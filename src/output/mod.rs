@@ -3,18 +3,23 @@
 //! Energies are in meV, angles and path lengths in rad, and every outer name carries its unit. The same outcome gives the same
 //! bytes: there are no time stamps.
 
+mod arrhenius_plot;
 pub mod canvas;
 mod config_copy;
 mod csv;
 pub mod disk;
 mod energy_path_plot;
 mod font;
+mod rates_csv;
+mod rates_summary;
 mod spins_plot;
 mod summary;
 
+pub use arrhenius_plot::{ArrheniusPlot, draw_lifetimes};
 pub use config_copy::ConfigCopy;
 pub use csv::{HistoryCsv, PathCsv, ProfileCsv};
 pub use energy_path_plot::{EnergyPath, EnergyPathPlot, draw_energy_paths};
+pub use rates_csv::RatesCsv;
 pub use spins_plot::{SpinsPlot, draw_spins};
 pub use summary::Summary;
 
@@ -40,6 +45,11 @@ pub struct RunReport<'a> {
 pub trait Format {
     /// Its name in the directory of the result.
     fn file_name(&self) -> String;
+
+    /// Whether the run has something to write in it.
+    fn applies(&self, _: &RunReport) -> bool {
+        true
+    }
 
     /// Its bytes.
     fn render(&self, run: &RunReport) -> Result<Vec<u8>>;
@@ -101,13 +111,13 @@ pub const KINDS: &[Kind] = &[
     Kind {
         name: "svg",
         group: Group::Plots,
-        summary: "energy_path.svg, spins.svg: the energy path and the map of the spins as vector graphics",
+        summary: "energy_path.svg, spins.svg: the energy path and the map of the spins as vector graphics; with rates arrhenius.svg",
         formats: || plots(Picture::Svg),
     },
     Kind {
         name: "png",
         group: Group::Plots,
-        summary: "energy_path.png, spins.png: the same figures as pixels, 300 an inch",
+        summary: "energy_path.png, spins.png, arrhenius.png: the same figures as pixels, 300 an inch",
         formats: || plots(Picture::Png),
     },
     Kind {
@@ -119,19 +129,19 @@ pub const KINDS: &[Kind] = &[
     Kind {
         name: "summary",
         group: Group::Always,
-        summary: "summary.json: barrier, saddles, ends, work and whether they are certified",
+        summary: "summary.json: barrier, saddles, ends, rates, work and whether they are certified",
         formats: || vec![Box::new(Summary)],
     },
 ];
 
 fn plots(picture: Picture) -> Vec<Box<dyn Format>> {
-    vec![Box::new(EnergyPathPlot(picture)), Box::new(SpinsPlot(picture))]
+    vec![Box::new(EnergyPathPlot(picture)), Box::new(SpinsPlot(picture)), Box::new(ArrheniusPlot(picture))]
 }
 
 /// The files of a run that names these kinds, `summary.json` last.
 pub fn render_files(run: &RunReport, wanted: impl Fn(&Kind) -> bool) -> Result<Vec<disk::File>> {
     let kinds = KINDS.iter().filter(|kind| kind.group == Group::Always || wanted(kind));
-    let formats = kinds.flat_map(|kind| (kind.formats)());
+    let formats = kinds.flat_map(|kind| (kind.formats)()).filter(|format| format.applies(run));
     formats.map(|format| Ok(disk::File { name: format.file_name(), bytes: format.render(run)? })).collect()
 }
 

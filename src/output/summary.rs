@@ -3,6 +3,7 @@
 //! Energies in meV; the barrier also in J (1 meV = 1.602176634e-22 J) and in K (E/k_B), CODATA 2022.
 //! A number that is not finite is an error here, with its place: JSON has no word for it.
 
+use super::rates_summary::{self, RateEntry, TransitionEntry};
 use super::{Format, RunReport};
 use crate::drive::{Barrier, EndPoint, IntermediateMinimum, Outcome, RejectedPath, SaddlePoint, Work};
 use crate::error::{Error, Result};
@@ -36,7 +37,7 @@ impl Format for Summary {
 
 /// A number that JSON can hold.
 #[derive(Clone, Copy)]
-struct Number(f64);
+pub(super) struct Number(pub(super) f64);
 
 impl Serialize for Number {
     fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
@@ -66,6 +67,10 @@ struct Document<'a> {
     r#final: EndEntry,
     intermediate_minima: Vec<MinimumEntry>,
     rejected_paths: Vec<RejectedEntry<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rates: Option<Vec<RateEntry<'a>>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    transition_rates: Option<Vec<TransitionEntry<'a>>>,
     path: PathEntry,
     work: WorkEntry,
 }
@@ -154,6 +159,8 @@ fn document<'a>(run: &RunReport<'a>) -> Document<'a> {
         r#final: end(&outcome.final_state),
         intermediate_minima: outcome.intermediate_minima.iter().map(minimum).collect(),
         rejected_paths: outcome.rejected_paths.iter().map(rejected).collect(),
+        rates: outcome.rates.as_ref().map(rates_summary::saddles),
+        transition_rates: outcome.rates.as_ref().map(rates_summary::transitions),
         path: path(outcome),
         work: work(&outcome.work),
     }

@@ -11,6 +11,7 @@ mod valley;
 
 pub use descent::{Descent, descend};
 pub use pinned::Pinned;
+pub(crate) use pinned::pin;
 pub use spectrum::Spectrum;
 pub use state::{State, orthonormal};
 pub use valley::{Refined, Verdict, refine};

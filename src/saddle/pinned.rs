@@ -105,7 +105,7 @@ impl Pinned {
 }
 
 /// Adds κ e eᵀ on the site where `mode` is largest and no pin stands yet; returns e.
-pub(super) fn pin(matrix: &mut Banded, mode: &[f64], used: &mut Vec<usize>, kappa: f64) -> Vec<f64> {
+pub(crate) fn pin(matrix: &mut Banded, mode: &[f64], used: &mut Vec<usize>, kappa: f64) -> Vec<f64> {
     let size = |i: usize| mode[2 * i].powi(2) + mode[2 * i + 1].powi(2);
     let mut site = 0;
     let mut largest = -1.0;

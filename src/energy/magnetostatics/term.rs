@@ -8,7 +8,8 @@ use crate::geometry::{Direction, Vector, vector};
 use crate::units::{E_CHARGE, MU_0, MU_B_MEV_PER_T};
 use std::ops::Range;
 
-/// Open chains of at most this many sites have a dense Hessian; longer ones a sum of exponentials. Rings are dense.
+/// Open chains of at most this many sites have a dense Hessian; longer ones a sum of exponentials. Rings are dense, and so are
+/// cells tens of times wider than their spacing.
 const DENSE: usize = 128;
 /// Accuracy of the exponentials of a Hessian that proves something, of Σ|K|: below its rounding error.
 const PRECISE: f64 = 4.0 * f64::EPSILON;
@@ -52,11 +53,7 @@ impl Magnetostatics {
     pub fn new(name: &'static str, row: &Row, moments: Vec<f64>) -> Magnetostatics {
         let sites = moments.len();
         let mut kernel = Kernel::new(row.shape, sites, row.periodic);
-        let tails = (!row.periodic && sites > DENSE).then(|| {
-            let precise = Exponentials::new(&kernel, PRECISE, None);
-            let coarse = Exponentials::new(&kernel, COARSE, Some(precise.shells));
-            [precise, coarse]
-        });
+        let tails = if !row.periodic && sites > DENSE { tails(&kernel) } else { None };
         let strength = MU_0_MU_B_SQUARED / row.volume_nm3;
         kernel.table.iter_mut().flatten().for_each(|k| *k *= strength);
         let scaled = |mut e: Exponentials| {
@@ -153,6 +150,15 @@ impl Magnetostatics {
         }
         field
     }
+}
+
+/// The precise and the coarse sum of exponentials; nothing where cells are so wide beside their spacing that none is precise.
+fn tails(kernel: &Kernel) -> Option<[Exponentials; 2]> {
+    let sum = |c: usize| kernel.table[c].iter().map(|k| k.abs()).sum::<f64>();
+    let scale = sum(0).max(sum(1)).max(sum(2));
+    let precise = Exponentials::new(kernel, PRECISE, None);
+    let coarse = Exponentials::new(kernel, COARSE, Some(precise.shells));
+    (precise.error <= 4.0 * PRECISE * scale && coarse.error <= 10.0 * COARSE * scale).then_some([precise, coarse])
 }
 
 /// The axes of a chain that points along `direction`: x, y and z turned by the smallest rotation that takes x there.

@@ -1,0 +1,68 @@
+//! Rates of long chains after the saddle is known: time by number of spins, which must grow no faster.
+//!
+//! `cargo bench --bench rates`. The chain of the shipped wall nucleation with a hard axis, refined to N sites; its saddle is the wall
+//! at the centre, and the minima are the two uniform states.
+
+use spinneb::drive::Minimum;
+use spinneb::energy::{Anisotropy, EnergyTerm, Exchange, Hamiltonian};
+use spinneb::geometry::Direction;
+use spinneb::lattice::Chain;
+use spinneb::rates::{Crossing, RateSettings, Theory, saddle_rates};
+use spinneb::saddle::{Spectrum, refine};
+use spinneb::spins::Spins;
+use std::time::Instant;
+
+fn main() {
+    println!("{:>8} {:>12} {:>12} {:>16} {:>16}", "sites", "saddle (s)", "rates (s)", "HTST (Hz)", "Langer (Hz)");
+    for sites in [1_000, 10_000, 100_000] {
+        measure(sites);
+    }
+}
+
+fn measure(sites: usize) {
+    let chain = Chain::open(sites);
+    let (j, k) = (10.0, 0.5 * (50.0 / sites as f64).powi(2));
+    let terms: Vec<Box<dyn EnergyTerm>> = vec![
+        Box::new(Exchange::uniform(&chain, &[j])),
+        Box::new(Anisotropy::uniform(sites, k, Direction::Z)),
+        Box::new(Anisotropy::uniform(sites, -k, Direction::X)),
+    ];
+    let h = Hamiltonian::new(&chain, terms).expect("a chain");
+    let width = (j / (2.0 * k)).sqrt();
+    let u = |i: usize| (i as f64 - 0.5 * (sites as f64 - 1.0)) / width;
+    let mut m = vec![0.0; 3 * sites];
+    let mut along = vec![0.0; 3 * sites];
+    for i in 0..sites {
+        let (t, s) = (libm::tanh(u(i)), 1.0 / libm::cosh(u(i)));
+        (m[sites + i], m[2 * sites + i]) = (s, -t);
+        (along[sites + i], along[2 * sites + i]) = (s * t, s * s);
+    }
+    let start = Instant::now();
+    let saddle = refine(&h, &m, &along, 2.0 * k);
+    let spectrum = Spectrum::of(&h, &saddle.state, 6);
+    let minima = [Direction::Z, Direction::Z.reversed()].map(|d| Spins::uniform(sites, d));
+    let spectra = [0, 1].map(|side| Minimum::examine(&h, &minima[side]).spectrum);
+    let before = start.elapsed().as_secs_f64();
+    let settings = RateSettings {
+        temperatures_k: (1..=100).map(|t| 3.0 * f64::from(t)).collect(),
+        damping: 0.1,
+        g_factor: 2.0,
+        theories: Theory::ALL.to_vec(),
+        moments_mub: vec![2.0; sites],
+    };
+    let crossing = Crossing {
+        saddle: &saddle.state,
+        valley: &saddle.valley,
+        spectrum: &spectrum,
+        minima: [&minima[0], &minima[1]],
+        minima_spectra: [&spectra[0], &spectra[1]],
+        doubt: None,
+    };
+    let start = Instant::now();
+    let [forward, _] = saddle_rates(&h, 0, &crossing, &settings);
+    let seconds = start.elapsed().as_secs_f64();
+    let hz = |p: Option<spinneb::rates::Prefactor>| p.map_or(f64::NAN, |p| p.hz_at(3.0));
+    println!("{sites:>8} {before:>12.3} {seconds:>12.3} {:>16.6e} {:>16.6e}", hz(forward.htst), hz(forward.langer));
+    assert!(forward.refused.is_empty(), "{:?}", forward.refused);
+    assert!(seconds < 2.0 || sites < 100_000, "rates of {sites} sites took {seconds:.2} s");
+}

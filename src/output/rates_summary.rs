@@ -1,0 +1,148 @@
+//! The entries of `rates` and `transition_rates` in `summary.json`.
+//!
+//! A rate too small for a double is 0 and its lifetime null; `log10_lifetime_s` is there for all.
+
+use super::summary::Number;
+use crate::rates::{Prefactor, Rates, Row, SaddleRate, Theory, TransitionRate, ZeroKind};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+#[derive(Serialize)]
+#[allow(non_snake_case)]
+pub(super) struct RateEntry<'a> {
+    saddle: usize,
+    direction: &'static str,
+    barrier_meV: Option<Number>,
+    htst_prefactor_Hz: Option<Number>,
+    langer_prefactor_Hz: Option<Number>,
+    prefactor_temperature_K: Option<Number>,
+    prefactor_temperature_exponent: Number,
+    dynamical_factor_per_s: Option<Number>,
+    growth_rate_per_s: Option<Number>,
+    entropy_factor: Option<Number>,
+    minimum_zero_modes: Vec<ZeroEntry>,
+    saddle_zero_modes: Vec<ZeroEntry>,
+    equivalent_saddles: usize,
+    equivalent_by: &'a str,
+    damping: Number,
+    g_factor: Number,
+    blocking_temperature_1_s_K: Option<Number>,
+    blocking_temperature_10_years_K: Option<Number>,
+    refused: BTreeMap<&'static str, &'a str>,
+    warnings: &'a [String],
+    temperatures: Vec<TemperatureEntry>,
+}
+
+#[derive(Serialize)]
+#[allow(non_snake_case)]
+pub(super) struct TransitionEntry<'a> {
+    direction: &'static str,
+    saddles: usize,
+    equivalent_paths: usize,
+    equivalent_by: &'a str,
+    barrier_meV: Number,
+    blocking_temperature_1_s_K: Option<Number>,
+    blocking_temperature_10_years_K: Option<Number>,
+    refused: Option<&'a str>,
+    temperatures: Vec<TemperatureEntry>,
+}
+
+#[derive(Serialize)]
+struct ZeroEntry {
+    kind: &'static str,
+    modes: usize,
+    volume_rad: Number,
+}
+
+#[derive(Serialize)]
+#[allow(non_snake_case)]
+struct TemperatureEntry {
+    temperature_K: Number,
+    barrier_over_kT: Number,
+    htst_rate_per_s: Option<Number>,
+    langer_rate_per_s: Option<Number>,
+    lifetime_s: Option<Number>,
+    log10_lifetime_s: Option<Number>,
+}
+
+/// An entry for each saddle and direction.
+pub(super) fn saddles(rates: &Rates) -> Vec<RateEntry<'_>> {
+    rates.saddles.iter().map(|r| saddle(rates, r)).collect()
+}
+
+/// An entry for each direction of the whole path.
+pub(super) fn transitions(rates: &Rates) -> Vec<TransitionEntry<'_>> {
+    rates.transitions.iter().map(transition).collect()
+}
+
+fn saddle<'a>(rates: &'a Rates, r: &'a SaddleRate) -> RateEntry<'a> {
+    let settings = &rates.settings;
+    let known = r.htst.or(r.langer);
+    let first = settings.temperatures_k.first().copied();
+    let prefactor = |p: Option<Prefactor>| p.zip(first).and_then(|(p, t)| held(p.hz_at(t)));
+    let frequency = |p: Option<Prefactor>| p.map(|p| Number(p.frequency_per_s));
+    RateEntry {
+        saddle: r.saddle,
+        direction: r.way.name(),
+        barrier_meV: r.barrier_mev.map(Number),
+        htst_prefactor_Hz: prefactor(r.htst),
+        langer_prefactor_Hz: prefactor(r.langer),
+        prefactor_temperature_K: first.filter(|_| known.is_some()).map(Number),
+        prefactor_temperature_exponent: Number(known.map_or(0.0, |p| p.exponent)),
+        dynamical_factor_per_s: frequency(r.htst),
+        growth_rate_per_s: frequency(r.langer),
+        entropy_factor: r.entropy_factor.map(Number),
+        minimum_zero_modes: zeros(&r.minimum_zeros),
+        saddle_zero_modes: zeros(&r.saddle_zeros),
+        equivalent_saddles: r.equivalents.count,
+        equivalent_by: &r.equivalents.by,
+        damping: Number(settings.damping),
+        g_factor: Number(settings.g_factor),
+        blocking_temperature_1_s_K: r.blocking_k[0].map(Number),
+        blocking_temperature_10_years_K: r.blocking_k[1].map(Number),
+        refused: r.refused.iter().map(|(theory, reason): &(Theory, String)| (theory.name(), reason.as_str())).collect(),
+        warnings: &r.warnings,
+        temperatures: r.rows.iter().map(temperature).collect(),
+    }
+}
+
+fn transition(t: &TransitionRate) -> TransitionEntry<'_> {
+    TransitionEntry {
+        direction: t.way.name(),
+        saddles: t.saddles,
+        equivalent_paths: t.equivalents.count,
+        equivalent_by: &t.equivalents.by,
+        barrier_meV: Number(t.barrier_mev),
+        blocking_temperature_1_s_K: t.blocking_k[0].map(Number),
+        blocking_temperature_10_years_K: t.blocking_k[1].map(Number),
+        refused: t.refused.as_deref(),
+        temperatures: t.rows.iter().map(temperature).collect(),
+    }
+}
+
+fn zeros(modes: &[(ZeroKind, usize, f64)]) -> Vec<ZeroEntry> {
+    let entry = |&(kind, modes, volume): &(ZeroKind, usize, f64)| ZeroEntry {
+        kind: kind.name(),
+        modes,
+        volume_rad: Number(volume),
+    };
+    modes.iter().map(entry).collect()
+}
+
+fn temperature(row: &Row) -> TemperatureEntry {
+    let rate = |ln: Option<f64>| ln.and_then(|ln| held(libm::exp(ln)));
+    let lifetime = row.ln_lifetime_s();
+    TemperatureEntry {
+        temperature_K: Number(row.temperature_k),
+        barrier_over_kT: Number(row.barrier_over_kt),
+        htst_rate_per_s: rate(row.ln_htst_per_s),
+        langer_rate_per_s: rate(row.ln_langer_per_s),
+        lifetime_s: rate(lifetime),
+        log10_lifetime_s: lifetime.map(|ln| Number(ln / std::f64::consts::LN_10)),
+    }
+}
+
+/// A number that a double holds.
+fn held(x: f64) -> Option<Number> {
+    x.is_finite().then_some(Number(x))
+}

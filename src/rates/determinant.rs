@@ -1,0 +1,205 @@
+//! ln|det'H| without the zero modes, from one banded factorisation.
+//!
+//! With the zero modes Z (orthonormal, HZ = 0) and as many unit columns E, each on one site,
+//!
+//! ```text
+//! det(H + κ E Eᵀ) = κ^P det(EᵀZ)² det'H
+//! ```
+//! exactly: what is added makes the zero eigenvalues positive and of ordinary size, and its effect is divided out in closed form.
+//! The same limit as that of the bordered matrix [H Z; Zᵀ 0], whose determinant is (−1)^P det'H.
+//!
+//! The descending mode t of a saddle is left out too. Its eigenvalue λ₁ is divided out if it is well above the rounding error; if it
+//! is all but flat, it is pinned as well, and the pin taken back through a second border column, so that no small number is
+//! divided by (see `Pinned` of the module `saddle`):
+//!
+//! ```text
+//! C = [t, −e],  S = diag(0, 1/κ) − Cᵀ(H' + κ e eᵀ)⁻¹C,    det'H/λ₁ = −κ det(H' + κ e eᵀ) det S / (κ^P det(EᵀZ)²)
+//! ```
+
+use super::Unstable;
+use crate::linalg::{Banded, Ldl, slab};
+use crate::saddle::pin;
+
+/// A Hessian whose zero modes are pinned, factorised; without its descending mode, if it has one.
+#[derive(Debug)]
+pub struct PinnedHessian {
+    matrix: Banded,
+    factors: Ldl,
+    /// Modes that are left out as they are: zero modes, and a stiff descending one.
+    zeros: Vec<Vec<f64>>,
+    descending: Option<Descending>,
+    log_determinant: f64,
+}
+
+/// From this part of ‖H‖₁ on an eigenvalue is no small number. (A pin on a stiff mode could make the matrix singular.)
+const STIFF: f64 = 1e-5;
+
+/// The border that leaves a flat descending mode out.
+#[derive(Debug)]
+struct Descending {
+    columns: [Vec<f64>; 2],
+    solved: [Vec<f64>; 2],
+    schur: [[f64; 2]; 2],
+}
+
+impl PinnedHessian {
+    /// Of a Hessian (meV) with these orthonormal zero modes and, at a saddle, its descending mode (unit, orthogonal to them); κ is
+    /// the stiffness of the pins (meV).
+    pub fn new(hessian: &Banded, zeros: &[Vec<f64>], descending: Option<&Unstable>, kappa: f64) -> PinnedHessian {
+        let mut matrix = hessian.clone();
+        let mut used = Vec::new();
+        let columns: Vec<Vec<f64>> = zeros.iter().map(|z| pin(&mut matrix, z, &mut used, kappa)).collect();
+        let flat = descending.filter(|u| -u.eigenvalue_mev < STIFF * hessian.norm1());
+        let soft = flat.map(|u| (u.mode.clone(), pin(&mut matrix, &u.mode, &mut used, kappa)));
+        let factors = matrix.clone().factor();
+        let overlaps: Vec<f64> = columns.iter().flat_map(|e| zeros.iter().map(move |z| slab::dot(e, z))).collect();
+        let added = zeros.len() as f64 * libm::log(kappa) + 2.0 * libm::log(determinant(&overlaps, zeros.len()).abs());
+        let log_determinant = factors.log_abs_determinant() - added;
+        let mut pinned = PinnedHessian { matrix, factors, zeros: zeros.to_vec(), descending: None, log_determinant };
+        if let Some(u) = descending.filter(|_| soft.is_none()) {
+            pinned.log_determinant -= libm::log(-u.eigenvalue_mev);
+            pinned.zeros.push(u.mode.clone());
+        }
+        if let Some((t, mut e)) = soft {
+            slab::scale(&mut e, -1.0);
+            pinned.leave_out([t, e], kappa);
+        }
+        pinned
+    }
+
+    fn leave_out(&mut self, columns: [Vec<f64>; 2], kappa: f64) {
+        let solved = [self.pinned_solution(&columns[0]), self.pinned_solution(&columns[1])];
+        let mut schur = [[0.0, 0.0], [0.0, 1.0 / kappa]];
+        for i in 0..2 {
+            for j in 0..2 {
+                schur[i][j] -= 0.5 * (slab::dot(&columns[i], &solved[j]) + slab::dot(&columns[j], &solved[i]));
+            }
+        }
+        let [[a, b], [c, d]] = schur;
+        self.log_determinant += libm::log(kappa) + libm::log((a * d - b * c).abs());
+        self.descending = Some(Descending { columns, solved, schur });
+    }
+
+    /// ln|det'H|, energies in meV; without the descending mode's factor, if that was given.
+    pub fn log_determinant(&self) -> f64 {
+        self.log_determinant
+    }
+
+    /// The pinned matrix' solution, with one step of refinement.
+    fn pinned_solution(&self, b: &[f64]) -> Vec<f64> {
+        let mut x = b.to_vec();
+        self.factors.solve(&mut x, 1);
+        let mut r = vec![0.0; b.len()];
+        self.matrix.multiply(&x, &mut r);
+        r.iter_mut().zip(b).for_each(|(r, b)| *r = b - *r);
+        self.factors.solve(&mut r, 1);
+        slab::add_scaled(&mut x, 1.0, &r);
+        x
+    }
+
+    /// The solution of Hx = b in the space orthogonal to the zero modes and the descending one, for the part of b in that space.
+    pub fn solve(&self, b: &mut [f64]) {
+        remove(b, &self.zeros);
+        self.factors.solve(b, 1);
+        if let Some(Descending { columns, solved, schur: [[a, b01], [c, d]] }) = &self.descending {
+            let r = [-slab::dot(&columns[0], b), -slab::dot(&columns[1], b)];
+            let determinant = a * d - b01 * c;
+            slab::add_scaled(b, -(d * r[0] - b01 * r[1]) / determinant, &solved[0]);
+            slab::add_scaled(b, -(a * r[1] - c * r[0]) / determinant, &solved[1]);
+        }
+        remove(b, &self.zeros);
+    }
+}
+
+/// ln|det'H| (energies in meV) of a Hessian with these orthonormal zero modes; κ is any stiffness of the Hessian's size (meV).
+pub fn log_determinant(hessian: &Banded, zeros: &[Vec<f64>], kappa: f64) -> f64 {
+    PinnedHessian::new(hessian, zeros, None, kappa).log_determinant()
+}
+
+/// v without its parts along orthonormal directions.
+pub(super) fn remove(v: &mut [f64], directions: &[Vec<f64>]) {
+    for d in directions {
+        let overlap = slab::dot(d, v);
+        slab::add_scaled(v, -overlap, d);
+    }
+}
+
+/// The determinant of an n × n matrix of a few rows, by elimination with row exchanges.
+fn determinant(matrix: &[f64], n: usize) -> f64 {
+    let mut a = matrix.to_vec();
+    let mut product = 1.0;
+    for j in 0..n {
+        let p = (j..n).fold(j, |p, r| if a[r * n + j].abs() > a[p * n + j].abs() { r } else { p });
+        if a[p * n + j] == 0.0 {
+            return 0.0;
+        }
+        if p != j {
+            (0..n).for_each(|k| a.swap(j * n + k, p * n + k));
+            product = -product;
+        }
+        product *= a[j * n + j];
+        for i in j + 1..n {
+            let l = a[i * n + j] / a[j * n + j];
+            (j..n).for_each(|k| a[i * n + k] -= l * a[j * n + k]);
+        }
+    }
+    product
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{RngExt, SeedableRng};
+
+    #[test]
+    fn the_zero_mode_of_a_free_string_leaves_the_product_of_the_others() {
+        // A free string of n beads has the eigenvalues 2 − 2 cos(πk/n); those with k > 0 multiply to n.
+        for n in [2, 7, 300] {
+            let mut a = Banded::zeros(2 * n, 3, 0);
+            for i in 0..n {
+                for c in 0..2 {
+                    let ends = usize::from(i == 0) + usize::from(i + 1 == n);
+                    a.add(2 * i + c, 2 * i + c, 2.0 - ends as f64);
+                    if i > 0 {
+                        a.add(2 * i + c, 2 * i - 2 + c, -1.0);
+                    }
+                }
+            }
+            let zero = |c: usize| (0..2 * n).map(|k| if k % 2 == c { 1.0 / (n as f64).sqrt() } else { 0.0 }).collect();
+            let found = log_determinant(&a, &[zero(0), zero(1)], 2.0);
+            assert!((found - 2.0 * libm::log(n as f64)).abs() < 1e-12 * n as f64, "{n}: {found}");
+        }
+    }
+
+    #[test]
+    fn a_descending_mode_is_left_out_however_flat_it_is() {
+        // eigenvalues 1 … n along random axes, the lowest replaced by −λ: dense in a band as wide as the matrix
+        let n = 6;
+        let mut r = rand_chacha::ChaCha8Rng::seed_from_u64(8);
+        let random: Vec<Vec<f64>> = (0..n).map(|_| (0..n).map(|_| r.random_range(-1.0..1.0)).collect()).collect();
+        let axes = crate::saddle::orthonormal(random, 1e-3);
+        for lambda in [1.0, 1e-3, 1e-9, 0.0] {
+            let value = |k: usize| if k == 0 { -lambda } else { (k + 1) as f64 };
+            let mut a = Banded::zeros(n, n, 0);
+            for i in 0..n {
+                for j in 0..=i {
+                    a.add(i, j, (0..n).map(|k| value(k) * axes[k][i] * axes[k][j]).sum());
+                }
+            }
+            let descending = Unstable { eigenvalue_mev: -lambda, mode: axes[0].clone() };
+            let pinned = PinnedHessian::new(&a, &[], Some(&descending), 3.0);
+            assert!((pinned.log_determinant() - libm::log(720.0)).abs() < 1e-12, "{lambda}");
+            let mut x = axes[1].clone();
+            slab::add_scaled(&mut x, 2.0, &axes[0]);
+            pinned.solve(&mut x);
+            assert!(x.iter().zip(&axes[1]).all(|(x, e)| (x - 0.5 * e).abs() < 1e-12), "{lambda}");
+        }
+    }
+
+    #[test]
+    fn determinants_of_small_matrices_are_right() {
+        assert_eq!(determinant(&[], 0), 1.0);
+        assert_eq!(determinant(&[0.0, 2.0, 3.0, 0.0], 2), -6.0);
+        assert_eq!(determinant(&[0.0; 4], 2), 0.0);
+    }
+}

@@ -1,0 +1,73 @@
+//! What rates are asked for.
+
+use crate::units::HBAR;
+
+/// A theory of rates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Theory {
+    /// Harmonic transition-state theory, without damping.
+    Htst,
+    /// Langer's theory, with damping.
+    Langer,
+}
+
+impl Theory {
+    /// All of them.
+    pub const ALL: [Theory; 2] = [Theory::Htst, Theory::Langer];
+
+    /// Its name in configs and results.
+    pub fn name(self) -> &'static str {
+        match self {
+            Theory::Htst => "htst",
+            Theory::Langer => "langer",
+        }
+    }
+}
+
+/// Temperatures, dynamics and theories.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RateSettings {
+    /// Temperatures (K), greater than 0.
+    pub temperatures_k: Vec<f64>,
+    /// Gilbert damping α.
+    pub damping: f64,
+    /// g factor: γ = g μ_B/ħ.
+    pub g_factor: f64,
+    /// Which theories.
+    pub theories: Vec<Theory>,
+    /// Moment of each site (μ_B), greater than 0.
+    pub moments_mub: Vec<f64>,
+}
+
+impl RateSettings {
+    /// γ/μ of each site in rad/s per meV: g/(ħ n) for n Bohr magnetons.
+    pub fn gyration_per_s_mev(&self) -> Vec<f64> {
+        self.moments_mub.iter().map(|n| 1e12 * self.g_factor / (HBAR * n)).collect()
+    }
+
+    /// Whether a theory is asked for.
+    pub fn wants(&self, theory: Theory) -> bool {
+        self.theories.contains(&theory)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_moment_of_one_bohr_magneton_with_g_of_2_precesses_with_28_ghz_in_a_tesla() {
+        let settings = RateSettings {
+            temperatures_k: vec![300.0],
+            damping: 0.1,
+            g_factor: 2.0,
+            theories: Theory::ALL.to_vec(),
+            moments_mub: vec![1.0, 2.0],
+        };
+        let [one, two] = settings.gyration_per_s_mev()[..] else { panic!("two sites") };
+        // 2 μ_B/h = 27.992 GHz/T
+        let ghz = one * crate::units::MU_B_MEV_PER_T / (2.0 * std::f64::consts::PI) * 1e-9;
+        assert!((ghz - 27.9925).abs() < 1e-3, "{ghz}");
+        assert_eq!(two, 0.5 * one);
+    }
+}

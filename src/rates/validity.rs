@@ -1,0 +1,177 @@
+//! Where the numbers are rough: low barriers, large fluctuations, flat tops, weak damping; with the range that each leaves.
+
+use super::determinant::PinnedHessian;
+use super::{Prefactor, RateSettings, Unstable};
+use crate::energy::Hamiltonian;
+use crate::saddle::State;
+use crate::units::K_B;
+use std::f64::consts::PI;
+
+/// Barriers below so many k_BT are low.
+const LOW_BARRIER: f64 = 5.0;
+/// A mean square deviation of a spin (rad²) from which the harmonic approximation is rough.
+const LARGE: f64 = 0.3;
+/// A relative error of the descending curvature that is worth a word.
+const VAGUE: f64 = 1e-6;
+/// Damping times ΔE/k_BT below which the bath feeds energy slowly.
+const WEAK: f64 = 3.0;
+
+/// Thermal fluctuations of the spins about a stationary state, per k_BT.
+#[derive(Clone, Copy, Debug)]
+pub struct Fluctuations {
+    /// Largest mean square angle of the probed spins over k_BT (rad²/meV), zero modes and the descending mode apart.
+    pub mean_square_per_mev: f64,
+    /// Largest square of a spin's part in the descending mode over its |curvature| (rad²/meV); 0 at a minimum.
+    pub top_per_mev: f64,
+}
+
+impl Fluctuations {
+    /// About a minimum.
+    pub fn of_minimum(h: &Hamiltonian, state: &State, pinned: &PinnedHessian, unstable: &Unstable) -> Fluctuations {
+        let around = probes(h, unstable).into_iter().map(|i| mean_square(state, pinned, i));
+        Fluctuations { mean_square_per_mev: around.fold(0.0, f64::max), top_per_mev: 0.0 }
+    }
+
+    /// About a saddle.
+    pub fn of_saddle(h: &Hamiltonian, state: &State, pinned: &PinnedHessian, unstable: &Unstable) -> Fluctuations {
+        let own = |i: usize| part(&unstable.mode, i) / -unstable.eigenvalue_mev;
+        let around = probes(h, unstable).into_iter().map(|i| mean_square(state, pinned, i));
+        let top = (0..h.sites()).map(own).fold(0.0, f64::max);
+        Fluctuations { mean_square_per_mev: around.fold(0.0, f64::max), top_per_mev: top }
+    }
+}
+
+/// |v_i|² of a tangent vector on a site.
+fn part(v: &[f64], i: usize) -> f64 {
+    v[2 * i] * v[2 * i] + v[2 * i + 1] * v[2 * i + 1]
+}
+
+/// A few sites: the ends, the middle, and where the descending mode is largest.
+fn probes(h: &Hamiltonian, unstable: &Unstable) -> Vec<usize> {
+    let n = h.sites();
+    let largest = (0..n).fold(0, |b, i| if part(&unstable.mode, i) > part(&unstable.mode, b) { i } else { b });
+    let mut sites = vec![0, n / 2, n - 1, largest];
+    sites.sort_unstable();
+    sites.dedup();
+    sites.retain(|i| !h.is_frozen(*i));
+    sites
+}
+
+/// tr (H⁻¹)_ii: the mean square angle of spin i over k_BT (rad²/meV), zero modes apart.
+fn mean_square(state: &State, pinned: &PinnedHessian, i: usize) -> f64 {
+    let entry = |a: usize| {
+        let mut x = vec![0.0; state.slope.len()];
+        x[2 * i + a] = 1.0;
+        pinned.solve(&mut x);
+        x[2 * i + a]
+    };
+    entry(0) + entry(1)
+}
+
+/// What a user should know about the rates out of one minimum. `vague` is the rounding error of the saddle's descending curvature,
+/// relative to it.
+pub fn warnings(
+    settings: &RateSettings,
+    barrier_mev: f64,
+    [htst, langer]: [Option<Prefactor>; 2],
+    minimum: &Fluctuations,
+    saddle: &Fluctuations,
+    vague: f64,
+) -> Vec<String> {
+    if htst.is_none() && langer.is_none() {
+        return Vec::new();
+    }
+    let hottest = settings.temperatures_k.iter().copied().fold(0.0, f64::max);
+    let said = [
+        low_barrier(barrier_mev, hottest),
+        large_fluctuations("minimum", minimum, hottest),
+        large_fluctuations("saddle", saddle, hottest),
+        flat_top(saddle, hottest, htst, langer),
+        weak_damping(settings, barrier_mev, langer),
+        vague_curvature(vague, langer),
+    ];
+    said.into_iter().flatten().collect()
+}
+
+fn low_barrier(barrier_mev: f64, hottest: f64) -> Option<String> {
+    let from = barrier_mev / (LOW_BARRIER * K_B);
+    let delta = barrier_mev / (K_B * hottest);
+    let range = match delta >= 1.0 {
+        true => format!("the rate is known within a factor of about {:.2}", 1.0 + 1.0 / delta),
+        false => "nothing holds the state back, and the numbers are no rates".into(),
+    };
+    (hottest > from).then(|| {
+        format!(
+            "above {} the barrier is below {LOW_BARRIER} k_BT: the theories leave out terms of the order of k_BT/ΔE, so at \
+             {hottest} K (ΔE = {delta:.2} k_BT) {range}",
+            kelvin(from)
+        )
+    })
+}
+
+fn large_fluctuations(which: &str, spread: &Fluctuations, hottest: f64) -> Option<String> {
+    let from = LARGE / (K_B * spread.mean_square_per_mev.max(1e-300));
+    let angle = (K_B * hottest * spread.mean_square_per_mev).sqrt();
+    // a mode that is not harmonic is wrong by terms of the order of σ², one that is free by σ over its true extent
+    let range = match angle < PI {
+        true => format!("within a factor of about {:.2}", 1.0 + angle.min(angle * angle)),
+        false => "no better than as an order of magnitude, if at all: a mode reaches round the sphere".into(),
+    };
+    (hottest > from).then(|| {
+        format!(
+            "above {} a spin of the {which} fluctuates by more than {:.2} rad: its softest modes are not harmonic; at \
+             {hottest} K ({angle:.2} rad as if they were) the rate is known {range}",
+            kelvin(from),
+            LARGE.sqrt()
+        )
+    })
+}
+
+fn flat_top(saddle: &Fluctuations, hottest: f64, htst: Option<Prefactor>, langer: Option<Prefactor>) -> Option<String> {
+    let from = LARGE / (K_B * saddle.top_per_mev.max(1e-300));
+    let range = match (htst.map(|p| p.ln_hz), langer.map(|p| p.ln_hz)) {
+        (Some(h), Some(l)) if h > l => {
+            format!(": the rate lies between Langer's and that of HTST, {:.3} times it", libm::exp(h - l))
+        }
+        (_, Some(_)) => {
+            let factor = (saddle.top_per_mev * K_B * hottest / LARGE).sqrt();
+            format!(": Langer's rate may be too small by a factor of up to about {factor:.2} at {hottest} K")
+        }
+        _ => ": HTST counts every return over it, and may be far above the rate".into(),
+    };
+    (hottest > from)
+        .then(|| format!("above {} the top of the path is flat over what k_BT can climb{range}", kelvin(from)))
+}
+
+/// Langer's rate goes with the root of the descending curvature, which may be little more than rounding.
+fn vague_curvature(vague: f64, langer: Option<Prefactor>) -> Option<String> {
+    langer.filter(|_| vague > VAGUE)?;
+    Some(format!(
+        "the curvature of the descending mode is known to {:.1e} of itself only, and Langer's rate to half of that",
+        vague
+    ))
+}
+
+/// A temperature in a few digits.
+fn kelvin(t: f64) -> String {
+    if t < 0.01 { format!("{t:.1e} K") } else { format!("{t:.4} K") }
+}
+
+/// Langer's rate needs a bath that makes good, between two attempts, the energy that a crossing takes. Where α ΔE/k_BT is small it
+/// does not, and the rate falls with α; α Δ/(1 + α Δ) is what is left of it, roughly, between the two limits (for one spin with
+/// K_hard = 2 K the true factor is 0.48 at α Δ = 0.4 and 0.79 at 1: example 04).
+fn weak_damping(settings: &RateSettings, barrier_mev: f64, langer: Option<Prefactor>) -> Option<String> {
+    langer?;
+    let coldest = settings.temperatures_k.iter().copied().fold(f64::INFINITY, f64::min);
+    let hottest = settings.temperatures_k.iter().copied().fold(0.0, f64::max);
+    let at = |t: f64| settings.damping * barrier_mev / (K_B * t);
+    (at(hottest) < WEAK).then(|| {
+        let from = (settings.damping * barrier_mev / (WEAK * K_B)).max(coldest);
+        let left = at(hottest) / (1.0 + at(hottest));
+        format!(
+            "from {} on, damping times ΔE/k_BT is below {WEAK}: the bath feeds energy slowly, and the rate lies between \
+             Langer's and, at {hottest} K, about {left:.3} times that",
+            kelvin(from)
+        )
+    })
+}

@@ -1,0 +1,185 @@
+//! Rates as a user meets them: in a run's files, and by `spinneb rate` for a result that is there.
+
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// A short chain with two anisotropies; site 1 has a moment of its own.
+const CONFIG: &str = r#"{
+  "material": {"name": "toy", "moment": "2 mu_B", "energy": [
+    {"exchange": {"J": ["10 meV"]}},
+    {"anisotropy": {"K": "0.5 meV", "axis": [0, 0, 1]}},
+    {"anisotropy": {"K": "-0.25 meV", "axis": [1, 0, 0]}}
+  ]},
+  "lattice": {"chain": {"sites": 3, "moments": [{"sites": [1], "moment": "4 mu_B"}]}},
+  "initial": {"uniform": {"direction": [0, 0, 1]}},
+  "final": {"uniform": {"direction": [0, 0, -1]}},
+  "rates": {"temperatures": ["1 K", "3 K"], "damping": 0.2}
+}"#;
+
+fn spinneb(folder: &Path, arguments: &[&str]) -> (Option<i32>, String, String) {
+    let Output { status, stdout, stderr } =
+        Command::new(env!("CARGO_BIN_EXE_spinneb")).current_dir(folder).args(arguments).output().unwrap();
+    (status.code(), String::from_utf8(stdout).unwrap(), String::from_utf8(stderr).unwrap())
+}
+
+fn folder(config: &str) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("chain.json"), config).unwrap();
+    folder
+}
+
+fn summary(folder: &Path) -> Value {
+    serde_json::from_slice(&fs::read(folder.join("results/chain/summary.json")).unwrap()).unwrap()
+}
+
+#[test]
+fn a_run_with_rates_writes_the_keys_the_table_and_the_figure() {
+    let folder = folder(CONFIG);
+    let (code, _, said) = spinneb(folder.path(), &["run", "chain.json"]);
+    assert_eq!(code, Some(0), "{said}");
+    assert!(said.contains("chain: mean lifetime of the initial state: "), "{said}");
+    let summary = summary(folder.path());
+    let rates = summary["rates"].as_array().unwrap();
+    let names: Vec<_> =
+        rates.iter().map(|r| (r["saddle"].as_u64().unwrap(), r["direction"].as_str().unwrap())).collect();
+    assert_eq!(names, [(0, "forward"), (0, "backward")]);
+    let number = |v: &Value| v.as_f64().unwrap_or_else(|| panic!("{v} is no number"));
+    for r in rates {
+        // all three turn together: through +y or −y, with the mean of the inverse frequencies 1/γ of the three
+        assert_eq!(r["equivalent_saddles"], 2);
+        let (k, hard, moment) = (0.5, 0.25, (2.0 + 4.0 + 2.0) / 3.0);
+        let unit = 1e12 * 2.0 / (0.6582119569 * moment);
+        let langer = number(&r["growth_rate_per_s"]) / unit;
+        // the positive root of (1 + α²)λ² + α(ε₂ − |ε₁|)λ − |ε₁|ε₂: the uniform mode is exact if moments are equal, near if not
+        let (a, b, c) = (1.04, 0.2 * (2.0 * hard - 2.0 * k), -4.0 * k * hard);
+        let root = (-b + f64::sqrt(b * b - 4.0 * a * c)) / (2.0 * a);
+        assert!((langer / root - 1.0).abs() < 0.01, "{langer} {root}");
+        for t in r["temperatures"].as_array().unwrap() {
+            let (kelvin, delta) = (number(&t["temperature_K"]), number(&t["barrier_over_kT"]));
+            assert!((delta - 1.5 / (8.617333262e-2 * kelvin)).abs() < 1e-9 * delta);
+            for theory in ["htst", "langer"] {
+                let prefactor = number(&r[format!("{theory}_prefactor_Hz")]);
+                let rate = number(&t[format!("{theory}_rate_per_s")]);
+                assert!((rate / (2.0 * prefactor * (-delta).exp()) - 1.0).abs() < 1e-10);
+            }
+            let lifetime = number(&t["lifetime_s"]);
+            assert!((lifetime * number(&t["langer_rate_per_s"]) - 1.0).abs() < 1e-12);
+            assert!((lifetime.log10() - number(&t["log10_lifetime_s"])).abs() < 1e-10);
+        }
+        let [short, long] = ["1_s", "10_years"].map(|t| number(&r[format!("blocking_temperature_{t}_K")]));
+        assert!(0.0 < long && long < short && short < 1.0, "{long} {short}");
+        assert_eq!(
+            (&r["damping"], &r["g_factor"], r["refused"].as_object().unwrap().len()),
+            (&0.2.into(), &2.0.into(), 0)
+        );
+    }
+    let transitions = summary["transition_rates"].as_array().unwrap();
+    assert_eq!(transitions.len(), 2);
+    assert_eq!(transitions[0]["temperatures"], rates[0]["temperatures"]);
+    let csv = fs::read_to_string(folder.path().join("results/chain/rates.csv")).unwrap();
+    let lines: Vec<&str> = csv.lines().collect();
+    assert_eq!(
+        lines[0],
+        "saddle,direction,temperature_K,barrier_over_kT,htst_rate_per_s,langer_rate_per_s,lifetime_s,log10_lifetime_s"
+    );
+    let starts: Vec<String> = lines[1..].iter().map(|l| l.split(',').take(3).collect::<Vec<_>>().join(",")).collect();
+    let expected = ["0,forward,", "0,backward,", "all,forward,", "all,backward,"];
+    assert_eq!(starts, expected.iter().flat_map(|s| [format!("{s}1.0"), format!("{s}3.0")]).collect::<Vec<_>>());
+    let svg = fs::read_to_string(folder.path().join("results/chain/arrhenius.svg")).unwrap();
+    assert!(svg.starts_with("<svg") && !svg.contains("NaN") && !svg.contains("inf"));
+    assert!(fs::metadata(folder.path().join("results/chain/arrhenius.png")).unwrap().len() > 1000);
+}
+
+#[test]
+fn lifetimes_beyond_what_a_double_holds_are_null_with_their_logarithm() {
+    let folder = folder(&CONFIG.replace("\"1 K\", \"3 K\"", "\"10 mK\""));
+    assert_eq!(spinneb(folder.path(), &["run", "chain.json", "--quiet"]).0, Some(0));
+    let summary = summary(folder.path());
+    let cold = &summary["rates"][0]["temperatures"][0];
+    assert_eq!((&cold["htst_rate_per_s"], &cold["lifetime_s"]), (&0.0.into(), &Value::Null));
+    assert!(cold["log10_lifetime_s"].as_f64().unwrap() > 700.0);
+    let csv = fs::read_to_string(folder.path().join("results/chain/rates.csv")).unwrap();
+    assert!(csv.lines().nth(1).unwrap().contains(",0.0,0.0,,7"), "{csv}");
+}
+
+#[test]
+fn rates_of_a_finished_result_are_those_of_a_run_that_asks_for_them() {
+    let asked = folder(CONFIG);
+    assert_eq!(spinneb(asked.path(), &["run", "chain.json", "--quiet"]).0, Some(0));
+    let plain = folder(&CONFIG.replace(",\n  \"rates\": {\"temperatures\": [\"1 K\", \"3 K\"], \"damping\": 0.2}", ""));
+    assert_eq!(spinneb(plain.path(), &["run", "chain.json", "--quiet"]).0, Some(0));
+    let before = summary(plain.path());
+    assert!(before.get("rates").is_none() && !plain.path().join("results/chain/rates.csv").exists());
+    let arguments = ["rate", "results/chain", "--temperature", "1 K", "-T", "3K", "--damping", "0.2"];
+    let (code, out, said) = spinneb(plain.path(), &arguments);
+    assert_eq!(code, Some(0), "{said}");
+    assert!(said.contains("found anew from its config"), "{said}");
+    assert_eq!(out.lines().count(), 5, "{out}");
+    let (after, wanted) = (summary(plain.path()), summary(asked.path()));
+    assert_eq!(after["rates"], wanted["rates"]);
+    assert_eq!(after["transition_rates"], wanted["transition_rates"]);
+    assert_eq!(after["config_sha256"], before["config_sha256"]);
+    assert_eq!(after["barrier_meV"], before["barrier_meV"]);
+    for file in ["rates.csv", "arrhenius.svg"] {
+        let read = |folder: &Path| fs::read(folder.join("results/chain").join(file)).unwrap();
+        assert_eq!(read(plain.path()), read(asked.path()));
+    }
+    let (code, out, said) =
+        spinneb(plain.path(), &["rate", "results/chain", "-T", "2 K", "--theory", "langer", "--json", "--quiet"]);
+    assert_eq!((code, said.as_str()), (Some(0), ""));
+    let line: Value = serde_json::from_str(&out).unwrap();
+    assert_eq!(
+        (&line["forward"][0]["temperature_K"], &line["forward"][0]["htst_rate_per_s"]),
+        (&2.0.into(), &Value::Null)
+    );
+    assert!(line["forward"][0]["langer_rate_per_s"].as_f64().unwrap() > 0.0);
+}
+
+#[test]
+fn a_folder_without_a_result_or_without_moments_is_refused_in_words() {
+    let folder = folder(
+        &CONFIG
+            .replace("\"moment\": \"2 mu_B\", ", "")
+            .replace(",\n  \"rates\": {\"temperatures\": [\"1 K\", \"3 K\"], \"damping\": 0.2}", ""),
+    );
+    let (code, _, said) = spinneb(folder.path(), &["rate", "results/chain", "-T", "3 K"]);
+    assert_eq!(
+        (code, said.as_str()),
+        (Some(2), "error: results/chain holds no finished result: run its config first, then ask for its rates\n")
+    );
+    assert_eq!(spinneb(folder.path(), &["run", "chain.json", "--quiet"]).0, Some(0));
+    let (code, _, said) = spinneb(folder.path(), &["rate", "results/chain", "-T", "3 K"]);
+    assert_eq!(code, Some(2));
+    assert!(said.contains("a rate needs the moments of the sites"), "{said}");
+    let config = folder.path().join("results/chain/config.json");
+    let changed = fs::read_to_string(&config).unwrap().replace("0.5 meV", "0.6 meV");
+    fs::write(&config, changed).unwrap();
+    let (code, _, said) = spinneb(folder.path(), &["rate", "results/chain", "-T", "3 K"]);
+    assert_eq!(code, Some(2));
+    assert!(said.contains("is not the config of summary.json"), "{said}");
+}
+
+#[test]
+fn a_refused_theory_is_said_and_does_not_fail_the_run() {
+    let uniaxial = CONFIG.replace(",\n    {\"anisotropy\": {\"K\": \"-0.25 meV\", \"axis\": [1, 0, 0]}}", "");
+    let folder = folder(&uniaxial);
+    let (code, _, said) = spinneb(folder.path(), &["run", "chain.json"]);
+    assert_eq!(code, Some(0), "{said}");
+    assert!(
+        said.contains("warning: no rate by htst: the energy is the same for all turns about (0.000, 0.000, 1.000)")
+    );
+    let summary = summary(folder.path());
+    let r = &summary["rates"][0];
+    assert!(r["htst_prefactor_Hz"].is_null() && r["langer_prefactor_Hz"].as_f64().unwrap() > 0.0);
+    assert!(r["refused"]["htst"].as_str().unwrap().contains("conserved"));
+    assert_eq!((&r["prefactor_temperature_K"], &r["prefactor_temperature_exponent"]), (&1.0.into(), &(-0.5).into()));
+    let zero = &r["saddle_zero_modes"][0];
+    assert_eq!((&zero["kind"], &zero["modes"]), (&"rotation".into(), &1.into()));
+    assert!((zero["volume_rad"].as_f64().unwrap() - 2.0 * std::f64::consts::PI * 3f64.sqrt()).abs() < 1e-9);
+    // undamped, nothing is left: the command says so with another code
+    let (code, out, _) = spinneb(folder.path(), &["rate", "results/chain", "-T", "1 K", "--damping", "0"]);
+    assert_eq!(code, Some(3));
+    assert!(out.contains("none: the energy is the same for all turns"), "{out}");
+}

@@ -1,0 +1,509 @@
+//! Rates against closed forms, the reference and dense eigenvalues; what has no rate is refused.
+
+mod common;
+
+use common::{Build, cases, number, solve};
+use rand::{Rng, RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use spinneb::drive::{Outcome, Problem};
+use spinneb::energy::{Anisotropy, Exchange, Hamiltonian};
+use spinneb::geometry::{Direction, tangent_basis, vector};
+use spinneb::lattice::Chain;
+use spinneb::linalg::eigen_symmetric;
+use spinneb::rates::{RateSettings, SaddleRate, Theory, Way, ZeroKind};
+use spinneb::spins::Spins;
+use spinneb::units::{HBAR, K_B};
+use std::f64::consts::PI;
+
+/// Both theories at one temperature, moments of n μ_B each.
+fn settings(sites: usize, moment: f64, damping: f64, kelvin: f64) -> RateSettings {
+    RateSettings {
+        temperatures_k: vec![kelvin],
+        damping,
+        g_factor: 2.0,
+        theories: Theory::ALL.to_vec(),
+        moments_mub: vec![moment; sites],
+    }
+}
+
+/// γ/μ times 1 meV, in Hz.
+fn unit_hz(moment: f64) -> f64 {
+    1e12 * 2.0 / (HBAR * moment)
+}
+
+fn with(mut problem: Problem, settings: RateSettings) -> Problem {
+    problem.rates = Some(settings);
+    problem
+}
+
+fn rate(outcome: &Outcome, way: Way) -> &SaddleRate {
+    let rates = outcome.rates.as_ref().expect("rates");
+    rates.saddles.iter().find(|r| r.way == way && r.saddle == 0).expect("a saddle")
+}
+
+#[test]
+fn the_reference_is_met_by_both_theories_at_all_dampings() {
+    let reference = cases();
+    let tolerance = number(&reference["rates"], "tolerance");
+    for case in reference["rates"]["cases"].as_array().expect("cases") {
+        let n = case["N"].as_u64().expect("N") as usize;
+        let build = || Build::open(n).easy(number(case, "K")).hard(number(case, "K_hard"));
+        for (damping, expected) in case["langer"].as_object().expect("langer") {
+            let alpha: f64 = damping.parse().expect("a damping");
+            let outcome = solve(&with(build().reversal(), settings(n, 1.5, alpha, 10.0)));
+            assert!(outcome.certified);
+            let r = rate(&outcome, Way::Forward);
+            let htst = r.htst.expect("HTST").hz_at(10.0) / unit_hz(1.5);
+            let langer = r.langer.expect("Langer").hz_at(10.0) / unit_hz(1.5);
+            let expected = expected.as_f64().expect("a number");
+            assert!((htst / number(case, "htst") - 1.0).abs() < tolerance, "N = {n}: {htst}");
+            assert!((langer / expected - 1.0).abs() < tolerance, "N = {n}, α = {alpha}: {langer}, {expected}");
+        }
+    }
+}
+
+#[test]
+fn a_moment_twice_as_large_halves_the_prefactor_and_the_closed_form_is_met() {
+    for (k, hard) in [(2.0, 0.7), (1.0, 2.0), (1.0, 1.0), (0.3, 5.0)] {
+        one_spin(k, hard);
+    }
+}
+
+fn one_spin(k: f64, hard: f64) {
+    let prefactors = [1.0, 2.0].map(|moment| {
+        let problem = Build::open(1).easy(k).hard(hard).reversal();
+        let outcome = solve(&with(problem, settings(1, moment, 0.3, 5.0)));
+        let r = rate(&outcome, Way::Forward).clone();
+        [r.htst, r.langer].map(|p| p.expect("a prefactor").hz_at(5.0))
+    });
+    for (one, two) in prefactors[0].iter().zip(&prefactors[1]) {
+        assert!((one / two - 2.0).abs() < 1e-13, "{one} {two}");
+    }
+    let closed = (k * (k + hard)).sqrt() / PI * unit_hz(1.0);
+    assert!((prefactors[0][0] / closed - 1.0).abs() < 1e-12);
+    // Langer's λ₊ of one spin: the positive root of (1 + α²) λ² + α (ε₂ − |ε₁|) λ − |ε₁| ε₂, in units of γ/μ
+    let (down, up, alpha) = (2.0 * k, 2.0 * hard, 0.3f64);
+    let (a, b, c) = (1.0 + alpha * alpha, alpha * (up - down), -up * down);
+    let growth = (-b + (b * b - 4.0 * a * c).sqrt()) / (2.0 * a);
+    let langer = growth / (2.0 * PI) * (2.0 * k * 2.0 * (k + hard) / (up * down)).sqrt() * unit_hz(1.0);
+    assert!((prefactors[0][1] / langer - 1.0).abs() < 1e-12);
+}
+
+/// A stationary state in dense arithmetic: its tangent Hessian from products with single vectors, and its eigenvalues.
+struct Dense {
+    m: Spins,
+    basis: Vec<f64>,
+    hessian: Vec<f64>,
+    values: Vec<f64>,
+    vectors: Vec<Vec<f64>>,
+}
+
+impl Dense {
+    fn new(h: &Hamiltonian, m: Spins) -> Dense {
+        let n = m.sites();
+        let mut g = vec![0.0; 3 * n];
+        h.energy_gradient(m.as_slice(), &mut g);
+        // basis[k] is the k-th tangent unit vector as a field of 3N numbers
+        let mut basis = vec![0.0; 2 * n * 3 * n];
+        for i in 0..n {
+            let (u, v) = tangent_basis(m.get(i));
+            for c in 0..3 {
+                basis[2 * i * 3 * n + c * n + i] = u[c];
+                basis[(2 * i + 1) * 3 * n + c * n + i] = v[c];
+            }
+        }
+        let mut hessian = vec![0.0; 4 * n * n];
+        let mut out = vec![0.0; 3 * n];
+        for k in 0..2 * n {
+            h.hessian_product(m.as_slice(), &g, &basis[k * 3 * n..(k + 1) * 3 * n], &mut out);
+            for j in 0..2 * n {
+                hessian[j * 2 * n + k] = basis[j * 3 * n..(j + 1) * 3 * n].iter().zip(&out).map(|(a, b)| a * b).sum();
+            }
+        }
+        for j in 0..2 * n {
+            for k in 0..j {
+                let mean = 0.5 * (hessian[j * 2 * n + k] + hessian[k * 2 * n + j]);
+                (hessian[j * 2 * n + k], hessian[k * 2 * n + j]) = (mean, mean);
+            }
+        }
+        let (values, vectors) = eigen_symmetric(&hessian, 2 * n);
+        Dense { m, basis, hessian, values, vectors }
+    }
+
+    /// Eigenvalues without the `zeros` smallest ones in size, with their place.
+    fn without_zeros(&self, zeros: usize) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..self.values.len()).collect();
+        order.sort_by(|a, b| self.values[*a].abs().total_cmp(&self.values[*b].abs()));
+        let mut kept = order.split_off(zeros);
+        kept.sort_unstable();
+        kept
+    }
+
+    fn log_determinant(&self, zeros: usize) -> f64 {
+        self.without_zeros(zeros).iter().map(|k| self.values[*k].abs().ln()).sum()
+    }
+
+    /// m × (H e_k), weighted site by site, in tangent coordinates.
+    fn velocity(&self, k: usize, gyration: &[f64]) -> Vec<f64> {
+        let n = self.m.sites();
+        let size = 2 * n;
+        let image: Vec<f64> =
+            (0..size).map(|j| (0..size).map(|l| self.hessian[j * size + l] * self.vectors[k][l]).sum()).collect();
+        let mut field = vec![[0.0; 3]; n];
+        for j in 0..size {
+            for (i, f) in field.iter_mut().enumerate() {
+                for c in 0..3 {
+                    f[c] += image[j] * self.basis[j * 3 * n + c * n + i];
+                }
+            }
+        }
+        let turned: Vec<_> =
+            (0..n).map(|i| vector::scale(gyration[i], vector::cross(self.m.get(i), field[i]))).collect();
+        (0..size)
+            .map(|j| {
+                (0..n).map(|i| (0..3).map(|c| turned[i][c] * self.basis[j * 3 * n + c * n + i]).sum::<f64>()).sum()
+            })
+            .collect()
+    }
+
+    /// √(Σ' a_j²/ε_j) √|ε₁| as Bessarab, Uzdin and Jónsson write it (rad/s for Γ in rad/s per meV).
+    fn htst_frequency(&self, zeros: usize, gyration: &[f64]) -> f64 {
+        let kept = self.without_zeros(zeros);
+        let squares = kept[1..].iter().map(|&j| {
+            let a: f64 = self.velocity(j, gyration).iter().zip(&self.vectors[kept[0]]).map(|(v, e)| v * e).sum();
+            a * a / self.values[j]
+        });
+        (squares.sum::<f64>() * self.values[kept[0]].abs()).sqrt()
+    }
+
+    /// The eigenvalue with a positive real part of −Γ(α + R)H/(1 + α²): the limit of tr(A e^{At})/tr(e^{At}).
+    fn growth_rate(&self, gyration: &[f64], alpha: f64) -> f64 {
+        let size = self.values.len();
+        let scale =
+            gyration.iter().fold(0.0f64, |s, g| s.max(*g)) * self.values.iter().fold(0.0f64, |s, v| s.max(v.abs()));
+        let mut a = vec![0.0; size * size];
+        for i in 0..size / 2 {
+            let s = gyration[i] / (1.0 + alpha * alpha) / scale;
+            for k in 0..size {
+                let (p, q) = (self.hessian[2 * i * size + k], self.hessian[(2 * i + 1) * size + k]);
+                a[2 * i * size + k] = -s * (alpha * p - q);
+                a[(2 * i + 1) * size + k] = -s * (alpha * q + p);
+            }
+        }
+        let multiply = |a: &[f64], b: &[f64]| -> Vec<f64> {
+            (0..size * size)
+                .map(|k| (0..size).map(|l| a[k / size * size + l] * b[l * size + k % size]).sum::<f64>())
+                .collect()
+        };
+        let trace = |a: &[f64]| (0..size).map(|k| a[k * size + k]).sum::<f64>();
+        // e^A by its series, then squared until nothing but the growing mode is left
+        let mut power: Vec<f64> = (0..size * size).map(|k| f64::from(u8::from(k / size == k % size))).collect();
+        let mut exponential = power.clone();
+        for order in 1..40 {
+            power = multiply(&power, &a).iter().map(|v| v / f64::from(order)).collect();
+            exponential.iter_mut().zip(&power).for_each(|(e, p)| *e += p);
+        }
+        for _ in 0..40 {
+            exponential = multiply(&exponential, &exponential);
+            let largest = exponential.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+            exponential.iter_mut().for_each(|v| *v /= largest);
+        }
+        scale * trace(&multiply(&a, &exponential)) / trace(&exponential)
+    }
+}
+
+/// A short chain of random terms with unequal moments, and whether turns about z leave its energy as it is.
+fn random_chain(r: &mut impl Rng, uniaxial: bool) -> (Problem, RateSettings) {
+    let n = r.random_range(2..7);
+    let chain = if n > 3 && r.random_bool(0.3) { Chain::ring(n) } else { Chain::open(n) };
+    let mut exchange = Exchange::uniform(&chain, &[1.0]);
+    let mut easy = Anisotropy::uniform(n, 0.0, Direction::Z);
+    let mut hard = Anisotropy::uniform(n, 0.0, Direction::X);
+    exchange.shells[0][..chain.bonds(1)].iter_mut().for_each(|j| *j = r.random_range(0.5..1.5));
+    easy.k.iter_mut().for_each(|k| *k = r.random_range(0.2..0.8));
+    hard.k.iter_mut().for_each(|k| *k = -r.random_range(0.1..0.6));
+    let mut build = Build { chain, terms: vec![Box::new(exchange), Box::new(easy)] };
+    if uniaxial {
+        build = build.field([0.0, 0.0, r.random_range(-0.1..0.1)]);
+    } else {
+        let field = [0, 1, 2].map(|_| r.random_range(-0.1..0.1));
+        build = build.with(hard).field(field);
+    }
+    let moments_mub = (0..n).map(|_| r.random_range(0.5..4.0)).collect();
+    let damping = r.random_range(0.02..1.5);
+    (build.reversal(), RateSettings { moments_mub, damping, ..settings(n, 1.0, 0.0, 3.0) })
+}
+
+#[test]
+fn a_hundred_random_chains_agree_with_dense_eigenvalues() {
+    let mut r = ChaCha8Rng::seed_from_u64(11);
+    let (mut plain, mut turning, mut left) = (0, 0, 0);
+    while plain < 60 || turning < 40 {
+        let uniaxial = turning < 40 && (plain >= 60 || turning <= plain);
+        let (problem, settings) = random_chain(&mut r, uniaxial);
+        let problem = with(problem, settings.clone());
+        let outcome = solve(&problem);
+        if !outcome.certified {
+            left += 1;
+            continue;
+        }
+        check_against_dense(&problem.hamiltonian, &outcome, &settings, uniaxial);
+        (plain, turning) = if uniaxial { (plain, turning + 1) } else { (plain + 1, turning) };
+    }
+    assert!(left <= 5, "{left} random chains could not be certified");
+}
+
+fn check_against_dense(h: &Hamiltonian, outcome: &Outcome, settings: &RateSettings, uniaxial: bool) {
+    let found = rate(outcome, Way::Forward);
+    let top = Dense::new(h, outcome.saddles[0].spins.clone());
+    let bottom = Dense::new(h, outcome.path.spins(0));
+    let zeros = usize::from(uniaxial);
+    let gyration: Vec<f64> = settings.moments_mub.iter().map(|n| unit_hz(*n)).collect();
+    let sines: f64 = (0..top.m.sites()).map(|i| 1.0 - top.m.get(i)[2].powi(2)).sum();
+    let t = settings.temperatures_k[0];
+    let volume = if uniaxial { 2.0 * PI * sines.sqrt() / (2.0 * PI * K_B * t).sqrt() } else { 1.0 };
+    let entropy = 0.5 * (bottom.log_determinant(0) - top.log_determinant(zeros));
+    let expected = |frequency: f64| frequency / (2.0 * PI) * entropy.exp() * volume;
+    let langer = expected(top.growth_rate(&gyration, settings.damping));
+    let own = found
+        .langer
+        .as_ref()
+        .unwrap_or_else(|| panic!("no Langer rate: {:?} {:?} {:?}", found.refused, outcome.saddles, outcome.warnings))
+        .hz_at(t);
+    assert!((own / langer - 1.0).abs() < 1e-9, "Langer {own} {langer}");
+    assert!((found.entropy_factor.expect("entropy") - entropy).abs() < 1e-9);
+    if uniaxial {
+        assert!(found.htst.is_none() && found.refused.len() == 1);
+        assert_eq!((found.saddle_zeros.len(), found.saddle_zeros[0].0), (1, ZeroKind::Rotation));
+    } else {
+        let (own, htst) = (found.htst.expect("HTST").hz_at(t), expected(top.htst_frequency(0, &gyration)));
+        assert!((own / htst - 1.0).abs() < 1e-9, "HTST {own} {htst}");
+    }
+}
+
+#[test]
+fn forward_and_backward_rates_are_in_detailed_balance() {
+    let mut r = ChaCha8Rng::seed_from_u64(12);
+    let mut checked = 0;
+    while checked < 10 {
+        let (problem, settings) = random_chain(&mut r, checked % 2 == 1);
+        let problem = with(problem, settings.clone());
+        let (outcome, h) = (solve(&problem), &problem.hamiltonian);
+        if !outcome.certified || outcome.saddles.len() > 1 {
+            continue;
+        }
+        checked += 1;
+        let t = settings.temperatures_k[0];
+        // F = E − k_BT Σ ln √(2π k_BT/ε), from the dense eigenvalues of both minima
+        let ends = [0, outcome.path.images() - 1].map(|k| Dense::new(h, outcome.path.spins(k)));
+        let difference_mev = h.difference_mev(ends[0].m.as_slice(), ends[1].m.as_slice());
+        let entropy = 0.5 * (ends[0].log_determinant(0) - ends[1].log_determinant(0));
+        // ln(k_f/k_b) = −(F_final − F_initial)/k_BT
+        let expected = difference_mev / (K_B * t) + entropy;
+        let row = |way: Way| rate(&outcome, way).rows[0];
+        let balance = |ln: fn(&spinneb::rates::Row) -> Option<f64>| {
+            ln(&row(Way::Forward)).zip(ln(&row(Way::Backward))).map(|(f, b)| f - b)
+        };
+        let langer = balance(|r| r.ln_langer_per_s).expect("Langer");
+        assert!((langer - expected).abs() < 1e-10 * expected.abs().max(1.0), "{langer} {expected}");
+        if let Some(htst) = balance(|r| r.ln_htst_per_s) {
+            assert!((htst - expected).abs() < 1e-10 * expected.abs().max(1.0), "{htst} {expected}");
+        }
+    }
+}
+
+#[test]
+fn saddles_that_symmetry_makes_alike_are_counted() {
+    let count = |problem: Problem, kelvin: f64| {
+        let n = problem.chain.sites;
+        let outcome = solve(&with(problem, settings(n, 2.0, 0.1, kelvin)));
+        let r = rate(&outcome, Way::Forward);
+        (r.equivalents.count, r.equivalents.by.clone())
+    };
+    // one spin goes through +y or −y
+    assert_eq!(count(Build::open(1).easy(1.0).hard(0.5).reversal(), 5.0), (2, "m_y → −m_y".into()));
+    // a wall enters from the left or the right, through +y or −y
+    assert_eq!(count(Build::open(20).easy(0.05).hard(0.05).reversal(), 1.0).0, 4);
+    // turned about z the two planes are one saddle with a zero mode
+    assert_eq!(count(Build::open(20).easy(0.05).reversal(), 1.0), (2, "mirrored chain".into()));
+    // a defect next to one end leaves one way in
+    assert_eq!(count(Build::open(20).easy(0.05).defect(2, -0.02).reversal(), 1.0), (1, "none found".into()));
+    // a narrow nucleus on a ring can be at each of the 30 sites
+    let (places, by) = count(Build::ring(30).easy(0.6).field([0.0, 0.0, -0.5]).reversal(), 0.1);
+    assert_eq!(places, 30, "{by}");
+}
+
+#[test]
+fn a_nucleus_that_slides_freely_has_a_translation_for_a_zero_mode() {
+    let k = 0.02;
+    let problem = Build::ring(120).easy(k).field([0.0, 0.0, -k]).reversal();
+    let outcome = solve(&with(problem, settings(120, 2.0, 0.1, 0.3)));
+    let r = rate(&outcome, Way::Forward);
+    let kinds: Vec<_> = r.saddle_zeros.iter().map(|z| z.0).collect();
+    assert_eq!(kinds, [ZeroKind::Rotation, ZeroKind::Translation], "{:?}", r.refused);
+    let m = &outcome.saddles[0].spins;
+    let slopes: f64 = (0..120)
+        .map(|i| {
+            let d = vector::sub(m.get((i + 1) % 120), m.get(i));
+            vector::dot(d, d)
+        })
+        .sum();
+    let volume = r.saddle_zeros[1].2;
+    // differences over a whole site miss (δ'^2)/12 of the slope
+    assert!((volume / (120.0 * slopes.sqrt()) - 1.0).abs() < 0.02, "{volume} {slopes}");
+    assert_eq!(r.equivalents.count, 1, "{}", r.equivalents.by);
+    assert_eq!(r.langer.expect("Langer").exponent, -1.0);
+}
+
+#[test]
+fn a_chain_of_minima_is_crossed_at_the_rate_of_its_mean_first_passage() {
+    // two equal hops of a wall pinned at three sites: from the middle it goes either way
+    let chain = || Build::between_walls(21).easy(0.1).hard(0.1).defect(5, -0.02).defect(11, -0.02).defect(17, -0.02);
+    let build = chain();
+    let width = (0.5f64 / 0.1).sqrt();
+    let (a, b) = (build.wall(5.0, width, Direction::Y), build.wall(17.0, width, Direction::Y));
+    let outcome = solve(&with(build.problem(a, b), settings(23, 2.0, 0.2, 0.1)));
+    assert!(outcome.certified, "{:?}", outcome.warnings);
+    let rates = outcome.rates.as_ref().expect("rates");
+    let n = outcome.saddles.len();
+    assert!(n >= 2, "{n} saddles");
+    let ln = |way: Way, k: usize| {
+        let r = rates.saddles.iter().find(|r| r.way == way && r.saddle == k).expect("a saddle");
+        r.rows[0].ln_langer_per_s.expect("Langer")
+    };
+    // solved as equations for the mean times
+    let (mut step, mut total) = (0.0, 0.0);
+    assert_eq!(rates.transitions[0].equivalents.count, 1);
+    for k in 0..n {
+        let back = if k == 0 { 0.0 } else { ln(Way::Backward, k - 1).exp() };
+        step = (1.0 + back * step) / ln(Way::Forward, k).exp();
+        total += step;
+    }
+    let whole = &rates.transitions[0];
+    assert_eq!((whole.way, whole.saddles), (Way::Forward, n));
+    let found = whole.rows[0].ln_langer_per_s.expect("Langer");
+    assert!((found + f64::ln(total)).abs() < 1e-10, "{found} {total}");
+    assert!(whole.blocking_k[0] > whole.blocking_k[1] && whole.blocking_k[1] > Some(0.0));
+}
+
+/// Why the first saddle has no rate by a theory.
+fn refusal(outcome: &Outcome, theory: Theory) -> String {
+    let r = rate(outcome, Way::Forward);
+    let found = r.refused.iter().find(|(t, _)| *t == theory).map(|(_, reason)| reason.clone());
+    found.unwrap_or_else(|| panic!("{} was not refused", theory.name()))
+}
+
+#[test]
+fn a_saddle_without_a_certificate_has_no_rate() {
+    let mut problem = with(Build::open(3).easy(0.5).hard(0.5).reversal(), settings(3, 2.0, 0.1, 10.0));
+    problem.certify = false;
+    let outcome = solve(&problem);
+    for theory in Theory::ALL {
+        assert!(refusal(&outcome, theory).contains("not certified"), "{}", refusal(&outcome, theory));
+    }
+    let whole = &outcome.rates.as_ref().expect("rates").transitions[0];
+    assert!(whole.refused.is_some() && whole.rows.iter().all(|r| r.ln_lifetime_s().is_none()));
+}
+
+#[test]
+fn a_saddle_of_higher_index_has_no_rate() {
+    // held to the coherent rotation by its symmetry, a long chain passes a saddle of index 3
+    let mut problem = with(Build::open(20).easy(0.05).hard(0.05).reversal(), settings(20, 2.0, 0.1, 10.0));
+    problem.guess = Some(serde_json::from_str(r#"{"geodesic": {"axis": [1, 0, 0]}}"#).expect("a guess"));
+    let state = |v: [f64; 3]| Spins::from_vectors(&vec![v; 20]).expect("unit vectors");
+    let h = &problem.hamiltonian;
+    let top = spinneb::saddle::State::at(h, state([0.0, 1.0, 0.0]).as_slice().to_vec());
+    let spectrum = spinneb::saddle::Spectrum::of(h, &top, 6);
+    assert!(spectrum.negative > 1);
+    let minima = [state([0.0, 0.0, 1.0]), state([0.0, 0.0, -1.0])];
+    let spectra = minima.clone().map(|m| spinneb::drive::Minimum::examine(h, &m).spectrum);
+    let valley: Vec<f64> = (0..60).map(|k| if k / 20 == 2 { 1.0 } else { 0.0 }).collect();
+    let crossing = spinneb::rates::Crossing {
+        saddle: &top,
+        valley: &valley,
+        spectrum: &spectrum,
+        minima: [&minima[0], &minima[1]],
+        minima_spectra: [&spectra[0], &spectra[1]],
+        doubt: None,
+    };
+    let [forward, backward] = spinneb::rates::saddle_rates(h, 0, &crossing, problem.rates.as_ref().expect("rates"));
+    for r in [forward, backward] {
+        assert!(r.htst.is_none() && r.langer.is_none());
+        assert!(
+            r.refused.len() == 2 && r.refused.iter().all(|(_, why)| why.contains("negative modes")),
+            "{:?}",
+            r.refused
+        );
+    }
+}
+
+#[test]
+fn without_damping_a_conserved_moment_forbids_the_crossing() {
+    let outcome = |damping| solve(&with(Build::open(4).easy(0.2).reversal(), settings(4, 2.0, damping, 5.0)));
+    let damped = outcome(0.1);
+    assert!(refusal(&damped, Theory::Htst).contains("conserved"));
+    assert!(rate(&damped, Way::Forward).langer.is_some());
+    let undamped = outcome(0.0);
+    for theory in Theory::ALL {
+        assert!(refusal(&undamped, theory).contains("conserved"));
+    }
+    // coherent rotation of a uniaxial chain: λ₊ = α γ/μ 2K/(1 + α²), a zero mode of volume 2π √N
+    let (n, k, alpha) = (4.0, 0.2, 0.1);
+    let growth = alpha * 2.0 * k / (1.0 + alpha * alpha) * unit_hz(2.0);
+    let langer = rate(&damped, Way::Forward).langer.expect("Langer");
+    assert!((langer.frequency_per_s / growth - 1.0).abs() < 1e-12, "{} {growth}", langer.frequency_per_s);
+    assert!((rate(&damped, Way::Forward).saddle_zeros[0].2 - 2.0 * PI * f64::sqrt(n)).abs() < 1e-12);
+    assert_eq!(langer.exponent, -0.5);
+}
+
+#[test]
+fn a_néel_chain_of_no_total_moment_may_cross_without_damping() {
+    let n = 6;
+    let chain = Chain::open(n);
+    let terms: Vec<Box<dyn spinneb::energy::EnergyTerm>> =
+        vec![Box::new(Exchange::uniform(&chain, &[-1.0])), Box::new(Anisotropy::uniform(n, 0.1, Direction::Z))];
+    let h = Hamiltonian::new(&chain, terms).expect("a chain");
+    let state = |s: f64| {
+        let v: Vec<[f64; 3]> = (0..n).map(|i| [0.0, 0.0, if i % 2 == 0 { s } else { -s }]).collect();
+        Spins::from_vectors(&v).expect("unit vectors")
+    };
+    let outcome = solve(&with(Problem::new(chain, h, state(1.0), state(-1.0)), settings(n, 2.0, 0.1, 5.0)));
+    let r = rate(&outcome, Way::Forward);
+    assert!(r.htst.is_some() && r.langer.is_some(), "{:?}", r.refused);
+}
+
+#[test]
+fn low_barriers_and_weak_damping_are_warned_of_with_a_range() {
+    let problem = Build::open(1).easy(1.0).hard(0.5).reversal();
+    let outcome = solve(&with(problem, settings(1, 2.0, 0.01, 1.0 / (3.0 * K_B))));
+    let said = rate(&outcome, Way::Forward).warnings.join("\n");
+    assert!(said.contains("below 5 k_BT") && said.contains("within a factor of about 1.33"), "{said}");
+    assert!(said.contains("damping times ΔE/k_BT is below 3") && said.contains("about 0.029 times"), "{said}");
+    let cold = solve(&with(Build::open(1).easy(1.0).hard(0.5).reversal(), settings(1, 2.0, 0.5, 1.0 / (20.0 * K_B))));
+    assert_eq!(rate(&cold, Way::Forward).warnings, Vec::<String>::new());
+}
+
+#[test]
+fn walls_that_enter_a_chain_at_either_end_and_turn_either_way_are_four_paths() {
+    // walls of little more than a site, which stop at every site on their way
+    let outcome = solve(&with(Build::open(8).easy(0.4).hard(0.1).reversal(), settings(8, 2.0, 0.2, 0.5)));
+    assert!(outcome.certified && outcome.saddles.len() > 1, "{:?}", outcome.warnings);
+    let rates = outcome.rates.as_ref().expect("rates");
+    assert!(rates.transitions.iter().all(|t| t.equivalents.count == 4), "{:?}", rates.transitions[0].equivalents);
+    let [f, b] = [0, 1].map(|k| rates.transitions[k].rows[0].ln_langer_per_s.expect("Langer"));
+    assert!((f - b).abs() < 1e-9, "{f} {b}");
+}
+
+#[test]
+fn the_determinant_of_a_hundred_thousand_spins_is_the_product_of_its_spin_waves() {
+    let n = 100_000;
+    let (easy, hard) = (0.05, 0.02);
+    let problem = Build::open(n).easy(easy).hard(hard).reversal();
+    let state = spinneb::saddle::State::at(&problem.hamiltonian, problem.initial.as_slice().to_vec());
+    let found = spinneb::rates::log_determinant(&state.hessian, &[], 1.0);
+    // free ends: 2K + 2J (1 − cos(πk/N)), and the same with the hard axis on top
+    let wave = |k: usize| 4.0 * (PI * k as f64 / (2 * n) as f64).sin().powi(2) + 2.0 * easy;
+    let logs: Vec<f64> = (0..n).map(|k| wave(k).ln() + (wave(k) + 2.0 * hard).ln()).collect();
+    let expected = spinneb::linalg::slab::sum(&logs);
+    assert!((found - expected).abs() < 1e-8, "{found} {expected}");
+}
