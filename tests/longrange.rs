@@ -210,7 +210,7 @@ fn a_wall_leaves_one_pinning_region_of_a_permalloy_wire_for_another() {
 
 /// A short chain or ring of random dots or cells, with or without exchange and easy axes.
 fn random(r: &mut ChaCha8Rng, sites: usize) -> (Problem, String) {
-    let periodic = sites < 100 && r.random_range(0..4) == 0;
+    let periodic = r.random_range(0..4) == 0;
     let edge = |r: &mut ChaCha8Rng| Length(r.random_range(2.0..12.0));
     let chain = Chain {
         periodic,
@@ -220,11 +220,10 @@ fn random(r: &mut ChaCha8Rng, sites: usize) -> (Problem, String) {
     };
     let medium = Medium { chain: &chain, moment: None, saturation: Some(Magnetisation(r.random_range(3e5..1.2e6))) };
     let far = if r.random_range(0..3) == 0 { "dipolar" } else { "demag" };
-    let long = sites > 100;
-    let axis = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.2, 1.0]][if long { 0 } else { r.random_range(0..3) }];
+    let axis = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.2, 1.0]][r.random_range(0..3)];
     let texts = [
         format!(r#"{{"{far}": {{}}}}"#),
-        format!(r#"{{"exchange": {{"A": "{} pJ/m"}}}}"#, [0.0, 2.0, 10.0][if long { 2 } else { r.random_range(0..3) }]),
+        format!(r#"{{"exchange": {{"A": "{} pJ/m"}}}}"#, [0.0, 2.0, 10.0][r.random_range(0..3)]),
         format!(r#"{{"anisotropy": {{"K": "{} kJ/m^3", "axis": {axis:?}}}}}"#, r.random_range(20.0..400.0)),
     ];
     let build = |text: &String| serde_json::from_str::<TermSpec>(text).unwrap().member().build(&medium).unwrap();
@@ -237,9 +236,8 @@ fn random(r: &mut ChaCha8Rng, sites: usize) -> (Problem, String) {
 #[test]
 fn every_certified_saddle_of_random_chains_has_one_negative_eigenvalue_by_a_dense_solver() {
     let mut r = ChaCha8Rng::seed_from_u64(11);
-    let sizes = (0..40).map(|k| if k < 39 { 1 + k % 19 } else { 131 });
-    let chains: Vec<(Problem, String)> =
-        sizes.map(|n| if n == 2 { 3 } else { n }).map(|n| random(&mut r, n.max(3))).collect();
+    let sizes = (0..40).map(|k| 1 + k % 19);
+    let chains: Vec<(Problem, String)> = sizes.map(|n| random(&mut r, n.max(3))).collect();
     let claims: Vec<Option<bool>> = chains.par_iter().map(|(problem, text)| claim(problem, text)).collect();
     let paths = claims.iter().flatten().count();
     let certified = claims.iter().flatten().filter(|c| **c).count();

@@ -79,28 +79,28 @@ pub fn turning_axis(problem: &Problem, a: &Spins, b: &Spins, context: &GuessCont
     };
     let axes = candidates.filter_map(|axis| Direction::new(axis).ok());
     let halfway: Vec<(f64, Direction)> = axes.filter_map(|axis| Some((highest(axis, 3)?, axis))).collect();
-    let least = halfway.iter().map(|(e, _)| *e).fold(f64::INFINITY, f64::min);
+    let Some((least, first)) = lowest(&halfway, h.stiffness_mev()) else { return Direction::X };
     let near = least + ALIKE * least.abs() + 1e-9 * h.stiffness_mev();
-    let alike: Vec<Direction> = halfway.into_iter().filter(|(e, _)| *e <= near).map(|(_, axis)| axis).collect();
-    let first = alike.first().copied().unwrap_or(Direction::X);
+    let alike: Vec<Direction> = halfway.iter().filter(|(e, _)| *e <= near).map(|(_, axis)| *axis).collect();
     if alike.len() < 2 || !(holds_wall(a) || holds_wall(b)) {
         return first;
     }
-    lowest(&alike, h.stiffness_mev(), |axis| highest(axis, WAY)).unwrap_or(first)
+    let ways: Vec<(f64, Direction)> = alike.iter().filter_map(|axis| Some((highest(*axis, WAY)?, *axis))).collect();
+    lowest(&ways, h.stiffness_mev()).map_or(first, |(_, axis)| axis)
+}
+
+/// The first of the lowest (meV).
+fn lowest(costs: &[(f64, Direction)], stiffness: f64) -> Option<(f64, Direction)> {
+    let mut best: Option<(f64, Direction)> = None;
+    for found in costs {
+        if best.is_none_or(|(e, _)| found.0 < e - 1e-9 * stiffness) {
+            best = Some(*found);
+        }
+    }
+    best
 }
 
 /// Whether some spin is well off the line of the first.
 fn holds_wall(m: &Spins) -> bool {
     (1..m.sites()).any(|i| vector::norm(vector::cross(m.get(0), m.get(i))) > 0.7)
-}
-
-/// The first axis of the lowest cost (meV).
-fn lowest(axes: &[Direction], stiffness: f64, cost: impl Fn(Direction) -> Option<f64>) -> Option<Direction> {
-    let mut best: Option<(f64, Direction)> = None;
-    for (e, axis) in axes.iter().filter_map(|axis| Some((cost(*axis)?, *axis))) {
-        if best.is_none_or(|(least, _)| e < least - 1e-9 * stiffness) {
-            best = Some((e, axis));
-        }
-    }
-    best.map(|(_, axis)| axis)
 }
