@@ -23,7 +23,7 @@ pub struct Mode {
 /// The `count` lowest modes of `matrix` in the space orthogonal to `known` (orthonormal vectors, invariant under it),
 /// ascending. Fewer where the space is smaller. Deterministic.
 ///
-/// Block Lanczos on (A + s·1)⁻¹ with full orthogonalisation: blocks of [`BLOCK`] vectors, so that degenerate modes are all
+/// Block Lanczos on (A + s·1)⁻¹ with full orthogonalisation: blocks of a few vectors, so that degenerate modes are all
 /// found, until the wanted vectors are eigenvectors (Golub, Underwood, Mathematical Software III, 361 (1977),
 /// doi:10.1016/B978-0-12-587260-7.50018-2).
 pub fn lowest_modes(matrix: &Banded, count: usize, known: &[Vec<f64>]) -> Vec<Mode> {
