@@ -8,6 +8,7 @@ mod lowest;
 pub mod slab;
 mod small;
 mod tridiagonal;
+mod twisted;
 
 pub use banded::Banded;
 pub use general::{General, Lu};
