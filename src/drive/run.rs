@@ -64,15 +64,20 @@ impl Candidate<'_> {
         self.band.energies_mev()[self.band.highest()] - self.band.energies_mev()[0]
     }
 
+    /// Its refined top, if that is stationary.
+    fn stationary(&self, c: f64) -> Option<&Found> {
+        self.found.as_ref().filter(|f| f.is_stationary(c))
+    }
+
     /// The refined saddle above the first image (meV), or the highest image.
-    fn barrier_mev(&self) -> f64 {
-        let refined = self.found.as_ref().map(|f| f.refined.state.energy_mev - self.band.energies_mev()[0]);
+    fn barrier_mev(&self, c: f64) -> f64 {
+        let refined = self.stationary(c).map(|f| f.refined.state.energy_mev - self.band.energies_mev()[0]);
         refined.unwrap_or(self.top_mev())
     }
 
     /// 0: a saddle of index one; 1: nothing refined; 2: a saddle of higher index.
-    fn rank(&self) -> u8 {
-        match &self.found {
+    fn rank(&self, c: f64) -> u8 {
+        match self.stationary(c) {
             Some(f) if f.refined.index <= 1 => 0,
             None => 1,
             Some(_) => 2,
@@ -267,6 +272,7 @@ impl<'a, 'o> Run<'a, 'o> {
             tried.push(self.start(&guess, noise.as_ref(), None, TRIAL)?);
         }
         tried.sort_by(|p, q| p.top_mev().total_cmp(&q.top_mev()));
+        let scale = self.scales.stiffness_mev;
         let mut finished = 0;
         for c in &mut tried {
             let lowest = c.top_mev();
@@ -274,13 +280,15 @@ impl<'a, 'o> Run<'a, 'o> {
             if worth && !(finished == 1 && lowest > 1.2 * self.lowest_top) {
                 self.conclude(c);
                 finished += 1;
-                self.lowest_top = self.lowest_top.min(c.barrier_mev());
+                self.lowest_top = self.lowest_top.min(c.barrier_mev(scale));
             }
         }
-        tried.sort_by(|p, q| p.rank().cmp(&q.rank()).then(p.barrier_mev().total_cmp(&q.barrier_mev())));
+        tried.sort_by(|p, q| {
+            p.rank(scale).cmp(&q.rank(scale)).then(p.barrier_mev(scale).total_cmp(&q.barrier_mev(scale)))
+        });
         let mut rest = tried.into_iter();
         let Some(best) = rest.next() else { unreachable!("the geodesic is always among the guesses") };
-        let rejected = rest.map(|c| rejection(&c, &best)).collect();
+        let rejected = rest.map(|c| rejection(&c, &best, scale)).collect();
         Ok((best, rejected))
     }
 
@@ -432,9 +440,10 @@ fn seat(band: &mut Band, found: &[Found]) -> bool {
 }
 
 /// Why a path was not the one.
-fn rejection(c: &Candidate, best: &Candidate) -> RejectedPath {
-    let (barrier_mev, negative_modes) = (Some(c.barrier_mev()), c.found.as_ref().map(|f| f.refined.index));
-    let reason = match &c.found {
+fn rejection(c: &Candidate, best: &Candidate, scale: f64) -> RejectedPath {
+    let found = c.stationary(scale);
+    let (barrier_mev, negative_modes) = (Some(c.barrier_mev(scale)), found.map(|f| f.refined.index));
+    let reason = match found {
         Some(f) if f.refined.index > 1 => "its top is a saddle of higher index".to_string(),
         Some(_) => format!("its saddle is not below that of \"{}\"", best.name),
         None => format!(
