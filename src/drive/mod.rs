@@ -4,7 +4,6 @@ mod climb;
 mod connect;
 mod ends;
 mod explore;
-mod join;
 mod minimum;
 mod outcome;
 mod problem;
