@@ -4,7 +4,7 @@ use super::{Banded, Ldl, eigen_symmetric, slab};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Vectors in a block: as many as modes may be degenerate.
+/// Vectors in a block: as many as modes are often degenerate.
 const BLOCK: usize = 4;
 /// A vector with |A⁻¹v − θv| ≤ this part of θ is an eigenvector: its eigenvalue is right to the square of it.
 const RESIDUAL: f64 = 1e-6;
@@ -23,7 +23,7 @@ pub struct Mode {
 /// The `count` lowest modes of `matrix` in the space orthogonal to `known` (orthonormal vectors, invariant under it),
 /// ascending. Fewer where the space is smaller. Deterministic.
 ///
-/// Block Lanczos on (A + s·1)⁻¹ with full orthogonalisation: blocks of [`BLOCK`] vectors, so that degenerate modes are all
+/// Block Lanczos on (A + s·1)⁻¹ with full orthogonalisation: blocks of four vectors, so that degenerate modes are all
 /// found, until the wanted vectors are eigenvectors (Golub, Underwood, Mathematical Software III, 361 (1977),
 /// doi:10.1016/B978-0-12-587260-7.50018-2).
 pub fn lowest_modes(matrix: &Banded, count: usize, known: &[Vec<f64>]) -> Vec<Mode> {
