@@ -223,9 +223,22 @@ mod tests {
     #[test]
     fn solution_inertia_determinant_and_product_agree_with_dense_arithmetic() {
         let mut r = rand_chacha::ChaCha8Rng::seed_from_u64(1);
-        for (inner, width, border) in
-            [(1, 1, 0), (2, 1, 0), (9, 3, 0), (12, 5, 0), (8, 3, 2), (10, 5, 4), (6, 0, 0), (7, 7, 1)]
-        {
+        for (inner, width, border) in [
+            (1, 1, 0),
+            (2, 1, 0),
+            (9, 3, 0),
+            (12, 5, 0),
+            (8, 3, 2),
+            (10, 5, 4),
+            (6, 0, 0),
+            (7, 7, 1),
+            (16, 1, 0),
+            (23, 1, 0),
+            (32, 3, 0),
+            (41, 3, 0),
+            (48, 5, 0),
+            (55, 5, 0),
+        ] {
             for columns in 1..4 {
                 let a = random(&mut r, inner, width, border);
                 let n = a.order();

@@ -1,10 +1,9 @@
 //! A = L D Lᵀ of a banded matrix, without pivoting: O(n (w + b)²), with the inertia (Sylvester: the signs of D are those of the
 //! eigenvalues) and ln|det|.
 //!
-//! Open chains of short reach have a path of their own, with the next columns in registers: what follows a pivot waits for
-//! nothing but that pivot.
+//! Open chains of short reach are eliminated from both ends at once (see `twisted`).
 
-use super::{Banded, TailLdl, slab};
+use super::{Banded, TailLdl, slab, twisted};
 use multiversion::multiversion;
 
 /// The factors L and D of a [`Banded`] matrix.
@@ -24,10 +23,10 @@ impl Ldl {
             let tail = Some(TailLdl::of(&a, floor));
             return Ldl { a, tail };
         }
-        match (a.width, a.border) {
-            (1, 0) => eliminate_open::<1, 2>(&mut a, floor),
-            (3, 0) => eliminate_open::<3, 4>(&mut a, floor),
-            (5, 0) => eliminate_open::<5, 6>(&mut a, floor),
+        match twisted::width(&a) {
+            Some(1) => twisted::eliminate::<1, 2>(&mut a, floor),
+            Some(3) => twisted::eliminate::<3, 4>(&mut a, floor),
+            Some(5) => twisted::eliminate::<5, 6>(&mut a, floor),
             _ => eliminate(&mut a, floor),
         }
         Ldl { a, tail: None }
@@ -62,6 +61,16 @@ impl Ldl {
         slab::sum(&self.pivots().map(|d| libm::log(d.abs())).collect::<Vec<f64>>())
     }
 
+    /// Any number of interleaved right-hand sides, one by one.
+    fn solve_each(&self, x: &mut [f64], columns: usize) {
+        let mut one = vec![0.0; self.order()];
+        for c in 0..columns {
+            one.iter_mut().zip(x[c..].iter().step_by(columns)).for_each(|(o, x)| *o = *x);
+            self.solve(&mut one, 1);
+            x[c..].iter_mut().step_by(columns).zip(&one).for_each(|(x, o)| *x = *o);
+        }
+    }
+
     /// x = A⁻¹ a and y = A⁻¹ b, in one pass over the factors; `room` is room to work in.
     pub fn solve_two(&self, a: &[f64], b: &[f64], room: &mut Vec<f64>, x: &mut Vec<f64>, y: &mut Vec<f64>) {
         room.resize(2 * a.len(), 0.0);
@@ -79,45 +88,17 @@ impl Ldl {
     /// Solves A X = B in place for `columns` right-hand sides, interleaved: x[j columns + c].
     pub fn solve(&self, x: &mut [f64], columns: usize) {
         if let Some(tail) = &self.tail {
-            return solve_by_column(x, columns, |column| tail.solve(column));
+            return if columns == 1 { tail.solve(x) } else { self.solve_each(x, columns) };
         }
-        match (self.a.width, self.a.border, columns) {
-            (3, 0, 1) => substitute_open::<3, 4, 1>(&self.a, x),
-            (3, 0, 2) => substitute_open::<3, 4, 2>(&self.a, x),
-            (3, 0, 3) => substitute_open::<3, 4, 3>(&self.a, x),
-            (5, 0, 1) => substitute_open::<5, 6, 1>(&self.a, x),
-            (5, 0, 2) => substitute_open::<5, 6, 2>(&self.a, x),
-            _ => substitute(&self.a, columns, x),
-        }
-    }
-}
-
-/// Elimination of an open chain of half-bandwidth W; S = W + 1 columns are on their way through the registers.
-fn eliminate_open<const W: usize, const S: usize>(m: &mut Banded, floor: f64) {
-    let mut window = [[0.0; S]; S];
-    for (k, column) in m.band.chunks_exact(S).take(W).enumerate() {
-        window[k].copy_from_slice(column);
-    }
-    for j in 0..m.inner {
-        match m.band.get((j + W) * S..(j + W + 1) * S) {
-            Some(column) => window[W].copy_from_slice(column),
-            None => window[W] = [0.0; S],
-        }
-        let c = window[0];
-        let d = guarded(c[0], floor);
-        let inverse = 1.0 / d;
-        for k in 1..S {
-            for q in k..S {
-                window[k][q - k] -= c[k] * c[q] * inverse;
-            }
-        }
-        let column = &mut m.band[j * S..(j + 1) * S];
-        column[0] = d;
-        for k in 1..S {
-            column[k] = c[k] * inverse;
-        }
-        for k in 1..S {
-            window[k - 1] = window[k];
+        match (twisted::width(&self.a), columns) {
+            (Some(1), 1) => twisted::substitute::<1, 2, 1>(&self.a, x),
+            (Some(1), 3) => twisted::substitute::<1, 2, 3>(&self.a, x),
+            (Some(3), 1) => twisted::substitute::<3, 4, 1>(&self.a, x),
+            (Some(3), 2) => twisted::substitute::<3, 4, 2>(&self.a, x),
+            (Some(5), 1) => twisted::substitute::<5, 6, 1>(&self.a, x),
+            (Some(5), 2) => twisted::substitute::<5, 6, 2>(&self.a, x),
+            (Some(_), _) => self.solve_each(x, columns),
+            (None, _) => substitute(&self.a, columns, x),
         }
     }
 }
@@ -185,22 +166,9 @@ fn eliminate_corner(corner: &mut [f64], b: usize, floor: f64) {
     }
 }
 
-/// Solves for interleaved right-hand sides one after the other.
-fn solve_by_column(x: &mut [f64], columns: usize, solve: impl Fn(&mut [f64])) {
-    if columns == 1 {
-        return solve(x);
-    }
-    for c in 0..columns {
-        let mut column: Vec<f64> = x[c..].iter().step_by(columns).copied().collect();
-        solve(&mut column);
-        for (x, y) in x[c..].iter_mut().step_by(columns).zip(column) {
-            *x = y;
-        }
-    }
-}
-
+/// A pivot, or what stands for it if it is smaller than the floor.
 #[inline(always)]
-fn guarded(d: f64, floor: f64) -> f64 {
+pub(super) fn guarded(d: f64, floor: f64) -> f64 {
     if d.abs() < floor { if d < 0.0 { -floor } else { floor } } else { d }
 }
 
@@ -262,45 +230,5 @@ fn substitute(m: &Banded, c: usize, x: &mut [f64]) {
                 xj[q] -= rim * tail[(n + r - j - 1) * c + q];
             }
         }
-    }
-}
-
-/// Substitution in an open chain of half-bandwidth W for C interleaved right-hand sides, the next W rows in registers.
-fn substitute_open<const W: usize, const S: usize, const C: usize>(m: &Banded, x: &mut [f64]) {
-    let n = m.inner;
-    let row = |x: &[f64], j: usize| -> [f64; C] {
-        x.get(j * C..(j + 1) * C).map_or([0.0; C], |r| r.try_into().unwrap_or([0.0; C]))
-    };
-    let mut window = [[0.0; C]; S];
-    for k in 0..W {
-        window[k] = row(x, k);
-    }
-    for (j, l) in m.band.chunks_exact(S).take(n).enumerate() {
-        window[W] = row(x, j + W);
-        let here = window[0];
-        for k in 1..S {
-            for q in 0..C {
-                window[k - 1][q] = window[k][q] - l[k] * here[q];
-            }
-        }
-        x[j * C..(j + 1) * C].copy_from_slice(&here);
-    }
-    let mut window = [[0.0; C]; S];
-    for (j, l) in m.band.chunks_exact(S).take(n).enumerate().rev() {
-        let inverse = 1.0 / l[0];
-        let mut here = row(x, j);
-        for value in &mut here {
-            *value *= inverse;
-        }
-        for k in (1..S).rev() {
-            for q in 0..C {
-                here[q] -= l[k] * window[k][q];
-            }
-        }
-        for k in (1..S).rev() {
-            window[k] = window[k - 1];
-        }
-        window[1] = here;
-        x[j * C..(j + 1) * C].copy_from_slice(&here);
     }
 }

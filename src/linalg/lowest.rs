@@ -4,7 +4,7 @@ use super::{Banded, Ldl, eigen_symmetric, slab};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Vectors in a block: as many as modes may be degenerate.
+/// Vectors in a block: as many as modes are often degenerate.
 const BLOCK: usize = 4;
 /// A vector with |A⁻¹v − θv| ≤ this part of θ is an eigenvector: its eigenvalue is right to the square of it.
 const RESIDUAL: f64 = 1e-6;

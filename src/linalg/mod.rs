@@ -12,6 +12,7 @@ mod small;
 mod tail;
 mod tail_ldl;
 mod tridiagonal;
+mod twisted;
 
 pub use banded::Banded;
 pub use double_double::DoubleDouble;
