@@ -2,7 +2,8 @@
 
 use crate::error::{Error, Result};
 use crate::geometry::Direction;
-use crate::units::{Length, Moment};
+use crate::profile::Profile;
+use crate::units::{Length, Magnetisation, Moment};
 use serde::de::{MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
@@ -29,9 +30,12 @@ pub struct Chain {
     /// A ring: the last site is joined to the first.
     #[serde(default)]
     pub periodic: bool,
-    /// Width and thickness of a cell; with the spacing they give its volume.
+    /// Width and thickness of a cell; with the spacing they give its volume. Either may be a list over sites or a ramp.
     #[serde(default)]
-    pub cross_section: Option<[Length; 2]>,
+    pub cross_section: Option<[Profile<Length>; 2]>,
+    /// Sites whose cells are narrower or wider than that: notches, tapers, constrictions.
+    #[serde(default)]
+    pub sections: Vec<SiteSection>,
     /// Where the chain points; +x if not given.
     #[serde(default)]
     pub direction: Option<Direction>,
@@ -49,11 +53,80 @@ pub struct Chain {
 /// Sites with a moment of their own.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[allow(non_snake_case)]
 pub struct SiteMoment {
     /// Which ones.
     pub sites: Selection,
     /// The moment of each.
-    pub moment: Moment,
+    #[serde(default)]
+    pub moment: Option<Profile<Moment>>,
+    /// The saturation magnetisation of each, in place of the moment.
+    #[serde(default)]
+    pub Ms: Option<Profile<Magnetisation>>,
+}
+
+/// How sites have moments of their own.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum OwnMoment<'a> {
+    /// As moments.
+    Moment(&'a Profile<Moment>),
+    /// As magnetisations, to be taken times the volumes of the cells.
+    Ms(&'a Profile<Magnetisation>),
+}
+
+impl SiteMoment {
+    /// Whichever is given.
+    pub fn own(&self) -> Result<OwnMoment<'_>> {
+        match (&self.moment, &self.Ms) {
+            (Some(moment), None) => Ok(OwnMoment::Moment(moment)),
+            (None, Some(ms)) => Ok(OwnMoment::Ms(ms)),
+            _ => Err(Error::invalid("", "a moment of its own is a \"moment\" or an \"Ms\": give one of the two")),
+        }
+    }
+
+    /// Sites that are there, and one value for each that is not negative.
+    fn validate(&self, sites: usize) -> Result<()> {
+        let count = self.sites.indices(sites, "site").map_err(|e| e.within("sites"))?.len();
+        let (key, values) = match self.own()? {
+            OwnMoment::Moment(p) => ("moment", p.values(count, "site", |m, _| Ok(m.0))),
+            OwnMoment::Ms(p) => ("Ms", p.values(count, "site", |m, _| Ok(m.0))),
+        };
+        if values.map_err(|e| e.within(key))?.iter().any(|m| *m < 0.0) {
+            let message = "found a negative value: a spin is the direction of its moment, so this is not negative";
+            return Err(Error::invalid(key, message));
+        }
+        Ok(())
+    }
+}
+
+/// Sites with a cross-section of their own.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SiteSection {
+    /// Which ones.
+    pub sites: Selection,
+    /// Width of each; that of the chain if not given.
+    #[serde(default)]
+    pub width: Option<Profile<Length>>,
+    /// Thickness of each; that of the chain if not given.
+    #[serde(default)]
+    pub thickness: Option<Profile<Length>>,
+}
+
+impl SiteSection {
+    /// Sites that are there, and one edge for each that is greater than 0.
+    fn validate(&self, sites: usize) -> Result<()> {
+        let count = self.sites.indices(sites, "site").map_err(|e| e.within("sites"))?.len();
+        for (key, edge) in [("width", &self.width), ("thickness", &self.thickness)] {
+            if let Some(edge) = edge {
+                lengths(edge, count).map_err(|e| e.within(key))?;
+            }
+        }
+        match (&self.width, &self.thickness) {
+            (None, None) => Err(Error::invalid("", "a section of its own needs a \"width\", a \"thickness\" or both")),
+            _ => Ok(()),
+        }
+    }
 }
 
 /// Spins that never move.
@@ -75,6 +148,7 @@ impl Chain {
             spacing: None,
             periodic: false,
             cross_section: None,
+            sections: Vec::new(),
             direction: None,
             frozen: Vec::new(),
             vacant: None,
@@ -92,14 +166,32 @@ impl Chain {
         if self.periodic { self.sites } else { self.sites.saturating_sub(shell) }
     }
 
-    /// Volume of a cell, nm³, where the lattice has one.
+    /// Width and thickness of the cell of site i (nm), where the lattice has cells.
+    pub fn section_nm(&self, i: usize) -> Option<[f64; 2]> {
+        let edges = self.cross_section.as_ref()?;
+        let mut section = [edges[0].at(i, self.sites)?.0, edges[1].at(i, self.sites)?.0];
+        for own in &self.sections {
+            let Some((k, count)) = own.sites.position(i) else { continue };
+            for (edge, profile) in section.iter_mut().zip([&own.width, &own.thickness]) {
+                if let Some(profile) = profile {
+                    *edge = profile.at(k, count)?.0;
+                }
+            }
+        }
+        Some(section)
+    }
+
+    /// Volume of a cell, nm³, where the lattice has cells: the middle one of all by size.
     pub fn cell_volume_nm3(&self) -> Option<f64> {
         Some(self.spacing?.0 * self.section_nm2()?)
     }
 
-    /// Area of the cross-section, nm², where given.
+    /// Area of the cross-section, nm², where given: the middle one of all by size.
     pub fn section_nm2(&self) -> Option<f64> {
-        self.cross_section.map(|[w, t]| w.0 * t.0)
+        let areas: Option<Vec<f64>> = (0..self.sites).map(|i| self.section_nm(i).map(|[w, t]| w * t)).collect();
+        let mut areas = areas?;
+        areas.sort_by(f64::total_cmp);
+        areas.get(areas.len() / 2).copied()
     }
 
     /// Which sites are vacant.
@@ -136,8 +228,22 @@ impl Chain {
         if let Some(a) = self.spacing {
             positive(a, "spacing")?;
         }
-        for (k, w) in self.cross_section.iter().flatten().enumerate() {
-            positive(*w, &format!("cross_section[{k}]"))?;
+        for (k, edge) in self.cross_section.iter().flatten().enumerate() {
+            lengths(edge, self.sites).map_err(|e| e.within(&format!("cross_section[{k}]")))?;
+        }
+        if self.cross_section.is_none() && !self.sections.is_empty() {
+            let message = "sections of single sites need the \"cross_section\" of all others ([\"20 nm\", \"5 nm\"])";
+            return Err(Error::invalid("sections", message));
+        }
+        let mut entry: Vec<Option<usize>> = vec![None; if self.sections.is_empty() { 0 } else { self.sites }];
+        for (k, section) in self.sections.iter().enumerate() {
+            section.validate(self.sites).map_err(|e| e.within(&format!("sections[{k}]")))?;
+            for i in section.sites.indices(self.sites, "site")? {
+                if let Some(first) = entry[i].replace(k) {
+                    let message = format!("site {i} has a section of its own already, in sections[{first}]");
+                    return Err(Error::invalid(format!("sections[{k}]"), message));
+                }
+            }
         }
         for (k, f) in self.frozen.iter().enumerate() {
             f.sites.indices(self.sites, "site").map_err(|e| e.within(&format!("frozen[{k}].sites")))?;
@@ -153,13 +259,15 @@ impl Chain {
                     return Err(Error::invalid(format!("moments[{k}]"), message));
                 }
             }
-            if m.moment.0 < 0.0 {
-                let message = "found a negative value: a spin is the direction of its moment, so this is not negative";
-                return Err(Error::invalid(format!("moments[{k}].moment"), message));
-            }
+            m.validate(self.sites).map_err(|e| e.within(&format!("moments[{k}]")))?;
         }
         Ok(())
     }
+}
+
+/// One length for each of `count` sites, all greater than 0.
+fn lengths(edge: &Profile<Length>, count: usize) -> Result<()> {
+    edge.values(count, "site", |length, _| positive(length, "").map(|()| length.0)).map(|_| ())
 }
 
 fn positive(length: Length, place: &str) -> Result<()> {
@@ -185,6 +293,14 @@ pub enum Selection {
 }
 
 impl Selection {
+    /// Which of the chosen an index is, and of how many; nothing if it is not chosen.
+    pub fn position(&self, index: usize) -> Option<(usize, usize)> {
+        match self {
+            Selection::List(list) => list.iter().position(|i| *i == index).map(|k| (k, list.len())),
+            Selection::Range { from, to } => (*from..=*to).contains(&index).then(|| (index - from, to - from + 1)),
+        }
+    }
+
     /// The chosen indices, each below `count`; `what` names them in the error.
     pub fn indices(&self, count: usize, what: &str) -> Result<Vec<usize>> {
         match self {

@@ -14,7 +14,7 @@
 //! | [`energy`], [`path`], [`optimise`] | energy terms; first paths; methods that move spins |
 //! | [`state`] | spin states |
 //! | [`spins`], [`sphere`] | configurations and the product of spheres they live on |
-//! | [`lattice`], [`geometry`], [`units`], [`field`], [`linalg`], [`registry`], [`words`], [`error`] | the ground |
+//! | [`lattice`], [`profile`], [`geometry`], [`units`], [`field`], [`linalg`], [`registry`], [`words`], [`error`] | the ground |
 
 pub mod band;
 pub mod config;
@@ -28,6 +28,7 @@ pub mod linalg;
 pub mod optimise;
 pub mod output;
 pub mod path;
+pub mod profile;
 pub mod rates;
 pub mod registry;
 pub mod saddle;

@@ -10,13 +10,13 @@ use spinneb::spins::Spins;
 use spinneb::units::{Length, Moment};
 
 fn chain(sites: usize, periodic: bool) -> Chain {
-    let cross_section = Some([Length(2.0), Length(3.0)]);
+    let cross_section = Some([Length(2.0), Length(3.0)].map(Into::into));
     Chain { periodic, spacing: Some(Length(1.5)), cross_section, ..Chain::open(sites) }
 }
 
 fn build(text: &str, chain: &Chain) -> Box<dyn EnergyTerm> {
     let spec: TermSpec = serde_json::from_str(text).expect(text);
-    spec.member().build(&Medium { chain, moment: Some(Moment(2.0)), saturation: None }).expect(text)
+    spec.member().build(&Medium { chain, moment: Some(Moment(2.0).into()), saturation: None }).expect(text)
 }
 
 fn random_spins(sites: usize, seed: u64) -> Vec<f64> {

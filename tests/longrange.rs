@@ -20,7 +20,7 @@ const ZETA_3: f64 = 1.2020569031595942;
 fn dipoles(sites: usize, periodic: bool) -> (Chain, Hamiltonian) {
     let chain = Chain { periodic, spacing: Some(Length(0.5)), ..Chain::open(sites) };
     let spec: TermSpec = serde_json::from_str(r#"{"dipolar": {}}"#).unwrap();
-    let medium = Medium { chain: &chain, moment: Some(Moment(3.0)), saturation: None };
+    let medium = Medium { chain: &chain, moment: Some(Moment(3.0).into()), saturation: None };
     let term = spec.member().build(&medium).unwrap();
     let h = Hamiltonian::new(&chain, vec![term]).unwrap();
     (chain, h)
@@ -123,9 +123,12 @@ fn two_cells_without_exchange_or_magnetostatics_turn_one_after_the_other() {
 
 /// A Permalloy wire of 5 nm cells, 20 nm × 5 nm across, as long as `sites` cells; reversed.
 fn wire(sites: usize) -> Problem {
-    let chain =
-        Chain { spacing: Some(Length(5.0)), cross_section: Some([Length(20.0), Length(5.0)]), ..Chain::open(sites) };
-    let medium = Medium { chain: &chain, moment: None, saturation: Some(Magnetisation(8e5)) };
+    let chain = Chain {
+        spacing: Some(Length(5.0)),
+        cross_section: Some([Length(20.0), Length(5.0)].map(Into::into)),
+        ..Chain::open(sites)
+    };
+    let medium = Medium { chain: &chain, moment: None, saturation: Some(Magnetisation(8e5).into()) };
     let terms = [r#"{"exchange": {"A": "13 pJ/m"}}"#, r#"{"demag": {}}"#];
     let build = |text: &&str| serde_json::from_str::<TermSpec>(text).unwrap().member().build(&medium).unwrap();
     let h = Hamiltonian::new(&chain, terms.iter().map(build).collect()).unwrap();
@@ -153,7 +156,7 @@ fn the_index_counted_by_exponentials_is_that_of_all_eigenvalues() {
     let sites = 130;
     let (chain, _) = dipoles(sites, false);
     let spec: TermSpec = serde_json::from_str(r#"{"dipolar": {}}"#).unwrap();
-    let medium = Medium { chain: &chain, moment: Some(Moment(3.0)), saturation: None };
+    let medium = Medium { chain: &chain, moment: Some(Moment(3.0).into()), saturation: None };
     for (exchange, k) in [(-0.02, 0), (0.0, 1), (0.02, 2)] {
         let terms = vec![spec.member().build(&medium).unwrap(), Box::new(Exchange::uniform(&chain, &[exchange]))];
         let h = Hamiltonian::new(&chain, terms).unwrap();
@@ -215,10 +218,11 @@ fn random(r: &mut ChaCha8Rng, sites: usize) -> (Problem, String) {
     let chain = Chain {
         periodic,
         spacing: Some(Length(r.random_range(5.0..8.0))),
-        cross_section: Some([edge(r), edge(r)]),
+        cross_section: Some([edge(r), edge(r)].map(Into::into)),
         ..Chain::open(sites)
     };
-    let medium = Medium { chain: &chain, moment: None, saturation: Some(Magnetisation(r.random_range(3e5..1.2e6))) };
+    let medium =
+        Medium { chain: &chain, moment: None, saturation: Some(Magnetisation(r.random_range(3e5..1.2e6)).into()) };
     let far = if r.random_range(0..3) == 0 { "dipolar" } else { "demag" };
     let axis = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.2, 1.0]][r.random_range(0..3)];
     let texts = [

@@ -41,7 +41,7 @@ fn the_same_chain_told_in_continuum_terms_has_the_same_barrier() {
     let cell = [1.5, 4.0, 2.0];
     let chain = Chain {
         spacing: Some(Length(cell[0])),
-        cross_section: Some([Length(cell[1]), Length(cell[2])]),
+        cross_section: Some([Length(cell[1]), Length(cell[2])].map(Into::into)),
         ..Chain::open(40)
     };
     let micro = [
@@ -66,9 +66,9 @@ fn the_same_chain_told_in_continuum_terms_has_the_same_barrier() {
         let up = Spins::uniform(40, Direction::Z);
         forward(&solve(&Problem::new(chain.clone(), h, up, Spins::uniform(40, Direction::Z.reversed()))))
     };
-    let si = barrier(&micro, Medium { chain: &chain, moment: None, saturation: Some(Magnetisation(1e6)) });
+    let si = barrier(&micro, Medium { chain: &chain, moment: None, saturation: Some(Magnetisation(1e6).into()) });
     let texts: Vec<&str> = atomic.iter().map(String::as_str).collect();
-    let atomistic = barrier(&texts, Medium { chain: &chain, moment: Some(moment), saturation: None });
+    let atomistic = barrier(&texts, Medium { chain: &chain, moment: Some(moment.into()), saturation: None });
     assert!((si - atomistic).abs() < 1e-12 * si, "{si} {atomistic}");
 }
 

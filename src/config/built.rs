@@ -35,6 +35,10 @@ impl Loaded {
         let chain = self.chain();
         chain.validate().map_err(|e| here(e.within("lattice.chain")))?;
         not_both(chain).map_err(|e| here(e.within("lattice.chain")))?;
+        self.material.fits(chain.sites).map_err(|e| match &self.material_text {
+            Some(own) => own.locate(e),
+            None => here(e.within("material")),
+        })?;
         self.affordable(memory::hamiltonian_bytes(chain.sites, 1, self.specs().count()), None)?;
         let terms = self.terms(chain)?;
         let idle = idle_direction(&terms);
@@ -86,7 +90,7 @@ impl Loaded {
     }
 
     fn medium<'a>(&self, chain: &'a Chain) -> Medium<'a> {
-        Medium { chain, moment: self.material.moment, saturation: self.material.Ms }
+        Medium { chain, moment: self.material.moment.clone(), saturation: self.material.Ms.clone() }
     }
 
     /// All term specs: the material's, then the config's, each with the place where it stands.

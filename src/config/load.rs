@@ -1,5 +1,6 @@
 //! From a config file to everything that it says, ready to be built.
 
+use super::library;
 use super::material::{Material, MaterialChoice};
 use super::text::{apply_set, at_place, decode, nearest, parse};
 use super::{Config, Name};
@@ -104,10 +105,18 @@ fn name(path: &Path, config: &Config) -> Result<String> {
     })
 }
 
-/// The text of a material's file, looked for beside the config.
+/// The text of a material: of its file, looked for beside the config, or of the library.
 fn material_file(config: &Path, named: &str) -> Result<Text> {
     let path = config.parent().unwrap_or(Path::new("")).join(named);
     let file = path.display().to_string();
+    if !path.is_file() {
+        if let Some(found) = library::find(named)? {
+            return Ok(Text { file: library::file_name(found.key), text: found.text.into() });
+        }
+        if !named.contains(['.', '/', '\\']) {
+            return Err(Error::invalid("material", unknown(named)?));
+        }
+    }
     match bytes(&path) {
         Ok(bytes) => decode(&file, bytes).map(|text| Text { file, text }),
         Err(e) => {
@@ -122,6 +131,18 @@ fn material_file(config: &Path, named: &str) -> Result<Text> {
             Err(Error::invalid("material", message))
         }
     }
+}
+
+/// What to say of a name that is neither a file nor in the library.
+fn unknown(named: &str) -> Result<String> {
+    let way_out = match library::near(named)? {
+        Some(key) => format!("did you mean {}?", quoted(key)),
+        None => "`spinneb list materials` names them".into(),
+    };
+    Ok(format!(
+        "no library material {}: {way_out} (a material of your own is a file, \"materials/mine.json\")",
+        quoted(named)
+    ))
 }
 
 /// What the folder of a missing file holds instead.

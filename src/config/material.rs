@@ -2,10 +2,12 @@
 
 use crate::energy::TermSpec;
 use crate::error::{Error, Result};
+use crate::profile::Profile;
 use crate::units::{Magnetisation, Moment};
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{self, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
+use std::collections::BTreeMap;
 use std::fmt;
 
 /// A material: its moment (or magnetisation) and its energy terms.
@@ -15,6 +17,9 @@ use std::fmt;
 pub struct Material {
     /// What people call it.
     pub name: String,
+    /// What they also call it.
+    #[serde(default)]
+    pub also: Vec<String>,
     /// Where the numbers come from.
     #[serde(default)]
     pub source: Option<String>,
@@ -24,27 +29,56 @@ pub struct Material {
     /// Anything else.
     #[serde(default)]
     pub comment: Option<String>,
+    /// Where each quantity comes from, by its key: `"Ms"`, `"A"`, `"K"` ….
+    #[serde(default)]
+    pub references: BTreeMap<String, Reference>,
     /// Magnetic moment of a site.
     #[serde(default)]
-    pub moment: Option<Moment>,
+    pub moment: Option<Profile<Moment>>,
     /// Saturation magnetisation; with the lattice's cell it gives the moment of a site.
     #[serde(default)]
-    pub Ms: Option<Magnetisation>,
+    pub Ms: Option<Profile<Magnetisation>>,
     /// Its energy terms.
     #[serde(default)]
     pub energy: Vec<TermSpec>,
 }
 
+/// Where a quantity comes from.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Reference {
+    /// The paper, with its DOI where it has one.
+    pub source: String,
+    /// `read`, or `quoted in …`: where the number was seen.
+    pub status: String,
+    /// What other sources say.
+    #[serde(default)]
+    pub comment: Option<String>,
+}
+
 impl Material {
+    /// One moment or magnetisation for each site.
+    pub fn fits(&self, sites: usize) -> Result<()> {
+        if let Some(moment) = &self.moment {
+            moment.values(sites, "site", |m, _| Ok(m.0)).map_err(|e| e.within("moment"))?;
+        }
+        if let Some(ms) = &self.Ms {
+            ms.values(sites, "site", |m, _| Ok(m.0)).map_err(|e| e.within("Ms"))?;
+        }
+        Ok(())
+    }
+
     /// A moment that makes sense, given in one way.
     pub fn validate(&self) -> Result<()> {
         if self.moment.is_some() && self.Ms.is_some() {
             return Err(Error::invalid("Ms", "\"moment\" and \"Ms\" are two ways to say the same: keep one"));
         }
-        let given = [("moment", self.moment.map(|m| m.0)), ("Ms", self.Ms.map(|m| m.0))];
-        match given.iter().find(|(_, value)| value.is_some_and(|v| v < 0.0)) {
+        let negative = |written: Vec<f64>| written.iter().any(|m| *m < 0.0);
+        let moment = self.moment.as_ref().map(|m| m.written().iter().map(|m| m.0).collect());
+        let ms = self.Ms.as_ref().map(|m| m.written().iter().map(|m| m.0).collect());
+        match [("moment", moment), ("Ms", ms)].into_iter().find(|(_, m)| m.clone().is_some_and(negative)) {
             Some((key, _)) => Err(Error::invalid(
-                *key,
+                key,
                 "found a negative value: a spin is the direction of its moment, so this is not negative",
             )),
             None => Ok(()),
@@ -52,10 +86,10 @@ impl Material {
     }
 }
 
-/// A config's `material`: the name of a file or the material itself.
+/// A config's `material`: a file, a library material or the material itself.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MaterialChoice {
-    /// A path relative to the config.
+    /// A path relative to the config, or the name of a library material.
     Named(String),
     /// The material.
     Inline(Box<Material>),
@@ -67,7 +101,7 @@ impl<'de> Deserialize<'de> for MaterialChoice {
         impl<'de> Visitor<'de> for Seen {
             type Value = MaterialChoice;
             fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                f.write_str("a material: its file, such as \"materials/toy.json\", or an object with its energy terms")
+                f.write_str("a material: its name in the library (\"permalloy\"), its file, such as \"materials/toy.json\", or an object with its energy terms")
             }
             fn visit_str<E: de::Error>(self, name: &str) -> std::result::Result<MaterialChoice, E> {
                 Ok(MaterialChoice::Named(name.into()))

@@ -5,8 +5,10 @@
 
 mod built;
 mod json;
+pub mod library;
 mod load;
 mod material;
+mod material_scales;
 pub mod memory;
 mod name;
 mod neb;
@@ -18,7 +20,8 @@ pub mod text;
 
 pub use built::{expected_images, needed_bytes};
 pub use load::{Loaded, Text, load};
-pub use material::{Material, MaterialChoice};
+pub use material::{Material, MaterialChoice, Reference};
+pub use material_scales::MaterialScales;
 pub use name::Name;
 pub use neb::{NebConfig, SaddleConfig};
 pub use output::OutputConfig;

@@ -5,13 +5,14 @@
 //! ```
 //! For the form K₁ sin²θ + K₂' sin⁴θ use K = K₁ + 2 K₂', K₂ = − K₂'.
 
+use super::EnergyTerm;
 use super::blocks::Blocks;
 use super::spec::{Medium, TermBuilder};
-use super::{EnergyTerm, Profile};
 use crate::error::Result;
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, Vector, vector};
 use crate::lattice::Selection;
+use crate::profile::Profile;
 use crate::registry::Described;
 use crate::units::SiteEnergy;
 use multiversion::multiversion;
@@ -44,7 +45,7 @@ impl Described for AnisotropySpec {
 impl TermBuilder for AnisotropySpec {
     fn build(&self, medium: &Medium) -> Result<Box<dyn EnergyTerm>> {
         let on_sites = |profile: &Profile<SiteEnergy>, key: &str| {
-            medium.on_sites(profile, self.sites.as_ref(), key, |k| medium.site_energy_mev(k))
+            medium.on_sites(profile, self.sites.as_ref(), key, |k, i| medium.site_energy_mev(k, i))
         };
         let k = on_sites(&self.K, "K")?;
         let k2 = self.K2.as_ref().map_or(Ok(Vec::new()), |k2| on_sites(k2, "K2"))?;

@@ -4,13 +4,14 @@
 //! E = Σ_i K (α₁²α₂² + α₂²α₃² + α₃²α₁²)        α_k = m·e_k;  K > 0: the cube edges are easy,  K < 0: its diagonals
 //! ```
 
+use super::EnergyTerm;
 use super::blocks::{Block, Blocks, multiply};
 use super::spec::{Medium, TermBuilder};
-use super::{EnergyTerm, Profile};
 use crate::error::{Error, Result};
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, Vector, vector};
 use crate::lattice::Selection;
+use crate::profile::Profile;
 use crate::registry::Described;
 use crate::units::SiteEnergy;
 use multiversion::multiversion;
@@ -40,7 +41,7 @@ impl Described for CubicAnisotropySpec {
 
 impl TermBuilder for CubicAnisotropySpec {
     fn build(&self, medium: &Medium) -> Result<Box<dyn EnergyTerm>> {
-        let k = medium.on_sites(&self.K, self.sites.as_ref(), "K", |k| medium.site_energy_mev(k))?;
+        let k = medium.on_sites(&self.K, self.sites.as_ref(), "K", |k, i| medium.site_energy_mev(k, i))?;
         let [a, b] = self.axes.unwrap_or([Direction::X, Direction::Y]).map(|d| d.vector());
         if vector::dot(a, b).abs() > 1e-6 {
             return Err(Error::invalid("axes[1]", "the two cube axes must be at right angles"));

@@ -3,6 +3,8 @@
 //! ```text
 //! E = ½ μ₀ V Σ_ij M_i·N(|i − j|) M_j          N: Newell's tensors, trace 1 for i = j and 0 else
 //! ```
+//! Cells of unequal cross-sections (tapers, notches) have a tensor a pair instead of one a distance; up to 1024 sites may have them.
+//!
 //! The cells lie along the chain's direction. With the default, +x, their width is along y and their thickness along z; another
 //! direction takes these with it by the smallest rotation from x. A ring is the straight chain that repeats itself.
 
@@ -17,6 +19,9 @@ use serde::Deserialize;
 /// Most that width and thickness may differ from the spacing, as a factor: beyond, the closed forms lose their digits.
 const SLENDER: f64 = 1000.0;
 
+/// Most sites of a chain of unequal cells: their Hessian is dense.
+const MOST_UNEQUAL: usize = 1024;
+
 /// `{}`.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -30,10 +35,11 @@ impl Described for DemagSpec {
 
 impl TermBuilder for DemagSpec {
     fn build(&self, medium: &Medium) -> Result<Box<dyn EnergyTerm>> {
-        let [width, thickness] = medium.edges_nm()?;
+        let sections = medium.sections_nm()?;
         let spacing = medium.spacing_nm()?;
-        for edge in [width, thickness] {
-            if !(1.0 / SLENDER..=SLENDER).contains(&(edge / spacing)) {
+        for edges in &sections {
+            if edges.iter().any(|edge| !(1.0 / SLENDER..=SLENDER).contains(&(edge / spacing))) {
+                let [width, thickness] = edges;
                 let message = format!(
                     "a cell is {spacing} nm × {width} nm × {thickness} nm: the edges of a cell may differ by a factor of {SLENDER} \
                      from the spacing, not more"
@@ -41,12 +47,24 @@ impl TermBuilder for DemagSpec {
                 return Err(Error::invalid("", message));
             }
         }
-        let row = Row {
-            shape: Shape::Cells { width: width / spacing, thickness: thickness / spacing },
-            volume_nm3: spacing * width * thickness,
-            periodic: medium.chain.periodic,
-            direction: medium.chain.direction.unwrap_or(Direction::X),
-        };
-        Ok(Box::new(Magnetostatics::new(DemagSpec::NAME, &row, medium.acting_moments_mub()?)))
+        let direction = medium.chain.direction.unwrap_or(Direction::X);
+        let (moments, periodic) = (medium.acting_moments_mub()?, medium.chain.periodic);
+        let [width, thickness] = sections[0];
+        if sections.iter().all(|s| *s == sections[0]) {
+            let shape = Shape::Cells { width: width / spacing, thickness: thickness / spacing };
+            let row = Row { shape, volume_nm3: spacing * width * thickness, periodic, direction };
+            return Ok(Box::new(Magnetostatics::new(DemagSpec::NAME, &row, moments)));
+        }
+        let sites = sections.len();
+        if sites > MOST_UNEQUAL {
+            let message = format!(
+                "cells of unequal cross-sections act on each other pair by pair, which is for at most {MOST_UNEQUAL} sites; there \
+                 are {sites}: make the cells longer and fewer, or give all one cross-section and let \"Ms\" vary instead"
+            );
+            return Err(Error::invalid("", message));
+        }
+        let sections: Vec<_> = sections.iter().map(|s| s.map(|edge| edge / spacing)).collect();
+        let term = Magnetostatics::unequal(DemagSpec::NAME, spacing, &sections, periodic, direction, moments);
+        Ok(Box::new(term))
     }
 }

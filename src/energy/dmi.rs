@@ -6,13 +6,14 @@
 //! ```
 //! With D > 0 the lower turning sense is that in which m_i × m_{i+1} points against d̂.
 
+use super::EnergyTerm;
 use super::blocks::{Blocks, cross_block};
 use super::spec::{Medium, TermBuilder};
-use super::{EnergyTerm, Profile};
 use crate::error::Result;
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, Vector, vector};
 use crate::lattice::{Chain, Selection};
+use crate::profile::Profile;
 use crate::registry::Described;
 use crate::units::BondEnergy;
 use multiversion::multiversion;
@@ -41,7 +42,7 @@ impl Described for DmiSpec {
 
 impl TermBuilder for DmiSpec {
     fn build(&self, medium: &Medium) -> Result<Box<dyn EnergyTerm>> {
-        let d = medium.on_bonds(&self.D, 1, self.bonds.as_ref(), "D", |d| medium.bond_energy_mev(d))?;
+        let d = medium.on_bonds(&self.D, 1, self.bonds.as_ref(), "D", |d, i| medium.bond_energy_mev(d, i))?;
         Ok(Box::new(Dmi { direction: self.direction.vector(), d }))
     }
 }

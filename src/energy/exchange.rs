@@ -5,15 +5,16 @@
 //!   = − Σ |J| + Σ ½|J| |m_i − sgn(J) m_{i+n}|²
 //! ∂E/∂m_i = |J| (m_i − sgn(J) m_j)       (a multiple of m_i apart, which spheres do not feel)
 //! ```
-//! From a continuum stiffness: J = 2 A S/a, with the cross-section S and the spacing a.
+//! From a continuum stiffness: J = 2 A S/a, with the cross-section S of the bond (see [`Medium`]) and the spacing a.
 
+use super::EnergyTerm;
 use super::blocks::Blocks;
 use super::spec::{Medium, TermBuilder};
-use super::{EnergyTerm, Profile};
 use crate::error::{Error, Result};
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Vector, vector};
 use crate::lattice::{Chain, Selection};
+use crate::profile::Profile;
 use crate::registry::Described;
 use crate::units::{Energy, ExchangeStiffness};
 use multiversion::multiversion;
@@ -48,14 +49,14 @@ impl TermBuilder for ExchangeSpec {
         let shells = match (&self.J, &self.A) {
             (Some(j), None) if !j.is_empty() => {
                 let shell = |(k, j): (usize, &Profile<Energy>)| {
-                    medium.on_bonds(j, k + 1, bonds, &format!("J[{k}]"), |e| Ok(e.0))
+                    medium.on_bonds(j, k + 1, bonds, &format!("J[{k}]"), |e, _| Ok(e.0))
                 };
                 j.iter().enumerate().map(shell).collect::<Result<_>>()?
             }
             (Some(_), None) => {
                 return Err(Error::invalid("J", "the list is empty: give one energy a neighbour shell, [\"10 meV\"]"));
             }
-            (None, Some(a)) => vec![medium.on_bonds(a, 1, bonds, "A", |a| medium.bond_from_stiffness_mev(a))?],
+            (None, Some(a)) => vec![medium.on_bonds(a, 1, bonds, "A", |a, i| medium.bond_from_stiffness_mev(a, i))?],
             (None, None) => {
                 return Err(Error::invalid("", "an exchange needs \"J\" (bond energies) or \"A\" (a stiffness)"));
             }

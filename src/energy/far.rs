@@ -31,10 +31,9 @@ pub(super) fn add(h: &Hamiltonian, long: &Magnetostatics, basis: &TangentBasis, 
 
 /// All pairs but those of neighbours that have a block.
 fn add_pairs(long: &Magnetostatics, rows: &Rows, matrix: &mut Banded) {
-    let [x, y, z] = &long.kernel().table;
     for i in 0..rows.len() {
         for j in i + 1..rows.len() {
-            add_pair(i, j, [x[j - i], y[j - i], z[j - i]], rows, matrix);
+            add_pair(i, j, long.pair(i, j), rows, matrix);
         }
     }
 }

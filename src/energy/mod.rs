@@ -17,7 +17,6 @@ mod far;
 mod hamiltonian;
 mod hessian;
 pub mod magnetostatics;
-mod profile;
 mod spec;
 mod zeeman;
 
@@ -31,7 +30,6 @@ pub use exchange::{Exchange, ExchangeSpec};
 pub use hamiltonian::{Hamiltonian, symmetry_axes};
 pub use hessian::{TangentBasis, assemble, assemble_shifted};
 pub use magnetostatics::Magnetostatics;
-pub use profile::{Profile, RampShape};
 pub use spec::{Medium, TermBuilder, TermSpec};
 pub use zeeman::{Zeeman, ZeemanSpec};
 

@@ -1,10 +1,11 @@
 //! From a term as written in a config to a term with numbers a site: units, cell sizes and selections.
 
 use super::{
-    AnisotropySpec, CubicAnisotropySpec, DemagSpec, DipolarSpec, DmiSpec, EnergyTerm, ExchangeSpec, Profile, ZeemanSpec,
+    AnisotropySpec, CubicAnisotropySpec, DemagSpec, DipolarSpec, DmiSpec, EnergyTerm, ExchangeSpec, ZeemanSpec,
 };
 use crate::error::{Error, Result};
-use crate::lattice::{Chain, Selection};
+use crate::lattice::{Chain, OwnMoment, Selection};
+use crate::profile::Profile;
 use crate::registry::family;
 use crate::units::{BondEnergy, ExchangeStiffness, Magnetisation, Moment, SiteEnergy};
 
@@ -28,61 +29,75 @@ pub trait TermBuilder {
 }
 
 /// What a term needs to know to turn its quantities into meV a site or bond.
-#[derive(Clone, Copy, Debug)]
+///
+/// A cell i of a continuum has the volume V_i = a S_i, with the spacing a and its own cross-section S_i. A bond between cells of
+/// unequal cross-sections has their harmonic mean, 2 S_i S_j/(S_i + S_j): between the two centres the flux A S dm/dx of the
+/// exchange is continuous, so half a spacing of each are springs in series. (S. V. Patankar, Numerical Heat Transfer and Fluid
+/// Flow, 1980, §4.2-3, for fluxes in general.) D S, weighted with the angles that these springs turn by, has the same mean.
+#[derive(Clone, Debug)]
 pub struct Medium<'a> {
     /// The chain.
     pub chain: &'a Chain,
     /// Moment of a site, where the material has one.
-    pub moment: Option<Moment>,
+    pub moment: Option<Profile<Moment>>,
     /// Saturation magnetisation, where the material has one.
-    pub saturation: Option<Magnetisation>,
+    pub saturation: Option<Profile<Magnetisation>>,
 }
 
 impl Medium<'_> {
-    /// Moment of a site (μ_B): as given, or Ms × cell volume.
-    pub fn moment_mu_b(&self) -> Result<f64> {
-        match (self.moment, self.saturation) {
-            (Some(m), _) => Ok(m.0),
-            (None, Some(ms)) => Ok(ms.in_volume(self.volume_nm3()?).0),
+    /// Moment of every site (μ_B): the material's, as given or Ms × cell volume, or the site's own.
+    pub fn moments_mub(&self) -> Result<Vec<f64>> {
+        let n = self.chain.sites;
+        let mut own = vec![None; n];
+        for (k, m) in self.chain.moments.iter().enumerate() {
+            let sites = m.sites.indices(n, "site").map_err(|e| e.within("sites"))?;
+            let values = match m.own().map_err(|e| e.within(&format!("lattice.chain.moments[{k}]")))? {
+                OwnMoment::Moment(p) => p.values(sites.len(), "site", |m, _| Ok(m.0)).map_err(|e| e.within("moment")),
+                OwnMoment::Ms(p) => {
+                    p.values(sites.len(), "site", |ms, i| self.cell_moment(ms, sites[i])).map_err(|e| e.within("Ms"))
+                }
+            };
+            for (i, value) in sites.iter().zip(values?) {
+                own[*i] = Some(value);
+            }
+        }
+        if own.iter().all(|m| m.is_some()) {
+            return Ok(own.into_iter().flatten().collect());
+        }
+        let common = match (&self.moment, &self.saturation) {
+            (Some(m), _) => m.values(n, "site", |m, _| Ok(m.0)),
+            (None, Some(ms)) => ms.values(n, "site", |ms, i| self.cell_moment(ms, i)),
             (None, None) => Err(Error::invalid(
                 "",
                 "a field acts on moments: give the material a \"moment\" (\"2 mu_B\") or \"Ms\" (\"800 kA/m\")",
             )),
-        }
+        }?;
+        Ok(own.into_iter().zip(common).map(|(own, common)| own.unwrap_or(common)).collect())
     }
 
-    /// Moment of every site (μ_B): the material's, or the site's own.
-    pub fn moments_mub(&self) -> Result<Vec<f64>> {
-        let n = self.chain.sites;
-        let mut own = vec![None; n];
-        for m in &self.chain.moments {
-            for i in m.sites.indices(n, "site").map_err(|e| e.within("sites"))? {
-                own[i] = Some(m.moment.0);
-            }
-        }
-        let common = if own.iter().all(|m| m.is_some()) { 0.0 } else { self.moment_mu_b()? };
-        Ok(own.into_iter().map(|m| m.unwrap_or(common)).collect())
+    fn cell_moment(&self, ms: Magnetisation, i: usize) -> Result<f64> {
+        Ok(ms.in_volume(self.volume_nm3(i)?).0)
     }
 
-    /// Energy a site (meV).
-    pub fn site_energy_mev(&self, k: SiteEnergy) -> Result<f64> {
+    /// Energy of site i (meV).
+    pub fn site_energy_mev(&self, k: SiteEnergy, i: usize) -> Result<f64> {
         match k {
             SiteEnergy::PerSite(e) => Ok(e.0),
-            SiteEnergy::PerVolume(density) => Ok(density.in_volume(self.volume_nm3()?).0),
+            SiteEnergy::PerVolume(density) => Ok(density.in_volume(self.volume_nm3(i)?).0),
         }
     }
 
-    /// Energy a bond (meV).
-    pub fn bond_energy_mev(&self, d: BondEnergy) -> Result<f64> {
+    /// Energy of bond i (meV).
+    pub fn bond_energy_mev(&self, d: BondEnergy, i: usize) -> Result<f64> {
         match d {
             BondEnergy::PerBond(e) => Ok(e.0),
-            BondEnergy::PerArea(d) => Ok(d.over_area(self.section_nm2()?).0),
+            BondEnergy::PerArea(d) => Ok(d.over_area(self.bond_section_nm2(i)?).0),
         }
     }
 
-    /// Exchange energy a bond (meV) of a stiffness.
-    pub fn bond_from_stiffness_mev(&self, a: ExchangeStiffness) -> Result<f64> {
-        Ok(2.0 * a.over_length(self.section_nm2()? / self.spacing_nm()?).0)
+    /// Exchange energy of bond i (meV) of a stiffness.
+    pub fn bond_from_stiffness_mev(&self, a: ExchangeStiffness, i: usize) -> Result<f64> {
+        Ok(2.0 * a.over_length(self.bond_section_nm2(i)? / self.spacing_nm()?).0)
     }
 
     /// [`moments_mub`](Self::moments_mub), 0 where a site is vacant.
@@ -92,16 +107,17 @@ impl Medium<'_> {
         Ok(moments)
     }
 
-    /// The values of a profile on the chosen sites, made numbers by `convert`; 0 on all others and where a site is vacant.
+    /// The values of a profile on the chosen sites, made numbers by `convert`, which is told the index; 0 on all others and where a site is vacant.
     pub fn on_sites<T: Copy>(
         &self,
         profile: &Profile<T>,
         selection: Option<&Selection>,
         key: &str,
-        convert: impl Fn(T) -> Result<f64>,
+        convert: impl Fn(T, usize) -> Result<f64>,
     ) -> Result<Vec<f64>> {
         let chosen = self.chosen(selection)?;
-        let values = profile.values(chosen.len(), "site", convert).map_err(|e| e.within(key))?;
+        let values =
+            profile.values(chosen.len(), "site", |value, k| convert(value, chosen[k])).map_err(|e| e.within(key))?;
         let vacant = self.chain.is_vacant()?;
         let mut list = vec![0.0; self.chain.sites];
         for (i, value) in chosen.into_iter().zip(values).filter(|(i, _)| !vacant[*i]) {
@@ -110,7 +126,7 @@ impl Medium<'_> {
         Ok(list)
     }
 
-    /// The values of a profile on the chosen bonds of a shell, made numbers by `convert`; 0 on all others and where a site of
+    /// The values of a profile on the chosen bonds of a shell, made numbers by `convert`, which is told the index; 0 on all others and where a site of
     /// the bond is vacant. `key` is the profile's place.
     pub fn on_bonds<T: Copy>(
         &self,
@@ -118,10 +134,11 @@ impl Medium<'_> {
         shell: usize,
         selection: Option<&Selection>,
         key: &str,
-        convert: impl Fn(T) -> Result<f64>,
+        convert: impl Fn(T, usize) -> Result<f64>,
     ) -> Result<Vec<f64>> {
         let chosen = self.bonds(shell, selection, key)?;
-        let values = profile.values(chosen.len(), "bond", convert).map_err(|e| e.within(key))?;
+        let values =
+            profile.values(chosen.len(), "bond", |value, k| convert(value, chosen[k])).map_err(|e| e.within(key))?;
         let (vacant, sites) = (self.chain.is_vacant()?, self.chain.sites);
         let mut list = vec![0.0; sites];
         for (i, value) in chosen.into_iter().zip(values).filter(|(i, _)| !vacant[*i] && !vacant[(i + shell) % sites]) {
@@ -160,10 +177,11 @@ impl Medium<'_> {
         }
     }
 
-    /// Width and thickness of a cell.
-    pub(super) fn edges_nm(&self) -> Result<[f64; 2]> {
-        self.section_nm2()?;
-        Ok(self.chain.cross_section.map_or([0.0; 2], |edges| edges.map(|e| e.0)))
+    /// Width and thickness of every cell.
+    pub(super) fn sections_nm(&self) -> Result<Vec<[f64; 2]>> {
+        let missing =
+            || Error::invalid("", "a continuum quantity needs the lattice's \"cross_section\" ([\"20 nm\", \"5 nm\"])");
+        (0..self.chain.sites).map(|i| self.chain.section_nm(i).ok_or_else(missing)).collect()
     }
 
     /// Distance between neighbours.
@@ -172,13 +190,20 @@ impl Medium<'_> {
         self.chain.spacing.map(|a| a.0).ok_or_else(missing)
     }
 
-    fn section_nm2(&self) -> Result<f64> {
+    fn section_nm2(&self, i: usize) -> Result<f64> {
         let missing =
             || Error::invalid("", "a continuum quantity needs the lattice's \"cross_section\" ([\"20 nm\", \"5 nm\"])");
-        self.chain.section_nm2().ok_or_else(missing)
+        let [width, thickness] = self.chain.section_nm(i).ok_or_else(missing)?;
+        Ok(width * thickness)
     }
 
-    fn volume_nm3(&self) -> Result<f64> {
-        Ok(self.section_nm2()? * self.spacing_nm()?)
+    /// Cross-section between the centres of sites i and i + 1.
+    fn bond_section_nm2(&self, i: usize) -> Result<f64> {
+        let (s, t) = (self.section_nm2(i)?, self.section_nm2((i + 1) % self.chain.sites)?);
+        Ok(if s == t { s } else { 2.0 * s * t / (s + t) })
+    }
+
+    fn volume_nm3(&self, i: usize) -> Result<f64> {
+        Ok(self.section_nm2(i)? * self.spacing_nm()?)
     }
 }

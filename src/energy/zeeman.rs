@@ -121,8 +121,9 @@ mod tests {
     #[test]
     fn a_site_with_a_moment_of_its_own_feels_its_own_energy() {
         let mut chain = Chain::open(3);
-        chain.moments = vec![SiteMoment { sites: Selection::List(vec![1]), moment: Moment(4.0) }];
-        let medium = Medium { chain: &chain, moment: Some(Moment(2.0)), saturation: None };
+        chain.moments =
+            vec![SiteMoment { sites: Selection::List(vec![1]), moment: Some(Moment(4.0).into()), Ms: None }];
+        let medium = Medium { chain: &chain, moment: Some(Moment(2.0).into()), saturation: None };
         assert_eq!(medium.moments_mub().unwrap(), [2.0, 4.0, 2.0]);
         let spec: ZeemanSpec = serde_json::from_str(r#"{"B": ["0 T", "0 T", "1 T"]}"#).unwrap();
         let term = spec.build(&medium).unwrap();

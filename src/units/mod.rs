@@ -44,6 +44,18 @@ macro_rules! quantity {
             pub const UNITS: &'static str = parse::$wanted.units;
         }
 
+        impl From<f64> for $name {
+            fn from(value: f64) -> Self {
+                $name(value)
+            }
+        }
+
+        impl From<$name> for f64 {
+            fn from(quantity: $name) -> f64 {
+                quantity.0
+            }
+        }
+
         impl FromStr for $name {
             type Err = Error;
 

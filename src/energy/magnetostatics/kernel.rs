@@ -38,7 +38,8 @@ impl Kernel {
         };
         let near = near_tensors(shape, if periodic { series.first() } else { series.first().min(sites) });
         let single = |n: usize| near.get(n).copied().unwrap_or_else(|| series.at(n as f64));
-        let tensor = |n: usize| if periodic { with_images(n, sites, &near, &series) } else { single(n) };
+        let tensor =
+            |n: usize| if periodic { with_images(n, sites, near.len(), |m| near[m], &series) } else { single(n) };
         let mut table = [(); 3].map(|()| vec![0.0; sites]);
         for n in 0..sites {
             let value =
@@ -80,8 +81,14 @@ fn near_tensors(shape: Shape, count: usize) -> Vec<[f64; 3]> {
     }
 }
 
-/// Σ_p N(|n + pL|) in a ring of L sites, 2n ≤ L.
-fn with_images(n: usize, ring: usize, near: &[[f64; 3]], series: &Series) -> [f64; 3] {
+/// Σ_p N(|n + pL|) in a ring of L sites, 2n ≤ L; images less than `close` sites away have the tensor `near`, others the series'.
+pub(super) fn with_images(
+    n: usize,
+    ring: usize,
+    close: usize,
+    near: impl Fn(usize) -> [f64; 3],
+    series: &Series,
+) -> [f64; 3] {
     let mut sums = [0.0; 3];
     let mut add = |value: [f64; 3]| {
         for c in 0..3 {
@@ -90,9 +97,9 @@ fn with_images(n: usize, ring: usize, near: &[[f64; 3]], series: &Series) -> [f6
     };
     // the images on either side: n, n + L, … and L − n, 2L − n, …
     for first in [n, ring - n] {
-        let by_hand = near.len().saturating_sub(first).div_ceil(ring);
+        let by_hand = close.saturating_sub(first).div_ceil(ring);
         add(series.images((first + by_hand * ring) as f64, ring as f64));
-        (0..by_hand).rev().for_each(|p| add(near[first + p * ring]));
+        (0..by_hand).rev().for_each(|p| add(near(first + p * ring)));
     }
     sums
 }

@@ -5,18 +5,20 @@
 //! ∂E/∂m_i = h_i = (μ₀/V) μ_i Σ_j N(|i − j|) μ_j m_j
 //! ```
 //! N is the demagnetising tensor of uniformly magnetised cells of volume V, or that of point dipoles; it is diagonal in the
-//! chain's own axes (along, width, thickness). The reference is the chain magnetised along itself, x̂.
+//! chain's own axes (along, width, thickness). Cells of unequal cross-sections have a tensor a pair instead, see [`Pairs`]. The reference is the chain magnetised along itself, x̂.
 
 mod convolution;
 mod exponentials;
 mod kernel;
 mod newell;
+mod pairs;
 mod series;
 mod term;
 
 pub use convolution::Convolution;
 pub use exponentials::Exponentials;
 pub use kernel::{Kernel, Shape};
-pub use newell::cell_tensor;
-pub use series::{Series, hurwitz_zeta};
+pub use newell::{cell_tensor, pair_tensor};
+pub use pairs::{Pairs, Section};
+pub use series::{Multipoles, Series, hurwitz_zeta};
 pub use term::{MU_0_MU_B_SQUARED, Magnetostatics, Row};

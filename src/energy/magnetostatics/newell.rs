@@ -17,13 +17,31 @@ type Dd = DoubleDouble;
 
 /// N(n) = (xx, yy, zz) of cells with edges 1 × width × thickness (in units of their spacing), n cells apart.
 pub fn cell_tensor(n: usize, width: f64, thickness: f64) -> [f64; 3] {
-    let edges = [1.0, width, thickness].map(Dd::from);
-    let zero = Dd::from(0.0);
-    let mut sums = [zero; 3];
-    let (m, two) = (n as f64, -2.0);
-    for (x, along) in [(m - 1.0, 1.0), (m, two), (m + 1.0, 1.0)] {
-        for (y, across) in [(zero, two), (edges[1], 2.0)] {
-            for (z, through) in [(zero, two), (edges[2], 2.0)] {
+    let [zero, width, thickness] = [0.0, width, thickness].map(Dd::from);
+    let scale = Dd::from(-4.0 * std::f64::consts::PI) * width * thickness;
+    differences(n, [(zero, -2.0), (width, 2.0)], [(zero, -2.0), (thickness, 2.0)]).map(|s| (s / scale).to_f64())
+}
+
+/// G(n) = (xx, yy, zz) of two cells on one axis, n spacings apart, each 1 long, with these widths and thicknesses (in units of the
+/// spacing): N(n)/V where they are equal.
+pub fn pair_tensor(n: usize, a: [f64; 2], b: [f64; 2]) -> [f64; 3] {
+    let half = Dd::from(0.5);
+    let edges = |c: usize| {
+        let (p, q) = (Dd::from(a[c].max(b[c])), Dd::from(a[c].min(b[c])));
+        [(half * (p - q), -2.0), (half * (p + q), 2.0)]
+    };
+    let volumes = Dd::from(a[0]) * Dd::from(a[1]) * Dd::from(b[0]) * Dd::from(b[1]);
+    let scale = Dd::from(-4.0 * std::f64::consts::PI) * volumes;
+    differences(n, edges(0), edges(1)).map(|s| (s / scale).to_f64())
+}
+
+/// Σ of Newell's f for xx, yy and zz over the second differences of cells n apart: lengths and weights across and through.
+fn differences(n: usize, across: [(Dd, f64); 2], through: [(Dd, f64); 2]) -> [Dd; 3] {
+    let mut sums = [Dd::from(0.0); 3];
+    let m = n as f64;
+    for (x, along) in [(m - 1.0, 1.0), (m, -2.0), (m + 1.0, 1.0)] {
+        for (y, across) in across {
+            for (z, through) in through {
                 let weight = Dd::from(along * across * through);
                 let x = Dd::from(x.abs());
                 for (sum, value) in sums.iter_mut().zip([newell_f(x, y, z), newell_f(y, x, z), newell_f(z, x, y)]) {
@@ -32,8 +50,7 @@ pub fn cell_tensor(n: usize, width: f64, thickness: f64) -> [f64; 3] {
             }
         }
     }
-    let scale = Dd::from(-4.0 * std::f64::consts::PI) * edges[1] * edges[2];
-    sums.map(|s| (s / scale).to_f64())
+    sums
 }
 
 /// Newell's f for lengths that are not negative.

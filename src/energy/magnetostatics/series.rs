@@ -9,6 +9,8 @@
 //! Expanding the integrand in powers of u gives Σ_k c_k/n^(2k+3), convergent where n is greater than a cell's diagonal; c₀ is
 //! the dipole. The images of a ring of N cells add up to Hurwitz zeta functions, Σ_p (n + pN)^(−s) = N^(−s) ζ(s, n/N).
 
+use super::pairs::Section;
+
 /// Terms of the series.
 const TERMS: usize = 14;
 /// The series is used from this many diagonals of a cell on: (1/6)²⁸ is 2e-22.
@@ -35,6 +37,12 @@ impl Series {
         let column = |c: usize| (0..TERMS).map(|k| scale * coefficient(c, k, width, thickness)).collect();
         let diagonal = (1.0 + width * width + thickness * thickness).sqrt();
         Series { coefficients: [0, 1, 2].map(column), first: (DIAGONALS * diagonal).ceil() as usize }
+    }
+
+    /// Two cells of unequal sections on one axis: G = N/V of [`super::pairs`].
+    pub fn of_unequal_cells(a: Section, b: Section, multipoles: &Multipoles) -> Series {
+        let diagonal = (1.0 + power(0.5 * (a[0] + b[0]), 2) + power(0.5 * (a[1] + b[1]), 2)).sqrt();
+        Series { coefficients: multipoles.coefficients(a, b), first: (DIAGONALS * diagonal).ceil() as usize }
     }
 
     /// From how many cells apart on the series is exact to rounding.
@@ -82,6 +90,65 @@ fn coefficient(component: usize, k: usize, width: f64, thickness: f64) -> f64 {
         }
     }
     factorial(2 * k + 2) * sum
+}
+
+/// Numbers that the series of all pairs of sections share.
+#[derive(Clone, Debug)]
+pub struct Multipoles {
+    /// ⟨cos^(2p) φ sin^(2q) φ⟩, p and q up to [`TERMS`].
+    means: Vec<Vec<f64>>,
+    /// 1/(2 (2m)!), the coefficients of sinh²(u/2).
+    steps: Vec<f64>,
+    /// (−1)^p/(2p + 1)!, the coefficients of sinc.
+    sinc: Vec<f64>,
+    /// (2k + 2)!.
+    factorials: Vec<f64>,
+}
+
+impl Multipoles {
+    /// Computed once.
+    #[allow(clippy::new_without_default)]
+    pub fn new() -> Multipoles {
+        let sign = |p: usize| if p.is_multiple_of(2) { 1.0 } else { -1.0 };
+        Multipoles {
+            means: (0..=TERMS).map(|p| (0..=TERMS).map(|q| angular_mean(p, q)).collect()).collect(),
+            steps: (0..=TERMS).map(|m| 0.5 / factorial(2 * m)).collect(),
+            sinc: (0..TERMS).map(|p| sign(p) / factorial(2 * p + 1)).collect(),
+            factorials: (0..TERMS).map(|k| factorial(2 * k + 2)).collect(),
+        }
+    }
+
+    /// Of 1/n^(2k+3) for xx, yy, zz: as those of equal cells, with S = Π sinc(½uw_i cos φ) sinc(½ut_i sin φ) and per volume.
+    fn coefficients(&self, a: Section, b: Section) -> [Vec<f64>; 3] {
+        let (w, t) = (self.product(0.5 * a[0], 0.5 * b[0]), self.product(0.5 * a[1], 0.5 * b[1]));
+        let of = |c: usize| {
+            let mean = |p: usize, q: usize| match c {
+                0 => -self.means[p][q],
+                1 => self.means[p + 1][q],
+                _ => self.means[p][q + 1],
+            };
+            let moments: Vec<f64> =
+                (0..TERMS).map(|s| (0..=s).map(|p| w[p] * t[s - p] * mean(p, s - p)).sum()).collect();
+            let term = |k: usize| (1..=k + 1).map(|m| self.steps[m] * moments[k + 1 - m]).sum::<f64>();
+            (0..TERMS).map(|k| self.factorials[k] * term(k) / std::f64::consts::PI).collect()
+        };
+        [of(0), of(1), of(2)]
+    }
+
+    /// Coefficients of x^(2p) in sinc(ax) sinc(bx).
+    fn product(&self, a: f64, b: f64) -> Vec<f64> {
+        let powers = |x: f64| {
+            let mut power = 1.0;
+            let next = |s: &f64| {
+                let value = s * power;
+                power *= x * x;
+                value
+            };
+            self.sinc.iter().map(next).collect::<Vec<f64>>()
+        };
+        let (a, b) = (powers(a), powers(b));
+        (0..TERMS).map(|p| (0..=p).map(|i| a[i] * b[p - i]).sum()).collect()
+    }
 }
 
 /// Mean of cos^(2p) φ sin^(2q) φ: (2p−1)!! (2q−1)!!/(2^(p+q) (p+q)!).

@@ -1,6 +1,6 @@
 //! The energy term that dipoles and cells share.
 
-use super::{Convolution, Exponentials, Kernel, Shape};
+use super::{Convolution, Exponentials, Kernel, Pairs, Section, Shape};
 use crate::energy::EnergyTerm;
 use crate::energy::blocks::{Block, Blocks};
 use crate::field::{Components, ComponentsMut};
@@ -28,11 +28,18 @@ pub struct Magnetostatics {
     /// Moment of every site (μ_B).
     moments: Vec<f64>,
     /// In meV/μ_B².
-    kernel: Kernel,
-    convolution: Convolution,
+    coupling: Coupling,
     /// x̂·h_i(x̂)/2 of the chain magnetised along itself (meV).
     reference: Vec<f64>,
-    tails: Option<[Exponentials; 2]>,
+}
+
+/// What two sites do to each other, the moments apart.
+#[derive(Debug)]
+enum Coupling {
+    /// It depends on their distance alone.
+    Distance { kernel: Kernel, convolution: Convolution, tails: Option<[Exponentials; 2]> },
+    /// Each pair has its own.
+    Pairs(Pairs),
 }
 
 /// What the sites are, and how they stand.
@@ -62,9 +69,27 @@ impl Magnetostatics {
             e
         };
         let convolution = Convolution::new(&kernel);
-        let frame = frame(row.direction);
         let tails = tails.map(|t| t.map(scaled));
-        let mut term = Magnetostatics { name, frame, reference: vec![0.0; sites], convolution, moments, kernel, tails };
+        Magnetostatics::coupled(name, row.direction, moments, Coupling::Distance { kernel, convolution, tails })
+    }
+
+    /// Of cells with these moments (μ_B) and unequal sections (in units of the spacing).
+    pub fn unequal(
+        name: &'static str,
+        spacing_nm: f64,
+        sections: &[Section],
+        periodic: bool,
+        direction: Direction,
+        moments: Vec<f64>,
+    ) -> Magnetostatics {
+        let mut pairs = Pairs::new(sections, periodic);
+        pairs.scale(MU_0_MU_B_SQUARED / (spacing_nm * spacing_nm * spacing_nm));
+        Magnetostatics::coupled(name, direction, moments, Coupling::Pairs(pairs))
+    }
+
+    fn coupled(name: &'static str, direction: Direction, moments: Vec<f64>, coupling: Coupling) -> Magnetostatics {
+        let sites = moments.len();
+        let mut term = Magnetostatics { name, frame: frame(direction), reference: vec![0.0; sites], moments, coupling };
         let [x, y, z] = term.frame[0].map(|v| vec![v; sites]);
         let along = Components { x: &x, y: &y, z: &z };
         let field = term.field(along, 0..sites);
@@ -83,14 +108,22 @@ impl Magnetostatics {
         &self.moments
     }
 
-    /// The interaction by distance (meV/μ_B²).
-    pub fn kernel(&self) -> &Kernel {
-        &self.kernel
+    /// What sites i and j do to each other (meV/μ_B²): along, width, thickness.
+    pub fn pair(&self, i: usize, j: usize) -> [f64; 3] {
+        match &self.coupling {
+            Coupling::Distance { kernel, .. } => [0, 1, 2].map(|c: usize| kernel.table[c][i.abs_diff(j)]),
+            Coupling::Pairs(pairs) => pairs.at(i, j),
+        }
     }
 
     /// The interaction of an open chain as a sum of exponentials; nothing where the Hessian is dense.
     pub fn exponentials(&self, precise: bool) -> Option<&Exponentials> {
-        self.tails.as_ref().map(|[fine, coarse]| if precise { fine } else { coarse })
+        match &self.coupling {
+            Coupling::Distance { tails, .. } => {
+                tails.as_ref().map(|[fine, coarse]| if precise { fine } else { coarse })
+            }
+            Coupling::Pairs(_) => None,
+        }
     }
 
     /// A bound of the Hessian's error (meV, any norm) for what the exponentials leave out.
@@ -99,10 +132,11 @@ impl Magnetostatics {
         self.exponentials(precise).map_or(0.0, |e| 2.0 * e.error * largest * largest)
     }
 
-    /// About the norm of what acts beyond the nearest `shells` (meV).
+    /// About the norm of what acts beyond the nearest `shells` (meV); 0 where the Hessian is dense.
     pub fn far_norm_mev(&self, shells: usize) -> f64 {
+        let Coupling::Distance { kernel, .. } = &self.coupling else { return 0.0 };
         let largest = self.moments.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-        let beyond = |c: usize| self.kernel.table[c].iter().skip(shells + 1).map(|k| k.abs()).sum::<f64>();
+        let beyond = |c: usize| kernel.table[c].iter().skip(shells + 1).map(|k| k.abs()).sum::<f64>();
         2.0 * largest * largest * [0, 1, 2].map(beyond).into_iter().fold(0.0, f64::max)
     }
 
@@ -110,12 +144,22 @@ impl Magnetostatics {
     pub fn sums_of_others(&self) -> Vec<Block> {
         let sums = [0, 1, 2].map(|c: usize| {
             let mut sum = vec![0.0; self.moments.len()];
-            self.convolution.apply(c, &self.moments, &mut sum);
+            self.apply(c, &self.moments, &mut sum);
             sum
         });
-        let own = [0, 1, 2].map(|c: usize| self.kernel.table[c][0]);
-        let others = |i: usize, c: usize| self.moments[i] * (sums[c][i] - own[c] * self.moments[i]);
-        (0..self.moments.len()).map(|i| self.in_space([0, 1, 2].map(|c| others(i, c)))).collect()
+        let others = |i: usize| {
+            let own = self.pair(i, i);
+            [0, 1, 2].map(|c: usize| self.moments[i] * (sums[c][i] - own[c] * self.moments[i]))
+        };
+        (0..self.moments.len()).map(|i| self.in_space(others(i))).collect()
+    }
+
+    /// y_i ← Σ_j of component c, all sites.
+    fn apply(&self, c: usize, x: &[f64], y: &mut [f64]) {
+        match &self.coupling {
+            Coupling::Distance { convolution, .. } => convolution.apply(c, x, y),
+            Coupling::Pairs(pairs) => pairs.apply(c, x, y),
+        }
     }
 
     /// Σ_c d_c f_c f_cᵀ with the chain's axes f.
@@ -135,10 +179,10 @@ impl Magnetostatics {
                 weighted[i] = self.moments[i] * (axis[0] * m.x[i] + axis[1] * m.y[i] + axis[2] * m.z[i]);
             }
             if range.len() == sites {
-                self.convolution.apply(c, &weighted, &mut own);
+                self.apply(c, &weighted, &mut own);
             } else {
                 for (own, i) in own.iter_mut().zip(range.clone()) {
-                    *own = (0..sites).map(|j| self.kernel.table[c][i.abs_diff(j)] * weighted[j]).sum();
+                    *own = (0..sites).map(|j| self.pair(i, j)[c] * weighted[j]).sum();
                 }
             }
             for (k, i) in range.clone().enumerate() {
@@ -207,30 +251,34 @@ impl EnergyTerm for Magnetostatics {
 
     fn add_blocks(&self, _: Components, blocks: &mut Blocks) {
         let sites = self.moments.len();
-        let block = |n: usize| self.in_space([0, 1, 2].map(|c: usize| self.kernel.table[c][n]));
-        let scaled = |b: &Block, s: f64| b.map(|row| vector::scale(s, row));
-        let own = block(0);
+        let block = |i: usize, j: usize| {
+            let strength = self.moments[i] * self.moments[j];
+            self.in_space(self.pair(i, j).map(|k| strength * k))
+        };
         for i in 0..sites {
-            blocks.add_site(i, scaled(&own, self.moments[i] * self.moments[i]));
+            blocks.add_site(i, block(i, i));
         }
         for n in 1..=self.reach() {
-            let pair = block(n);
             for i in 0..sites - n {
-                blocks.bond[n - 1].add(i, scaled(&pair, self.moments[i] * self.moments[i + n]));
+                blocks.bond[n - 1].add(i, block(i, i + n));
             }
         }
     }
 
     fn reach(&self) -> usize {
-        self.tails.as_ref().map_or(0, |[precise, _]| precise.shells)
+        self.exponentials(true).map_or(0, |e| e.shells)
     }
 
     fn invariant_about(&self, axis: Vector) -> bool {
         let about_itself = vector::norm(vector::cross(axis, self.frame[0])) < 1e-14;
-        let idle = self.moments.iter().all(|m| *m == 0.0);
-        let [x, y, _] = &self.kernel.table;
-        let alone = x.len() == 1 && (x[0] - y[0]).abs() <= 1e-14 * x[0].abs();
-        idle || (self.kernel.is_axial() && (about_itself || alone))
+        let moments = &self.moments;
+        let axial = match &self.coupling {
+            Coupling::Distance { kernel, .. } => kernel.is_axial(),
+            Coupling::Pairs(pairs) => pairs.is_axial(),
+        };
+        let [x, y, _] = self.pair(0, 0);
+        let alone = moments.len() == 1 && (x - y).abs() <= 1e-14 * x.abs();
+        moments.iter().all(|m| *m == 0.0) || (axial && (about_itself || alone))
     }
 
     fn axes(&self) -> Vec<Vector> {

@@ -55,13 +55,43 @@ impl RampShape {
     }
 }
 
+impl<T> From<T> for Profile<T> {
+    fn from(value: T) -> Profile<T> {
+        Profile::Same(value)
+    }
+}
+
 impl<T: Copy> Profile<T> {
-    /// The numbers for `count` sites or bonds (`what`), each value made a number by `convert`.
-    pub fn values(&self, count: usize, what: &str, convert: impl Fn(T) -> Result<f64>) -> Result<Vec<f64>> {
+    /// The values that are written.
+    pub fn written(&self) -> Vec<T> {
         match self {
-            Profile::Same(value) => Ok(vec![convert(*value)?; count]),
+            Profile::Same(value) => vec![*value],
+            Profile::List(list) => list.clone(),
+            Profile::Ramp { from, to, .. } => vec![*from, *to],
+        }
+    }
+
+    /// The value of number k of `count`; nothing where a list has none.
+    pub fn at(&self, k: usize, count: usize) -> Option<T>
+    where
+        T: Into<f64> + From<f64>,
+    {
+        match self {
+            Profile::Same(value) => Some(*value),
+            Profile::List(list) => list.get(k).copied(),
+            Profile::Ramp { from, to, shape } => {
+                let (a, b): (f64, f64) = ((*from).into(), (*to).into());
+                Some(T::from(a + (b - a) * shape.at(place(k, count))))
+            }
+        }
+    }
+
+    /// The numbers for `count` sites or bonds (`what`), each value made a number by `convert`, which is told of which of them.
+    pub fn values(&self, count: usize, what: &str, convert: impl Fn(T, usize) -> Result<f64>) -> Result<Vec<f64>> {
+        match self {
+            Profile::Same(value) => (0..count).map(|k| convert(*value, k)).collect(),
             Profile::List(list) if list.len() == count => {
-                let item = |(k, value): (usize, &T)| convert(*value).map_err(|e| e.within(&format!("[{k}]")));
+                let item = |(k, value): (usize, &T)| convert(*value, k).map_err(|e| e.within(&format!("[{k}]")));
                 list.iter().enumerate().map(item).collect()
             }
             Profile::List(list) => Err(Error::invalid(
@@ -69,13 +99,20 @@ impl<T: Copy> Profile<T> {
                 format!("found {} values for {count} {what}s: give one each, or one for all", list.len()),
             )),
             Profile::Ramp { from, to, shape } => {
-                let a = convert(*from).map_err(|e| e.within("from"))?;
-                let b = convert(*to).map_err(|e| e.within("to"))?;
-                let place = |k: usize| if count > 1 { k as f64 / (count - 1) as f64 } else { 0.0 };
-                Ok((0..count).map(|k| a + (b - a) * shape.at(place(k))).collect())
+                let value = |k: usize| {
+                    let a = convert(*from, k).map_err(|e| e.within("from"))?;
+                    let b = convert(*to, k).map_err(|e| e.within("to"))?;
+                    Ok(a + (b - a) * shape.at(place(k, count)))
+                };
+                (0..count).map(value).collect()
             }
         }
     }
+}
+
+/// Where number k of `count` is on the way from 0 to 1.
+fn place(k: usize, count: usize) -> f64 {
+    if count > 1 { k as f64 / (count - 1) as f64 } else { 0.0 }
 }
 
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for Profile<T> {
@@ -129,7 +166,7 @@ mod tests {
 
     fn read(text: &str, count: usize) -> Result<Vec<f64>> {
         let profile: Profile<Energy> = serde_json::from_str(text).map_err(|e| Error::Numerical(e.to_string()))?;
-        profile.values(count, "site", |e| Ok(e.0))
+        profile.values(count, "site", |e, _| Ok(e.0))
     }
 
     #[test]
