@@ -2,6 +2,7 @@
 
 use super::{Check, USAGE, report, worse};
 use anyhow::Result;
+use spinneb::config::physics::{Physics, estimated_seconds};
 use spinneb::config::{Loaded, expected_images, load, memory, needed_bytes};
 use spinneb::drive::{Images, Problem, Scales};
 use spinneb::rates::RateSettings;
@@ -24,7 +25,7 @@ fn print(out: &mut impl Write, loaded: &Loaded, problem: &Problem) -> io::Result
     let h = &problem.hamiltonian;
     let scales = Scales::of_terms(h);
     writeln!(out, "{}: valid", loaded.text.file)?;
-    let mut row = |key: &str, value: String| writeln!(out, "  {key:<12}{value}");
+    let mut row = |key: &str, value: String| writeln!(out, "  {key:<13}{value}");
     row("name", loaded.name.clone())?;
     row("material", material(loaded))?;
     row("lattice", lattice(loaded))?;
@@ -36,9 +37,16 @@ fn print(out: &mut impl Write, loaded: &Loaded, problem: &Problem) -> io::Result
     }
     let total = |k: usize| numbers(states[k].iter().map(|(_, e)| e).sum());
     row("", format!("{:<20}{}{}", "total", total(0), total(1)))?;
+    let physics = Physics::of(loaded, problem, &scales);
     row("stiffness", format!("{:.6} meV (softest mode of a stable spin)", scales.stiffness_mev))?;
     row("exchange", format!("{:.6} meV a bond", scales.exchange_mev))?;
-    row("wall width", wall(loaded, &scales))?;
+    if let Some(length) = physics.exchange_length_nm {
+        row("l_ex", format!("{length:.4} nm (exchange length √(2A/μ₀Ms²))"))?;
+    }
+    row("wall width", wall_width(&physics))?;
+    row("wall energy", wall_energy(&physics))?;
+    row("site barrier", site_barrier(&physics))?;
+    row("dominant", dominant(&physics))?;
     row("ends", if problem.relax_ends { "relaxed to minima first" } else { "kept as given" }.into())?;
     row("guess", problem.guess.as_ref().map_or("all natural ones".into(), |g| g.name().into()))?;
     row("images", images(problem, &scales))?;
@@ -47,6 +55,10 @@ fn print(out: &mut impl Write, loaded: &Loaded, problem: &Problem) -> io::Result
         row("rates", asked_for(rates))?;
     }
     row("memory", format!("about {}", memory::shown(needed_bytes(problem, &scales))))?;
+    row("time", format!("about {}, by a measured step", duration(estimated_seconds(problem, &scales))))?;
+    for warning in &physics.warnings {
+        row("warning", warning.clone())?;
+    }
     for kind in loaded.config.output.left_out() {
         row("warning", format!("output.formats: \"{kind}\" cannot be written by this version and is left out"))?;
     }
@@ -81,10 +93,43 @@ fn lattice(loaded: &Loaded) -> String {
     format!("{kind} of {} sites{spacing}{frozen}", chain.sites)
 }
 
-fn wall(loaded: &Loaded, scales: &Scales) -> String {
-    let sites = scales.wall_width_sites;
-    let nm = loaded.chain().spacing.map_or(String::new(), |a| format!(", {:.4} nm", sites * a.0));
-    format!("{sites:.4} sites{nm} (√(exchange/stiffness))")
+fn wall_width(physics: &Physics) -> String {
+    let nm = physics.wall_width_nm.map_or(String::new(), |nm| format!(", {nm:.4} nm"));
+    match physics.wall_width_sites {
+        Some(sites) => format!("{sites:.4} sites{nm} (√(exchange/stiffness))"),
+        None => "none: there is no easy axis, or no exchange".into(),
+    }
+}
+
+fn wall_energy(physics: &Physics) -> String {
+    let area = physics.wall_energy_mj_per_m2.map_or(String::new(), |e| format!(", {e:.4} mJ/m²"));
+    match physics.wall_energy_mev {
+        Some(energy) => format!("{energy:.4} meV{area} (2 √(exchange × stiffness))"),
+        None => "none".into(),
+    }
+}
+
+fn site_barrier(physics: &Physics) -> String {
+    let [low, high] = physics.site_barriers_mev;
+    let range = if high - low > 1e-9 * high { format!("{low:.6} to {high:.6} meV") } else { format!("{high:.6} meV") };
+    format!("{range} (a single spin from one easy direction to the other, by its own anisotropy)")
+}
+
+fn dominant(physics: &Physics) -> String {
+    let Some((name, torque)) = physics.terms_mev.first() else { return "none".into() };
+    let others: Vec<String> = physics.terms_mev[1..].iter().map(|(name, t)| format!("{name} {t:.4}")).collect();
+    let beside = if others.is_empty() { String::new() } else { format!("; {}", others.join(", ")) };
+    format!("{name} (meV, torque where neighbours disagree: {torque:.4}{beside})")
+}
+
+/// Seconds as a person would say them.
+fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 0.05 => "0.05 s".into(),
+        s if s < 100.0 => format!("{s:.1} s"),
+        s if s < 6000.0 => format!("{:.0} minutes", s / 60.0),
+        s => format!("{:.0} hours", s / 3600.0),
+    }
 }
 
 fn images(problem: &Problem, scales: &Scales) -> String {

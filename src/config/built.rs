@@ -89,6 +89,11 @@ impl Loaded {
         Ok(Some(config.settings(moments)))
     }
 
+    /// Moments of all sites (μ_B), where the material has any.
+    pub(super) fn moments_mub(&self, chain: &Chain) -> Option<Vec<f64>> {
+        self.medium(chain).moments_mub().ok()
+    }
+
     fn medium<'a>(&self, chain: &'a Chain) -> Medium<'a> {
         Medium { chain, moment: self.material.moment.clone(), saturation: self.material.Ms.clone() }
     }

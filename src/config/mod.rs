@@ -14,6 +14,7 @@ mod name;
 mod neb;
 mod output;
 mod path;
+pub mod physics;
 pub mod rates;
 mod set;
 pub mod text;
