@@ -10,6 +10,7 @@ use spinneb::energy::{Exchange, Hamiltonian, Medium, TangentBasis, TermSpec, ass
 use spinneb::geometry::Direction;
 use spinneb::lattice::Chain;
 use spinneb::linalg::eigenvalues_symmetric;
+use spinneb::profile::Profile;
 use spinneb::spins::Spins;
 use spinneb::units::{Length, Magnetisation, Moment};
 use std::process::Command;
@@ -119,6 +120,115 @@ fn two_cells_without_exchange_or_magnetostatics_turn_one_after_the_other() {
     let barrier = summary["barrier_meV"]["forward"].as_f64().unwrap();
     assert!((barrier / 16.852_074_5 - 1.0).abs() < 1e-8, "{summary}");
     assert_eq!((code, &summary["certified"]), (Some(0), &Value::Bool(true)), "{summary}");
+}
+
+#[test]
+fn two_cells_that_turn_at_once_cost_twice_that_and_are_never_certified() {
+    // all spins alike on the whole path: the rigid rotation, which is alone explored and may not be left
+    let config = |extra: &str| {
+        format!(
+            r#"{{
+          "material": {{"name": "grains", "Ms": "1 MA/m", "energy": [
+            {{"anisotropy": {{"K": "100 kJ/m^3", "axis": [0, 0, 1]}}}}
+          ]}},
+          "lattice": {{"chain": {{"sites": 2, "spacing": "3 nm", "cross_section": ["3 nm", "3 nm"]}}}},
+          "initial": {{"uniform": {{"direction": [0, 0, 1]}}}},
+          "final": {{"uniform": {{"direction": [0, 0, -1]}}}},
+          "path": {{"images": 11, "guess": {{"rotation": {{"axis": [1, 0, 0]}}}}}}{extra}
+        }}"#
+        )
+    };
+    let (code, summary) = result("at_once", &config(r#", "saddle": {"refine": false, "certify": false}"#));
+    let barrier = summary["barrier_meV"]["forward"].as_f64().unwrap();
+    assert!((barrier / 33.704_149 - 1.0).abs() < 1e-6, "{summary}");
+    assert_eq!((code, &summary["certified"]), (Some(3), &Value::Bool(false)), "{summary}");
+    // asked to certify, the run finds the two descending modes and leaves the path for the lower one
+    let (code, summary) = result("at_once", &config(""));
+    let barrier = summary["barrier_meV"]["forward"].as_f64().unwrap();
+    assert!(code == Some(3) || (barrier / 16.852_074_5 - 1.0).abs() < 1e-8, "{summary}");
+}
+
+/// A wire of cells that differ: a notch, a taper, a ring of beads.
+fn uneven(sites: usize, periodic: bool, square: bool) -> (Chain, Hamiltonian) {
+    let width = |i: usize| Length(12.0 + 5.0 * ((i * i) as f64 * 0.7).sin());
+    let widths: Vec<Length> = (0..sites).map(width).collect();
+    let thickness: Vec<Length> = if square { widths.clone() } else { vec![Length(5.0); sites] };
+    let chain = Chain {
+        periodic,
+        spacing: Some(Length(5.0)),
+        cross_section: Some([Profile::List(widths), Profile::List(thickness)]),
+        ..Chain::open(sites)
+    };
+    let medium = Medium { chain: &chain, moment: None, saturation: Some(Magnetisation(8e5).into()) };
+    let terms = [r#"{"exchange": {"A": "13 pJ/m"}}"#, r#"{"demag": {}}"#];
+    let build = |text: &&str| serde_json::from_str::<TermSpec>(text).unwrap().member().build(&medium).unwrap();
+    let h = Hamiltonian::new(&chain, terms.iter().map(build).collect()).unwrap();
+    (chain, h)
+}
+
+#[test]
+fn cells_of_unequal_sections_have_derivatives_of_their_energy() {
+    let mut r = ChaCha8Rng::seed_from_u64(3);
+    for (sites, periodic, square) in [(2, false, false), (9, false, true), (9, true, false), (40, false, false)] {
+        let (_, h) = uneven(sites, periodic, square);
+        let vectors: Vec<_> = (0..sites).map(|_| [(); 3].map(|()| r.random_range(-1.0..1.0))).collect();
+        let spins = Spins::from_vectors(&vectors).unwrap();
+        let m = spins.as_slice();
+        let mut g = vec![0.0; m.len()];
+        h.energy_gradient(m, &mut g);
+        let scale = h.stiffness_mev();
+        let v: Vec<f64> = (0..m.len()).map(|_| r.random_range(-1.0..1.0)).collect();
+        // components taken as free: the energy is quadratic, so the central difference is exact but for rounding
+        let density = |t: f64| {
+            let moved: Vec<f64> = m.iter().zip(&v).map(|(m, v)| m + t * v).collect();
+            h.energy_gradient(&moved, &mut vec![0.0; m.len()])
+        };
+        let difference = density(0.5) - density(-0.5);
+        let slope: f64 = g.iter().zip(&v).map(|(g, v)| g * v).sum();
+        assert!((difference - slope).abs() < 1e-11 * scale * sites as f64, "{sites}: {difference} {slope}");
+        let basis = TangentBasis::at(m);
+        let matrix = assemble(&h, m, &g, &basis);
+        let n = 2 * sites;
+        let (mut unit, mut field, mut out) = (vec![0.0; n], vec![0.0; m.len()], vec![0.0; m.len()]);
+        for k in 0..n {
+            unit.fill(0.0);
+            unit[k] = 1.0;
+            basis.field(&unit, &mut field);
+            h.hessian_product(m, &g, &field, &mut out);
+            for (i, x) in basis.coordinates(&out).iter().enumerate() {
+                assert!((x - matrix.get(i, k)).abs() < 1e-12 * scale, "{sites} {i} {k}");
+            }
+        }
+        assert_eq!(h.symmetry_axes().len(), usize::from(square), "{sites}");
+    }
+}
+
+#[test]
+fn a_wire_that_tapers_by_nothing_is_a_straight_one() {
+    let straight = wire(30);
+    let mut chain = straight.chain.clone();
+    let barely = |i: usize| Length(20.0 * (1.0 + 1e-13 * i as f64));
+    chain.cross_section = Some([Profile::List((0..30).map(barely).collect()), Length(5.0).into()]);
+    let medium = Medium { chain: &chain, moment: None, saturation: Some(Magnetisation(8e5).into()) };
+    let terms = [r#"{"exchange": {"A": "13 pJ/m"}}"#, r#"{"demag": {}}"#];
+    let build = |text: &&str| serde_json::from_str::<TermSpec>(text).unwrap().member().build(&medium).unwrap();
+    let tapered = Hamiltonian::new(&chain, terms.iter().map(build).collect()).unwrap();
+    let mut r = ChaCha8Rng::seed_from_u64(4);
+    let vectors: Vec<_> = (0..30).map(|_| [(); 3].map(|()| r.random_range(-1.0..1.0))).collect();
+    let spins = Spins::from_vectors(&vectors).unwrap();
+    let [a, b] = [&straight.hamiltonian, &tapered].map(|h| h.energy_mev(spins.as_slice()));
+    assert!((a / b - 1.0).abs() < 1e-11, "{a} {b}");
+}
+
+#[test]
+fn a_hundred_thousand_cells_have_a_gradient_and_a_hessian() {
+    let problem = wire(100_000);
+    let (h, m) = (&problem.hamiltonian, problem.initial.as_slice());
+    let mut g = vec![0.0; m.len()];
+    assert!(h.energy_gradient(m, &mut g).is_finite());
+    let matrix = assemble(h, m, &g, &TangentBasis::at(m));
+    // magnetised along itself, the wire is stable
+    assert_eq!(matrix.factor().negatives(), 0);
 }
 
 /// A Permalloy wire of 5 nm cells, 20 nm × 5 nm across, as long as `sites` cells; reversed.
