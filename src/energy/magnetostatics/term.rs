@@ -37,9 +37,17 @@ pub struct Magnetostatics {
 #[derive(Debug)]
 enum Coupling {
     /// It depends on their distance alone.
-    Distance { kernel: Kernel, convolution: Convolution, tails: Option<[Exponentials; 2]> },
+    Distance(Box<ByDistance>),
     /// Each pair has its own.
     Pairs(Pairs),
+}
+
+/// A kernel, made ready for sums and for Hessians.
+#[derive(Debug)]
+struct ByDistance {
+    kernel: Kernel,
+    convolution: Convolution,
+    tails: Option<[Exponentials; 2]>,
 }
 
 /// What the sites are, and how they stand.
@@ -70,7 +78,12 @@ impl Magnetostatics {
         };
         let convolution = Convolution::new(&kernel);
         let tails = tails.map(|t| t.map(scaled));
-        Magnetostatics::coupled(name, row.direction, moments, Coupling::Distance { kernel, convolution, tails })
+        Magnetostatics::coupled(
+            name,
+            row.direction,
+            moments,
+            Coupling::Distance(Box::new(ByDistance { kernel, convolution, tails })),
+        )
     }
 
     /// Of cells with these moments (μ_B) and unequal sections (in units of the spacing).
@@ -111,7 +124,7 @@ impl Magnetostatics {
     /// What sites i and j do to each other (meV/μ_B²): along, width, thickness.
     pub fn pair(&self, i: usize, j: usize) -> [f64; 3] {
         match &self.coupling {
-            Coupling::Distance { kernel, .. } => [0, 1, 2].map(|c: usize| kernel.table[c][i.abs_diff(j)]),
+            Coupling::Distance(by) => [0, 1, 2].map(|c: usize| by.kernel.table[c][i.abs_diff(j)]),
             Coupling::Pairs(pairs) => pairs.at(i, j),
         }
     }
@@ -119,9 +132,7 @@ impl Magnetostatics {
     /// The interaction of an open chain as a sum of exponentials; nothing where the Hessian is dense.
     pub fn exponentials(&self, precise: bool) -> Option<&Exponentials> {
         match &self.coupling {
-            Coupling::Distance { tails, .. } => {
-                tails.as_ref().map(|[fine, coarse]| if precise { fine } else { coarse })
-            }
+            Coupling::Distance(by) => by.tails.as_ref().map(|[fine, coarse]| if precise { fine } else { coarse }),
             Coupling::Pairs(_) => None,
         }
     }
@@ -134,9 +145,9 @@ impl Magnetostatics {
 
     /// About the norm of what acts beyond the nearest `shells` (meV); 0 where the Hessian is dense.
     pub fn far_norm_mev(&self, shells: usize) -> f64 {
-        let Coupling::Distance { kernel, .. } = &self.coupling else { return 0.0 };
+        let Coupling::Distance(by) = &self.coupling else { return 0.0 };
         let largest = self.moments.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-        let beyond = |c: usize| kernel.table[c].iter().skip(shells + 1).map(|k| k.abs()).sum::<f64>();
+        let beyond = |c: usize| by.kernel.table[c].iter().skip(shells + 1).map(|k| k.abs()).sum::<f64>();
         2.0 * largest * largest * [0, 1, 2].map(beyond).into_iter().fold(0.0, f64::max)
     }
 
@@ -157,7 +168,7 @@ impl Magnetostatics {
     /// y_i ← Σ_j of component c, all sites.
     fn apply(&self, c: usize, x: &[f64], y: &mut [f64]) {
         match &self.coupling {
-            Coupling::Distance { convolution, .. } => convolution.apply(c, x, y),
+            Coupling::Distance(by) => by.convolution.apply(c, x, y),
             Coupling::Pairs(pairs) => pairs.apply(c, x, y),
         }
     }
@@ -273,7 +284,7 @@ impl EnergyTerm for Magnetostatics {
         let about_itself = vector::norm(vector::cross(axis, self.frame[0])) < 1e-14;
         let moments = &self.moments;
         let axial = match &self.coupling {
-            Coupling::Distance { kernel, .. } => kernel.is_axial(),
+            Coupling::Distance(by) => by.kernel.is_axial(),
             Coupling::Pairs(pairs) => pairs.is_axial(),
         };
         let [x, y, _] = self.pair(0, 0);
