@@ -4,7 +4,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use serde_json::Value;
-use spinneb::drive::{Outcome, Problem, Silent, run};
+use spinneb::drive::{Images, Outcome, Problem, Silent, run};
 use spinneb::energy::magnetostatics::MU_0_MU_B_SQUARED;
 use spinneb::energy::{Exchange, Hamiltonian, Medium, TangentBasis, TermSpec, assemble};
 use spinneb::geometry::Direction;
@@ -124,28 +124,33 @@ fn two_cells_without_exchange_or_magnetostatics_turn_one_after_the_other() {
 
 #[test]
 fn two_cells_that_turn_at_once_cost_twice_that_and_are_never_certified() {
-    // all spins alike on the whole path: the rigid rotation, which is alone explored and may not be left
-    let config = |extra: &str| {
-        format!(
-            r#"{{
-          "material": {{"name": "grains", "Ms": "1 MA/m", "energy": [
-            {{"anisotropy": {{"K": "100 kJ/m^3", "axis": [0, 0, 1]}}}}
-          ]}},
-          "lattice": {{"chain": {{"sites": 2, "spacing": "3 nm", "cross_section": ["3 nm", "3 nm"]}}}},
-          "initial": {{"uniform": {{"direction": [0, 0, 1]}}}},
-          "final": {{"uniform": {{"direction": [0, 0, -1]}}}},
-          "path": {{"images": 11, "guess": {{"rotation": {{"axis": [1, 0, 0]}}}}}}{extra}
-        }}"#
-        )
-    };
-    let (code, summary) = result("at_once", &config(r#", "saddle": {"refine": false, "certify": false}"#));
-    let barrier = summary["barrier_meV"]["forward"].as_f64().unwrap();
-    assert!((barrier / 33.704_149 - 1.0).abs() < 1e-6, "{summary}");
-    assert_eq!((code, &summary["certified"]), (Some(3), &Value::Bool(false)), "{summary}");
-    // asked to certify, the run finds the two descending modes and leaves the path for the lower one
-    let (code, summary) = result("at_once", &config(""));
-    let barrier = summary["barrier_meV"]["forward"].as_f64().unwrap();
-    assert!(code == Some(3) || (barrier / 16.852_074_5 - 1.0).abs() < 1e-8, "{summary}");
+    let chain =
+        Chain { spacing: Some(Length(3.0)), cross_section: Some([Length(3.0); 2].map(Into::into)), ..Chain::open(2) };
+    let medium = Medium { chain: &chain, moment: None, saturation: Some(Magnetisation(1e6).into()) };
+    let easy = r#"{"anisotropy": {"K": "100 kJ/m^3", "axis": [0, 0, 1]}}"#;
+    let build = || vec![serde_json::from_str::<TermSpec>(easy).unwrap().member().build(&medium).unwrap()];
+    let h = Hamiltonian::new(&chain, build()).unwrap();
+    // half-way: twice the barrier, and two ways down
+    let [up, across] = [Direction::Z, Direction::X].map(|d| Spins::uniform(2, d));
+    let height = h.difference_mev(across.as_slice(), up.as_slice());
+    assert!((height / 33.704_149_0 - 1.0).abs() < 1e-9, "{height}");
+    let mut g = vec![0.0; 6];
+    h.energy_gradient(across.as_slice(), &mut g);
+    let matrix = assemble(&h, across.as_slice(), &g, &TangentBasis::at(across.as_slice()));
+    let full: Vec<f64> = (0..16).map(|k| matrix.get(k / 4, k % 4)).collect();
+    assert_eq!(eigenvalues_symmetric(&full, 4).iter().filter(|e| **e < -1e-9).count(), 2);
+    // a run that is told to begin there, by a geodesic or a rigid rotation, does not end there
+    for guess in [r#"{"geodesic": {"axis": [1, 0, 0]}}"#, r#"{"rotation": {"axis": [1, 0, 0]}}"#] {
+        for images in [11, 12] {
+            let mut problem =
+                Problem::new(chain.clone(), Hamiltonian::new(&chain, build()).unwrap(), up.clone(), up.clone());
+            problem.final_state = Spins::uniform(2, Direction::Z.reversed());
+            problem.guess = Some(serde_json::from_str(guess).unwrap());
+            problem.images = Images::Count(images);
+            let barrier = solved(&problem).barrier.unwrap().forward_mev;
+            assert!((barrier / 16.852_074_5 - 1.0).abs() < 1e-8, "{guess} {images}: {barrier}");
+        }
+    }
 }
 
 /// A wire of cells that differ: a notch, a taper, a ring of beads.

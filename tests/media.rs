@@ -104,7 +104,7 @@ fn a_wire_of_varying_section_has_the_barrier_of_its_cells() {
     let config = json!({
         "material": {"name": "grains", "Ms": "1 MA/m", "energy": [{"anisotropy": {"K": "100 kJ/m^3", "axis": [0, 0, 1]}}]},
         "lattice": {"chain": {
-            "sites": 3, "spacing": "3 nm", "cross_section": ["3 nm", "3 nm"],
+            "sites": 2, "spacing": "3 nm", "cross_section": ["3 nm", "3 nm"],
             "sections": [{"sites": [1], "width": "6 nm"}]
         }},
         "initial": {"uniform": {"direction": [0, 0, 1]}},

@@ -113,7 +113,7 @@ fn material_file(config: &Path, named: &str) -> Result<Text> {
         if let Some(found) = library::find(named)? {
             return Ok(Text { file: library::file_name(found.key), text: found.text.into() });
         }
-        if !named.contains(['.', '/', '\\']) {
+        if !path.exists() && !named.contains(['.', '/', '\\']) {
             return Err(Error::invalid("material", unknown(named)?));
         }
     }
