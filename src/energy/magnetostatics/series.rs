@@ -39,7 +39,7 @@ impl Series {
         Series { coefficients: [0, 1, 2].map(column), first: (DIAGONALS * diagonal).ceil() as usize }
     }
 
-    /// Two cells of unequal sections on one axis: G = N/V of [`super::pairs`].
+    /// Two cells of unequal sections on one axis: G = N/V, as in [`super::Pairs`].
     pub fn of_unequal_cells(a: Section, b: Section, multipoles: &Multipoles) -> Series {
         let diagonal = (1.0 + power(0.5 * (a[0] + b[0]), 2) + power(0.5 * (a[1] + b[1]), 2)).sqrt();
         Series { coefficients: multipoles.coefficients(a, b), first: (DIAGONALS * diagonal).ceil() as usize }
