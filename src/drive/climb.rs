@@ -6,7 +6,7 @@ use crate::energy::Hamiltonian;
 use crate::field::project;
 use crate::linalg::{lowest_modes, slab};
 use crate::path::{Path, largest_angle};
-use crate::saddle::{Refined, Spectrum, Verdict, refine};
+use crate::saddle::{Refined, Spectrum, Verdict, follow_modes, refine};
 use crate::sphere::{move_points, rotation_of};
 
 /// A mode of less than this part of c is shallow.
@@ -32,8 +32,11 @@ impl Found {
     /// mode by `hop` (rad), for the one beside it.
     pub fn at(h: &Hamiltonian, top: Top, c: f64, hop: f64) -> Found {
         let refined = refine(h, &top.m, &top.tau, c);
-        let found = Found { top, refined };
+        let mut found = Found { top, refined };
         if !found.is_stationary(c) {
+            if let Some(refined) = follow_modes(h, &found.top.m, c) {
+                found.refined = refined;
+            }
             return found;
         }
         let state = &found.refined.state;
@@ -42,7 +45,8 @@ impl Found {
         {
             return found;
         }
-        [hop, -hop].into_iter().find_map(|far| found.beside(h, c, far)).unwrap_or(found)
+        // two walls, one on a site and one between two, have a period of half a site
+        [hop, -hop, 0.5 * hop, -0.5 * hop].into_iter().find_map(|far| found.beside(h, c, far)).unwrap_or(found)
     }
 
     /// The saddle of index one a little along the second-lowest mode.
@@ -56,10 +60,13 @@ impl Found {
         let mut v = state.field(&other.vector);
         let size = rotation_of(&v);
         slab::scale(&mut v, far / size);
-        let refined = refine(h, &state.moved(&v), &self.refined.valley, c);
-        let found = Found { top: self.top.clone(), refined };
-        let better = found.is_stationary(c) && Spectrum::of(h, &found.refined.state, 0).negative <= 1;
-        better.then_some(found)
+        let start = state.moved(&v);
+        let better = |refined: Refined| {
+            let found = Found { top: self.top.clone(), refined };
+            let better = found.is_stationary(c) && Spectrum::of(h, &found.refined.state, 0).negative <= 1;
+            better.then_some(found)
+        };
+        better(refine(h, &start, &self.refined.valley, c)).or_else(|| better(follow_modes(h, &start, c)?))
     }
 
     /// Stationary to machine precision, and still the start's saddle.

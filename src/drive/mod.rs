@@ -4,6 +4,7 @@ mod climb;
 mod connect;
 mod ends;
 mod explore;
+mod join;
 mod minimum;
 mod outcome;
 mod problem;

@@ -8,10 +8,13 @@ use super::pinned::Pinned;
 use super::state::State;
 use crate::energy::Hamiltonian;
 use crate::linalg::slab;
+use crate::path::largest_angle;
 use crate::sphere::rotation_of;
 
 /// Largest rotation of a spin in one step (rad).
 const CAP: f64 = 0.3;
+/// A valley that has risen by more than this part of c leads nowhere.
+const RISEN: f64 = 1e-3;
 /// Most steps of either part.
 const STEPS: usize = 20_000;
 
@@ -24,25 +27,39 @@ pub struct Descent {
     pub fallen_mev: f64,
     /// It ended at a stationary point.
     pub arrived: bool,
+    /// Points on the way, each with a spin turned by a quarter radian or more since the last.
+    pub way: Vec<Vec<f64>>,
+}
+
+/// Points on the way are so far apart (rad, any spin).
+const APART: f64 = 0.25;
+
+/// Keeps a point that is far from the last one kept.
+fn keep(way: &mut Vec<Vec<f64>>, start: &[f64], m: &[f64]) {
+    if largest_angle(way.last().map_or(start, |p| p), m) >= APART {
+        way.push(m.to_vec());
+    }
 }
 
 /// Descends from a saddle along ± its valley (a unit field of 3N numbers); c is the stiffness scale (meV).
 pub fn descend(h: &Hamiltonian, saddle: &State, valley: &[f64], c: f64) -> Descent {
     let top = saddle.energy_mev;
     let noise = 64.0 * f64::EPSILON * (top.abs() + h.stiffness_mev());
-    let state = march(h, saddle, valley, c, noise.max(1e-9 * c));
-    let (state, arrived) = fall(h, state, c);
-    Descent { fallen_mev: h.difference_mev(&saddle.m, &state.m), arrived, m: state.m }
+    let mut way = Vec::new();
+    let state = march(h, saddle, valley, c, noise.max(1e-9 * c), &mut way);
+    let (state, arrived) = fall(h, state, c, &saddle.m, &mut way);
+    Descent { fallen_mev: h.difference_mev(&saddle.m, &state.m), arrived, m: state.m, way }
 }
 
-/// Along the valley until the energy is `enough` below the start.
-fn march(h: &Hamiltonian, saddle: &State, valley: &[f64], c: f64, enough: f64) -> State {
+/// Along the valley until the energy is `enough` below the start; or plainly above it, which then is no saddle along this valley.
+fn march(h: &Hamiltonian, saddle: &State, valley: &[f64], c: f64, enough: f64, way: &mut Vec<Vec<f64>>) -> State {
     let kappa = (h.stiffness_mev() / 3.0).max(c);
     let mut state = saddle.clone();
     let mut tau = valley.to_vec();
     let mut step = 0.02;
     for _ in 0..STEPS {
-        if h.difference_mev(&saddle.m, &state.m) > enough {
+        let fallen = h.difference_mev(&saddle.m, &state.m);
+        if fallen > enough || fallen < -RISEN * c {
             break;
         }
         let t = state.basis.coordinates(&tau);
@@ -63,6 +80,7 @@ fn march(h: &Hamiltonian, saddle: &State, valley: &[f64], c: f64, enough: f64) -
         let m = state.moved(&along);
         tau = along;
         crate::field::project(&m, &mut tau);
+        keep(way, &saddle.m, &m);
         state = State::at(h, m);
         step = (1.3f64 * step).min(CAP);
     }
@@ -70,7 +88,7 @@ fn march(h: &Hamiltonian, saddle: &State, valley: &[f64], c: f64, enough: f64) -
 }
 
 /// Implicit Euler down the gradient, to a stationary point.
-fn fall(h: &Hamiltonian, mut state: State, c: f64) -> (State, bool) {
+fn fall(h: &Hamiltonian, mut state: State, c: f64, top: &[f64], way: &mut Vec<Vec<f64>>) -> (State, bool) {
     let scale = h.stiffness_mev();
     let tolerance = 1e-13 * scale;
     let mut rate = c;
@@ -82,6 +100,7 @@ fn fall(h: &Hamiltonian, mut state: State, c: f64) -> (State, bool) {
         let stuck = state.energy_mev - next.energy_mev <= 4.0 * f64::EPSILON * (state.energy_mev.abs() + scale);
         let settled = stuck && next.max_torque_mev() < 1e-9 * c && next.max_torque_mev() > 0.5 * state.max_torque_mev();
         state = next;
+        keep(way, top, &state.m);
         if settled {
             return (state, true);
         }

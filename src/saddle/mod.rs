@@ -4,12 +4,15 @@
 //! oscillates there; so the soft mode is split off (Lyapunov–Schmidt): Newton across it, a safeguarded search along it.
 
 mod descent;
+mod modes;
 mod pinned;
+mod polish;
 mod spectrum;
 mod state;
 mod valley;
 
 pub use descent::{Descent, descend};
+pub use modes::follow_modes;
 pub use pinned::Pinned;
 pub(crate) use pinned::pin;
 pub use spectrum::Spectrum;
