@@ -9,6 +9,7 @@ mod pinned;
 mod polish;
 mod spectrum;
 mod state;
+mod trail;
 mod valley;
 
 pub use descent::{Descent, descend};
