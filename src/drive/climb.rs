@@ -1,5 +1,6 @@
 //! From a band's top to a refined saddle, and away from saddles of higher index.
 
+use super::minimum::{turned, turns};
 use super::top::{Top, highest};
 use crate::band::Band;
 use crate::energy::Hamiltonian;
@@ -8,6 +9,7 @@ use crate::linalg::{lowest_modes, slab};
 use crate::path::{Path, largest_angle};
 use crate::saddle::{Refined, Spectrum, Verdict, follow_modes, refine};
 use crate::sphere::{move_points, rotation_of};
+use crate::spins::Spins;
 
 /// A mode of less than this part of c is shallow.
 const SHALLOW: f64 = 1e-3;
@@ -16,7 +18,7 @@ pub const ZOOMS: usize = 4;
 /// How far a path is pushed off a saddle of higher index (rad).
 const PUSH: f64 = 0.8;
 /// A saddle this far from the place where its search began (rad, any spin) is another one.
-const SAME_PLACE: f64 = 1.5;
+const SAME_PLACE: f64 = 2.5;
 
 /// Where a refined saddle was looked for, and what was found.
 #[derive(Clone, Debug)]
@@ -74,6 +76,16 @@ impl Found {
         let done = matches!(self.refined.verdict, Verdict::Saddle | Verdict::Flat | Verdict::HigherIndex);
         let zero = (1e-9 * c).max(1e-12 * self.refined.state.hessian.norm1());
         done && self.refined.state.max_torque_mev() < zero && self.refined.rotation_rad < SAME_PLACE
+    }
+
+    /// Whether `other` ended in this saddle too, symmetry turns apart.
+    pub fn is_same(&self, h: &Hamiltonian, other: &Found) -> bool {
+        let (a, b) = (&self.refined.state, &other.refined.state);
+        if (a.energy_mev - b.energy_mev).abs() > 1e-9 * h.stiffness_mev() {
+            return false;
+        }
+        let [p, q] = [a, b].map(|s| Spins::from_unit_components(&s.m));
+        same(&a.m, turned(&q, &turns(h, &q, &p)).as_slice())
     }
 
     /// A stationary state with at most one negative direction.

@@ -14,6 +14,8 @@ use crate::spins::Spins;
 
 /// How many eigenvalues of a saddle are reported.
 const REPORTED: usize = 6;
+/// A valley with less than this (of its curvature) left over when the Hessian acts on it is a mode.
+const PURE: f64 = 0.1;
 /// Spins of two states of one minimum differ by less (rad).
 const SAME: f64 = 1e-3;
 
@@ -98,12 +100,23 @@ fn rotated(spins: &Spins, axis: Direction, angle: f64) -> Spins {
     Spins::from_unit_components(&out)
 }
 
-/// The direction (3N, unit length) of the lowest mode, if that is plainly negative. The valley that a search followed can be a
-/// mixture of soft modes.
-fn falling(state: &State) -> Option<Vec<f64>> {
+/// The direction (3N) in which a saddle falls: the valley that its search followed, or, where that is a mixture of soft modes,
+/// the lowest mode, if that is plainly negative.
+fn falling(found: &Found) -> Vec<f64> {
+    let (state, valley) = (&found.refined.state, &found.refined.valley);
+    let v = state.basis.coordinates(valley);
+    let mut residual = vec![0.0; v.len()];
+    state.hessian.multiply(&v, &mut residual);
+    let curvature = slab::dot(&v, &residual) / slab::dot(&v, &v);
+    slab::add_scaled(&mut residual, -curvature, &v);
+    if slab::norm(&residual) < PURE * curvature.abs() * slab::norm(&v) {
+        return valley.clone();
+    }
     let floor = 1e3 * f64::EPSILON * state.hessian.norm1();
-    let lowest = lowest_modes(&state.hessian, 1, &state.zeros).into_iter().next()?;
-    (lowest.value < -floor).then(|| state.field(&lowest.vector))
+    match lowest_modes(&state.hessian, 1, &state.zeros).into_iter().next() {
+        Some(lowest) if lowest.value < -floor => state.field(&lowest.vector),
+        _ => valley.clone(),
+    }
 }
 
 /// A saddle with the minima on its two sides.
@@ -127,7 +140,7 @@ impl Link {
     /// Descends from a saddle on both sides.
     pub fn of(h: &Hamiltonian, found: Found, c: f64) -> Result<Link> {
         let state = &found.refined.state;
-        let falls = falling(state).unwrap_or_else(|| found.refined.valley.clone());
+        let falls = falling(&found);
         let sign = if slab::dot(&falls, &found.top.tau) < 0.0 { -1.0 } else { 1.0 };
         let side = |direction: f64| -> Result<(Minimum, f64, Vec<Spins>)> {
             let valley: Vec<f64> = falls.iter().map(|v| direction * sign * v).collect();

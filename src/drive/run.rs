@@ -33,6 +33,10 @@ const TRIAL: usize = 8;
 const FIRST: usize = 60;
 /// Further paths that are followed to the end when the best one cannot be proven.
 const SECOND_TRIES: usize = 2;
+/// They are not if their top is higher than the best one's times this.
+const SECOND_BELOW: f64 = 1.2;
+/// A proven path takes the place of an unproven one unless it is higher by more than this part: images may straddle a top.
+const AS_LOW: f64 = 1e-3;
 /// Rounds of leaving a saddle of higher index.
 const ESCAPES: usize = 3;
 /// Maxima within this part of the path's height of the highest are refined.
@@ -191,23 +195,27 @@ impl<'a, 'o> Run<'a, 'o> {
         };
         let mut best = self.settle(candidates.remove(0))?;
         let mut others = Vec::new();
+        let scale = self.scales.stiffness_mev;
         for _ in 0..SECOND_TRIES.min(candidates.len()) {
             if best.proof.doubts.is_empty() || !self.problem.certify || !self.problem.seeks_saddles() {
                 break;
             }
             let mut next = candidates.remove(0);
+            if next.barrier_mev(scale) > SECOND_BELOW * best.seen_mev() {
+                others.push(next);
+                continue;
+            }
             if next.found.is_none() {
                 self.conclude(&mut next);
             }
             let next = self.settle(next)?;
-            // a path whose images stay lower is an upper bound, proven or not
+            // the images of an unproven path are an upper bound all the same
             let better =
-                next.proof.doubts.is_empty() && next.seen_mev() <= best.seen_mev() + 1e-6 * best.seen_mev().abs();
+                next.proof.doubts.is_empty() && next.seen_mev() <= best.seen_mev() + AS_LOW * best.seen_mev().abs();
             let left = if better { std::mem::replace(&mut best, next) } else { next };
             others.push(left.candidate);
         }
         others.append(&mut candidates);
-        let scale = self.scales.stiffness_mev;
         let rejected = others.iter().map(|c| rejection(c, &best.candidate, scale)).collect();
         Ok(report::outcome(self.summary(), best.candidate, &best.found, best.proof, rejected))
     }
@@ -233,10 +241,12 @@ impl<'a, 'o> Run<'a, 'o> {
     /// Relaxes tightly with as many images as it takes, each time with at most `more` evaluations.
     fn relax_resolved(&mut self, c: &mut Candidate<'a>, more: usize) {
         loop {
+            let before = c.band.images();
             self.resolve(c, more);
             let images = c.band.images();
             self.relax(c, Goal::Tight, c.band.evaluations().saturating_add(more));
-            if !self.is_coarse(c) || images >= MOST_IMAGES || !c.stop.is_converged() || more < usize::MAX {
+            let finer = self.is_coarse(c) && images > before && images < MOST_IMAGES;
+            if !finer || !c.stop.is_converged() || more < usize::MAX {
                 return;
             }
         }
@@ -389,7 +399,8 @@ impl<'a, 'o> Run<'a, 'o> {
     /// The natural first paths, the most promising first: a few evaluations each, the best two followed to their saddles.
     fn natural(&mut self) -> Result<Vec<Candidate<'a>>> {
         let mut tried = Vec::new();
-        for (guess, noise) in natural_guesses(self.problem, &self.ends[0].spins, &self.ends[1].spins, self.axis) {
+        let context = self.context();
+        for (guess, noise) in natural_guesses(self.problem, &self.ends[0].spins, &self.ends[1].spins, &context) {
             self.observer.stage(&format!("first path: {}", describe(&guess)));
             tried.push(self.start(&guess, noise.as_ref(), None, TRIAL)?);
         }
@@ -522,7 +533,7 @@ impl<'a, 'o> Run<'a, 'o> {
             let now = c.band.images();
             // steps over minima stay as long as they are, however many images there are
             let before = std::mem::replace(&mut apart, c.band.path().largest_rotation());
-            if more < usize::MAX && self.problem.images == Images::Auto && apart > 0.8 * before {
+            if (more < usize::MAX || now > 257) && self.problem.images == Images::Auto && apart > 0.8 * before {
                 return;
             }
             let next = match self.problem.images {

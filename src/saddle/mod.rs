@@ -16,6 +16,7 @@ pub use descent::{Descent, descend};
 pub use modes::follow_modes;
 pub use pinned::Pinned;
 pub(crate) use pinned::pin;
+pub use polish::polish;
 pub use spectrum::Spectrum;
 pub use state::{State, orthonormal};
 pub use valley::{Refined, Verdict, refine};

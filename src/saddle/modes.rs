@@ -27,7 +27,7 @@ const SOFT: f64 = 0.1;
 /// Largest rotation of a spin along one mode in one step (rad).
 const RADIUS: f64 = 0.3;
 /// Farthest from the start (rad, any spin).
-const FARTHEST: f64 = 1.5;
+const FARTHEST: f64 = 2.0;
 
 /// The saddle of index one that mode following reaches from `m`, if it reaches one nearby; c is the stiffness scale (meV).
 pub fn follow_modes(h: &Hamiltonian, m: &[f64], c: f64) -> Option<Refined> {

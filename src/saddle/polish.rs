@@ -14,7 +14,7 @@ const FARTHEST: f64 = 0.05;
 
 /// The stationary point that `state` all but is, the zero modes left as they are. A state from which Newton's method leads far
 /// away, or nowhere, is given back as it came.
-pub(super) fn polish(h: &Hamiltonian, state: State) -> State {
+pub fn polish(h: &Hamiltonian, state: State) -> State {
     let mut best = state.clone();
     let mut state = state;
     for _ in 0..STEPS {
