@@ -4,7 +4,7 @@ use crate::energy::{Hamiltonian, TangentBasis, assemble};
 use crate::error::{Error, Result};
 use crate::linalg::{Banded, lowest_modes, slab};
 use crate::path::largest_angle;
-use crate::saddle::{Spectrum, State, descend};
+use crate::saddle::{Spectrum, State, descend, polish};
 use crate::sphere::{move_points, rotation_of};
 use crate::spins::Spins;
 
@@ -86,9 +86,13 @@ pub fn relax_to_minimum(h: &Hamiltonian, start: &Spins, tolerance_mev: f64) -> R
         let hessian = assemble(h, &p.m, &p.gradient, &basis);
         let next = newton_step(h, &p, &hessian, &basis, &mut shift);
         let Some(next) = next else { break };
-        stalled = if next.torque() > 0.5 * before && next.torque() < 1e3 * tolerance_mev { stalled + 1 } else { 0 };
+        stalled = if next.torque() > 0.5 * before && next.torque() < 20.0 * tolerance_mev { stalled + 1 } else { 0 };
         p = next;
         steps += 1;
+    }
+    if p.torque() > tolerance_mev && p.torque() < 1e6 * tolerance_mev {
+        // the shift makes steps along a valley that is all but flat short
+        p = Point::at(h, polish(h, State::at(h, p.m)).m);
     }
     Ok(Relaxed {
         max_torque_mev: p.torque(),

@@ -181,9 +181,10 @@ impl Link {
         if s.negative == 0 && s.flat == 0 {
             return Some("the saddle has no negative mode".into());
         }
-        if !self.before.is_proven() || !self.after.is_proven() {
-            return Some("a descent from the saddle ended in a state that is not proven to be a minimum".into());
-        }
-        None
+        let unproven = [&self.before, &self.after].into_iter().find(|m| !m.is_proven())?;
+        Some(format!(
+            "a descent from the saddle ended in a state that is not proven to be a minimum ({} negative modes, a torque of {:.1e} meV)",
+            unproven.spectrum.negative, unproven.max_torque_mev
+        ))
     }
 }
