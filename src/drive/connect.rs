@@ -31,6 +31,8 @@ const FLAT: f64 = 1e-11;
 const FLAT_EVALUATIONS: usize = 60;
 /// Maxima of a stretch that are tried, at most.
 const MOST_TOPS: usize = 5;
+/// A saddle higher than a band's top by more than this part of the band's height is not the band's.
+const ABOVE: f64 = 0.2;
 /// Modes of a minimum that are followed uphill: at most so many, and below this part of c.
 const SOFT_MODES: usize = 3;
 const SOFT: f64 = 0.5;
@@ -173,11 +175,29 @@ fn new_saddle(
     let hop = relaxation.scales.half_site_rad();
     let is_new = |f: &Found| f.is_saddle(c) && !known.iter().any(|k| k.is_same(h, f));
     let tops = tops(&band, f64::INFINITY);
-    let from_top = tops.iter().take(MOST_TOPS).find_map(|top| Some(Found::at(h, top.clone(), c, hop)).filter(is_new));
+    let e = band.energies_mev();
     let last = band.images() - 1;
-    from_top
-        .or_else(|| uphill(h, &band, 0, 1, c).into_iter().find(is_new))
-        .or_else(|| uphill(h, &band, last, last - 1, c).into_iter().find(is_new))
+    let highest = tops.first().map_or(e[0].max(e[last]), |top| top.energy_mev);
+    // a saddle far above the band leads elsewhere
+    let most = highest + ABOVE * (highest - e[0].min(e[last]));
+    let mut high: Vec<Found> = Vec::new();
+    let mut keep = |found: Found| {
+        if !is_new(&found) {
+            return None;
+        }
+        if found.refined.state.energy_mev <= most {
+            return Some(found);
+        }
+        high.push(found);
+        None
+    };
+    let low = tops
+        .iter()
+        .take(MOST_TOPS)
+        .find_map(|top| keep(Found::at(h, top.clone(), c, hop)))
+        .or_else(|| uphill(h, &band, 0, 1, c).into_iter().find_map(&mut keep))
+        .or_else(|| uphill(h, &band, last, last - 1, c).into_iter().find_map(&mut keep));
+    low.or_else(|| high.into_iter().min_by(|p, q| p.refined.state.energy_mev.total_cmp(&q.refined.state.energy_mev)))
         .or_else(|| tops.first().map(|top| Found::at(h, top.clone(), c, hop)))
 }
 

@@ -35,6 +35,8 @@ const FIRST: usize = 60;
 const SECOND_TRIES: usize = 2;
 /// They are not if their top is higher than the best one's times this.
 const SECOND_BELOW: f64 = 1.2;
+/// Another path is tried beside a proven one if its top is lower by more than this part.
+const BELOW: f64 = 1e-6;
 /// A proven path takes the place of an unproven one unless it is higher by more than this part: images may straddle a top.
 const AS_LOW: f64 = 1e-3;
 /// Rounds of leaving a saddle of higher index.
@@ -88,6 +90,8 @@ pub struct Candidate<'a> {
     pub found: Option<Found>,
     /// Saddles of higher index that were left: energy above the first image (meV) and index.
     escapes: Vec<(f64, usize)>,
+    /// The highest that it passes (meV above the first image), if it was followed from end to end.
+    followed_mev: Option<f64>,
 }
 
 impl Candidate<'_> {
@@ -197,11 +201,13 @@ impl<'a, 'o> Run<'a, 'o> {
         let mut others = Vec::new();
         let scale = self.scales.stiffness_mev;
         for _ in 0..SECOND_TRIES.min(candidates.len()) {
-            if best.proof.doubts.is_empty() || !self.problem.certify || !self.problem.seeks_saddles() {
+            if !self.problem.certify || !self.problem.seeks_saddles() {
                 break;
             }
             let mut next = candidates.remove(0);
-            if next.barrier_mev(scale) > SECOND_BELOW * best.seen_mev() {
+            // a proven path is the one, unless what is known of another lies below its highest saddle
+            let part = if best.proof.doubts.is_empty() { 1.0 - BELOW } else { SECOND_BELOW };
+            if next.barrier_mev(scale) > part * best.seen_mev() {
                 others.push(next);
                 continue;
             }
@@ -210,9 +216,10 @@ impl<'a, 'o> Run<'a, 'o> {
             }
             let next = self.settle(next)?;
             // the images of an unproven path are an upper bound all the same
-            let better =
-                next.proof.doubts.is_empty() && next.seen_mev() <= best.seen_mev() + AS_LOW * best.seen_mev().abs();
-            let left = if better { std::mem::replace(&mut best, next) } else { next };
+            let allowed = if best.proof.doubts.is_empty() { 0.0 } else { AS_LOW * best.seen_mev().abs() };
+            let better = next.proof.doubts.is_empty() && next.seen_mev() < best.seen_mev() + allowed;
+            let mut left = if better { std::mem::replace(&mut best, next) } else { next };
+            left.candidate.followed_mev = Some(left.seen_mev());
             others.push(left.candidate);
         }
         others.append(&mut candidates);
@@ -389,7 +396,8 @@ impl<'a, 'o> Run<'a, 'o> {
         }
         let name = "rotation".to_string();
         let stop = Stop::Converged { rotation: 0.0, tolerance: self.problem.neb.tolerance };
-        let c = Candidate { name, band, stop, history: Vec::new(), found: None, escapes: Vec::new() };
+        let c =
+            Candidate { name, band, stop, history: Vec::new(), found: None, escapes: Vec::new(), followed_mev: None };
         let doubt =
             "the two states are one minimum turned about a symmetry axis: between them there is no saddle to prove";
         let proof = Proof { ends, links: Vec::new(), doubts: vec![doubt.into()] };
@@ -518,6 +526,7 @@ impl<'a, 'o> Run<'a, 'o> {
             history: Vec::new(),
             found: None,
             escapes: Vec::new(),
+            followed_mev: None,
         };
         self.relax(&mut c, Goal::Loose, limit);
         Ok(c)
@@ -578,9 +587,13 @@ fn seat(band: &mut Band, found: &[Found]) -> bool {
 /// Why a path was not the one.
 fn rejection(c: &Candidate, best: &Candidate, scale: f64) -> RejectedPath {
     let found = c.stationary(scale);
-    let (barrier_mev, negative_modes) = (Some(c.barrier_mev(scale)), found.map(|f| f.refined.index));
+    let barrier_mev = Some(c.followed_mev.unwrap_or(c.barrier_mev(scale)));
+    let negative_modes = found.map(|f| f.refined.index);
     let reason = match found {
         Some(f) if f.refined.index > 1 => "its top is a saddle of higher index".to_string(),
+        Some(_) if c.followed_mev.is_some() => {
+            format!("followed from end to end, it passes no lower than \"{}\"", best.name)
+        }
         Some(_) => format!("its saddle is not below that of \"{}\"", best.name),
         None => format!(
             "its highest image lies above the path \"{}\" after {} evaluations",
