@@ -12,7 +12,7 @@ use super::top::{Top, direction, tops};
 use crate::band::Band;
 use crate::energy::Hamiltonian;
 use crate::error::Result;
-use crate::linalg::{Mode, lowest_modes, slab};
+use crate::linalg::{Mode, slab, soft_modes};
 use crate::path::guess::{Edge, FirstGuess, GuessContext, Sweep};
 use crate::path::{Path, distance};
 use crate::saddle::{State, follow_modes};
@@ -205,7 +205,7 @@ fn new_saddle(
 fn uphill(h: &Hamiltonian, band: &Band, end: usize, next: usize, c: f64) -> Vec<Found> {
     let state = State::at(h, band.path().image(end).to_vec());
     let towards = state.basis.coordinates(&direction(&state.m, band.path().image(next), 1.0));
-    let modes = lowest_modes(&state.hessian, SOFT_MODES, &state.zeros);
+    let modes = soft_modes(&state.hessian, SOFT_MODES, &state.zeros, SOFT * c);
     let from = |mode: &Mode| {
         let along = slab::dot(&mode.vector, &towards);
         let mut tau = state.field(&mode.vector);

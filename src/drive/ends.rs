@@ -15,6 +15,9 @@ const STEPS: usize = 500;
 /// How often a stationary state that is no minimum is left.
 const KICKS: usize = 8;
 
+/// An end that turned by more than this left the place where it was put (rad).
+const FAR: f64 = 1.0;
+
 /// A relaxed state.
 #[derive(Clone, Debug)]
 pub struct Relaxed {
@@ -142,4 +145,38 @@ fn way_down(h: &Hamiltonian, p: &Point) -> Option<Point> {
     let mode = lowest_modes(&state.hessian, 1, &state.zeros).into_iter().next()?;
     let descent = descend(h, &state, &state.field(&mode.vector), h.stiffness_mev());
     Some(Point::at(h, descent.m))
+}
+
+/// An end that stays as given.
+pub fn kept(h: &Hamiltonian, spins: &Spins) -> Relaxed {
+    let m = spins.as_slice();
+    let (mut g, mut f) = (vec![0.0; m.len()], vec![0.0; m.len()]);
+    h.energy_gradient(m, &mut g);
+    h.force(m, &g, &mut f);
+    let max_torque_mev = slab::max_abs(&f);
+    Relaxed {
+        spins: spins.clone(),
+        max_torque_mev,
+        steps: 0,
+        largest_rotation_rad: 0.0,
+        left_saddle: false,
+        converged: true,
+    }
+}
+
+/// What a user should know of how an end relaxed.
+pub fn judge_end(r: &Relaxed, which: &str) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let degrees = r.largest_rotation_rad.to_degrees();
+    if r.left_saddle {
+        warnings.push(format!("the {which} state was stationary but no minimum; it was left along its lowest mode"));
+    }
+    if r.largest_rotation_rad > FAR {
+        warnings.push(format!("the {which} state relaxed far from where it was put: a spin turned by {degrees:.0} degrees, so it may be another state than meant"));
+    }
+    if !r.converged {
+        warnings
+            .push(format!("the {which} state did not relax fully: a torque of {:.1e} meV remains", r.max_torque_mev));
+    }
+    warnings
 }

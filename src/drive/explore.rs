@@ -39,7 +39,7 @@ pub fn natural_guesses(
         for from in edges {
             let sweep = |axis| GuessSpec::Sweep(Sweep { from, width: None, axis: Some(axis) });
             let noise = NoiseSpec { amplitude: Angle(NOISE), seed: 5 };
-            guesses.extend(both_senses(problem, a, b, context, &sweep).into_iter().map(|g| (g, Some(noise.clone()))));
+            guesses.extend(both_senses(problem, a, b, context, &sweep).into_iter().map(|g| (g, Some(noise))));
         }
     }
     guesses

@@ -1,5 +1,6 @@
 //! From two states to a barrier: relax the ends, make a first path, relax the band, read off what it found.
 
+mod candidate;
 mod climb;
 mod connect;
 mod ends;

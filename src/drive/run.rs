@@ -1,8 +1,9 @@
 //! A whole run.
 
+use super::candidate::{Candidate, describe, rejection};
 use super::climb::{Found, ZOOMS, conclude, escapes, same, zoomed};
 use super::connect::{Sequence, follow};
-use super::ends::{Relaxed, relax_to_minimum};
+use super::ends::{Relaxed, judge_end, kept, relax_to_minimum};
 use super::explore::{natural_guesses, turning_axis};
 use super::join::{Joined, Tools, joined};
 use super::minimum::{Link, Minimum};
@@ -14,7 +15,6 @@ use super::{Images, Observer, Problem, Scales, Silent, Stop};
 use crate::band::{Band, Laplacian, align_rotations};
 use crate::error::Result;
 use crate::geometry::{Direction, Vector};
-use crate::linalg::slab;
 use crate::path::guess::{FirstGuess, GuessContext, GuessSpec, NoiseSpec, Rotation, add_noise, smooth};
 use crate::path::{Path, distance};
 use crate::spins::Spins;
@@ -43,8 +43,6 @@ const AS_LOW: f64 = 1e-3;
 const ESCAPES: usize = 3;
 /// Maxima within this part of the path's height of the highest are refined.
 const WINDOW: f64 = 0.1;
-/// An end that turned by more than this left the place where it was put (rad).
-const FAR: f64 = 1.0;
 /// Force at a relaxed end, in parts of the largest stiffness.
 const END_TOLERANCE: f64 = 1e-14;
 
@@ -76,51 +74,6 @@ fn over(c: &Candidate, links: &[Link]) -> f64 {
     saddles.fold((e[e.len() - 1] - e[0]).max(0.0), f64::max) + 1e-6 * height(&c.band)
 }
 
-/// A first path on its way.
-pub struct Candidate<'a> {
-    /// What it started from.
-    pub name: String,
-    /// Where it is.
-    pub band: Band<'a>,
-    /// How its last relaxation ended.
-    pub stop: Stop,
-    /// Its iterations.
-    pub history: Vec<HistoryRow>,
-    /// Its refined top.
-    pub found: Option<Found>,
-    /// Saddles of higher index that were left: energy above the first image (meV) and index.
-    escapes: Vec<(f64, usize)>,
-    /// The highest that it passes (meV above the first image), if it was followed from end to end.
-    followed_mev: Option<f64>,
-}
-
-impl Candidate<'_> {
-    /// Highest image above the first (meV).
-    fn top_mev(&self) -> f64 {
-        self.band.energies_mev()[self.band.highest()] - self.band.energies_mev()[0]
-    }
-
-    /// Its refined top, if that is stationary.
-    fn stationary(&self, c: f64) -> Option<&Found> {
-        self.found.as_ref().filter(|f| f.is_stationary(c))
-    }
-
-    /// The refined saddle above the first image (meV), or the highest image.
-    fn barrier_mev(&self, c: f64) -> f64 {
-        let refined = self.stationary(c).map(|f| f.refined.state.energy_mev - self.band.energies_mev()[0]);
-        refined.unwrap_or(self.top_mev())
-    }
-
-    /// 0: a saddle of index one; 1: nothing refined; 2: a saddle of higher index.
-    fn rank(&self, c: f64) -> u8 {
-        match self.stationary(c) {
-            Some(f) if f.refined.index <= 1 => 0,
-            None => 1,
-            Some(_) => 2,
-        }
-    }
-}
-
 struct Run<'a, 'o> {
     problem: &'a Problem,
     observer: &'o mut dyn Observer,
@@ -143,7 +96,7 @@ impl<'a, 'o> Run<'a, 'o> {
         let mut warnings = Vec::new();
         let mut end = |spins: &Spins, which: &str| -> Result<Relaxed> {
             if !problem.relax_ends {
-                return Ok(kept(problem, spins));
+                return Ok(kept(h, spins));
             }
             let relaxed = relax_to_minimum(h, spins, END_TOLERANCE * h.stiffness_mev())?;
             warnings.extend(judge_end(&relaxed, which));
@@ -408,9 +361,15 @@ impl<'a, 'o> Run<'a, 'o> {
     fn natural(&mut self) -> Result<Vec<Candidate<'a>>> {
         let mut tried = Vec::new();
         let context = self.context();
-        for (guess, noise) in natural_guesses(self.problem, &self.ends[0].spins, &self.ends[1].spins, &context) {
-            self.observer.stage(&format!("first path: {}", describe(&guess)));
-            tried.push(self.start(&guess, noise.as_ref(), None, TRIAL)?);
+        let guesses = natural_guesses(self.problem, &self.ends[0].spins, &self.ends[1].spins, &context);
+        for (guess, noise) in &guesses {
+            let namesakes =
+                guesses.iter().filter(|(other, _)| describe(other, false) == describe(guess, false)).count();
+            let name = describe(guess, namesakes > 1);
+            self.observer.stage(&format!("first path: {name}"));
+            let mut candidate = self.start(guess, noise.as_ref(), None, TRIAL)?;
+            candidate.name = name;
+            tried.push(candidate);
         }
         tried.sort_by(|p, q| p.top_mev().total_cmp(&q.top_mev()));
         let scale = self.scales.stiffness_mev;
@@ -520,7 +479,7 @@ impl<'a, 'o> Run<'a, 'o> {
         };
         let band = Band::new(&self.problem.hamiltonian, make(coarsest)?);
         let mut c = Candidate {
-            name: describe(guess),
+            name: describe(guess, false),
             band,
             stop: Stop::NotFinite,
             history: Vec::new(),
@@ -582,66 +541,4 @@ fn seat(band: &mut Band, found: &[Found]) -> bool {
         }
     }
     seated
-}
-
-/// Why a path was not the one.
-fn rejection(c: &Candidate, best: &Candidate, scale: f64) -> RejectedPath {
-    let found = c.stationary(scale);
-    let barrier_mev = Some(c.followed_mev.unwrap_or(c.barrier_mev(scale)));
-    let negative_modes = found.map(|f| f.refined.index);
-    let reason = match found {
-        Some(f) if f.refined.index > 1 => "its top is a saddle of higher index".to_string(),
-        Some(_) if c.followed_mev.is_some() => {
-            format!("followed from end to end, it passes no lower than \"{}\"", best.name)
-        }
-        Some(_) => format!("its saddle is not below that of \"{}\"", best.name),
-        None => format!(
-            "its highest image lies above the path \"{}\" after {} evaluations",
-            best.name,
-            c.band.evaluations()
-        ),
-    };
-    RejectedPath { guess: c.name.clone(), barrier_mev, negative_modes, reason }
-}
-
-/// The config fragment of a guess, for people.
-fn describe(guess: &GuessSpec) -> String {
-    match guess {
-        GuessSpec::Sweep(s) => format!("sweep from {}", s.from),
-        other => other.name().to_string(),
-    }
-}
-
-/// An end that stays as given.
-fn kept(problem: &Problem, spins: &Spins) -> Relaxed {
-    let h = &problem.hamiltonian;
-    let m = spins.as_slice();
-    let (mut g, mut f) = (vec![0.0; m.len()], vec![0.0; m.len()]);
-    h.energy_gradient(m, &mut g);
-    h.force(m, &g, &mut f);
-    let max_torque_mev = slab::max_abs(&f);
-    Relaxed {
-        spins: spins.clone(),
-        max_torque_mev,
-        steps: 0,
-        largest_rotation_rad: 0.0,
-        left_saddle: false,
-        converged: true,
-    }
-}
-
-fn judge_end(r: &Relaxed, which: &str) -> Vec<String> {
-    let mut warnings = Vec::new();
-    let degrees = r.largest_rotation_rad.to_degrees();
-    if r.left_saddle {
-        warnings.push(format!("the {which} state was stationary but no minimum; it was left along its lowest mode"));
-    }
-    if r.largest_rotation_rad > FAR {
-        warnings.push(format!("the {which} state relaxed far from where it was put: a spin turned by {degrees:.0} degrees, so it may be another state than meant"));
-    }
-    if !r.converged {
-        warnings
-            .push(format!("the {which} state did not relax fully: a torque of {:.1e} meV remains", r.max_torque_mev));
-    }
-    warnings
 }

@@ -14,7 +14,7 @@ use super::polish::polish;
 use super::state::State;
 use super::valley::{Refined, Verdict};
 use crate::energy::Hamiltonian;
-use crate::linalg::{Mode, lowest_modes, slab};
+use crate::linalg::{Mode, lowest_modes, slab, soft_modes};
 use crate::path::largest_angle;
 use crate::sphere::rotation_of;
 
@@ -89,7 +89,7 @@ struct Frame {
 impl Frame {
     /// None where more directions are negative than are followed.
     fn at(state: &State, c: f64, kappa: f64) -> Option<Frame> {
-        let mut soft = lowest_modes(&state.hessian, MODES, &state.zeros);
+        let mut soft = soft_modes(&state.hessian, MODES, &state.zeros, SOFT * c);
         let count = soft.iter().take_while(|m| m.value < SOFT * c).count().max(1);
         soft.truncate(count);
         let others: Vec<Vec<f64>> = soft.iter().skip(1).map(|m| m.vector.clone()).collect();
