@@ -5,12 +5,15 @@
 
 use super::Problem;
 use crate::geometry::{Direction, vector};
-use crate::path::guess::{Edge, FirstGuess, Geodesic, GuessContext, GuessSpec, NoiseSpec, Rotation, Sweep, best_turn};
+use crate::path::guess::{Edge, Geodesic, GuessContext, GuessSpec, NoiseSpec, Rotation, Sweep, best_turn};
 use crate::spins::Spins;
 use crate::units::Angle;
 
 /// Noise that frees a swept wall from accidental symmetries (rad).
 const NOISE: f64 = 2e-3;
+
+/// Energies that differ by more than this part of the largest stiffness tell two senses of rotation apart.
+const DIFFERENT: f64 = 1e-6;
 
 /// Walls whose energies differ by this part are alike.
 const ALIKE: f64 = 1e-2;
@@ -21,26 +24,62 @@ const WAY: usize = 17;
 const TURNS: f64 = 0.3;
 
 /// The geodesic; rigid rotations in both senses, where one brings the states together; a wall that enters from either end
-/// (from the middle of a ring): each with the noise it starts with.
+/// (from the middle of a ring): each with the noise it starts with. Opposite spins turn about the axis whose configuration
+/// halfway is lowest, for each guess its own (with a Dzyaloshinskii–Moriya interaction a wall from the left and one from the
+/// right want opposite senses), and also the other way round where the two senses differ.
 pub fn natural_guesses(
     problem: &Problem,
     a: &Spins,
     b: &Spins,
-    axis: Direction,
+    context: &GuessContext,
 ) -> Vec<(GuessSpec, Option<NoiseSpec>)> {
-    let geodesic = GuessSpec::Geodesic(Geodesic { axis: Some(axis) });
-    let mut guesses = vec![(geodesic, None)];
+    let mut guesses = Vec::new();
+    let geodesic = |axis| GuessSpec::Geodesic(Geodesic { axis: Some(axis) });
+    guesses.extend(both_senses(problem, a, b, context, &geodesic).into_iter().map(|g| (g, None)));
     for axis in rotation_axes(problem, a, b) {
         guesses.push((GuessSpec::Rotation(Rotation { axis: Some(axis) }), None));
     }
     if problem.chain.sites > 1 {
-        let edges = if problem.chain.periodic { vec![Edge::Center, Edge::Left] } else { vec![Edge::Left, Edge::Right] };
+        let edges = if problem.chain.periodic { [Edge::Center, Edge::Left] } else { [Edge::Left, Edge::Right] };
         for from in edges {
-            let sweep = GuessSpec::Sweep(Sweep { from, width: None, axis: Some(axis) });
-            guesses.push((sweep, Some(NoiseSpec { amplitude: Angle(NOISE), seed: 5 })));
+            let sweep = |axis| GuessSpec::Sweep(Sweep { from, width: None, axis: Some(axis) });
+            let noise = NoiseSpec { amplitude: Angle(NOISE), seed: 5 };
+            guesses.extend(both_senses(problem, a, b, context, &sweep).into_iter().map(|g| (g, Some(noise))));
         }
     }
     guesses
+}
+
+/// A guess about its best axis, and about the same axis the other way round if its image halfway has another energy there.
+fn both_senses(
+    problem: &Problem,
+    a: &Spins,
+    b: &Spins,
+    context: &GuessContext,
+    guess: &dyn Fn(Direction) -> GuessSpec,
+) -> Vec<GuessSpec> {
+    let cost = |axis: Direction, images: usize| highest_mev(problem, a, b, context, &guess(axis), images);
+    let axis = best_axis(problem, a, b, cost);
+    let other = axis.reversed();
+    let differ = match (cost(axis, 3), cost(other, 3)) {
+        (Some(e), Some(f)) => (e - f).abs() > DIFFERENT * problem.hamiltonian.stiffness_mev(),
+        _ => false,
+    };
+    if differ { vec![guess(axis), guess(other)] } else { vec![guess(axis)] }
+}
+
+/// Highest energy of a guess between its ends, above the initial state (meV); with 3 images that halfway.
+fn highest_mev(
+    problem: &Problem,
+    a: &Spins,
+    b: &Spins,
+    context: &GuessContext,
+    guess: &GuessSpec,
+    images: usize,
+) -> Option<f64> {
+    let path = guess.member().path(a, b, images, context).ok()?;
+    let above = |k: usize| problem.hamiltonian.difference_mev(path.image(k), a.as_slice());
+    Some((1..images - 1).map(above).fold(f64::MIN, f64::max))
 }
 
 /// Axes (x, y, z and the symmetry axes, both senses of a half turn) about which a rigid turn brings a to b, all spins to a
@@ -66,26 +105,29 @@ fn rotation_axes(problem: &Problem, a: &Spins, b: &Spins) -> Vec<Direction> {
     axes
 }
 
-/// The axis about which opposite spins turn: of ±x, ±y, ±z and the symmetry axes, the one whose wall halfway is lowest. Where
-/// that hardly tells and an end holds a wall (which moves as it is if its spins turn in one sense, and is turned over in the
-/// other), the one on whose way the highest energy is lowest.
+/// The axis about which opposite spins turn: of ±x, ±y, ±z and the symmetry axes, the one whose wall halfway is lowest; see
+/// [`best_axis`] for walls that move.
 pub fn turning_axis(problem: &Problem, a: &Spins, b: &Spins, context: &GuessContext) -> Direction {
+    let wall = |axis| GuessSpec::Sweep(Sweep { from: Edge::Left, width: None, axis: Some(axis) });
+    best_axis(problem, a, b, |axis, images| highest_mev(problem, a, b, context, &wall(axis), images))
+}
+
+/// Of ±x, ±y, ±z and the symmetry axes the one of least cost halfway (meV); of equal ones the first. Where that hardly tells and
+/// an end holds a wall (which moves as it is if its spins turn in one sense, and is turned over in the other), the one on whose
+/// way the highest energy is lowest. The cost is asked for with a number of images.
+fn best_axis(problem: &Problem, a: &Spins, b: &Spins, cost: impl Fn(Direction, usize) -> Option<f64>) -> Direction {
     let h = &problem.hamiltonian;
     let cartesian = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let candidates = cartesian.iter().chain(h.symmetry_axes()).flat_map(|v| [*v, v.map(|c| -c)]);
-    let highest = |axis: Direction, images: usize| -> Option<f64> {
-        let wall = Sweep { from: Edge::Left, width: None, axis: Some(axis) }.path(a, b, images, context).ok()?;
-        Some((1..images - 1).map(|k| h.difference_mev(wall.image(k), a.as_slice())).fold(f64::MIN, f64::max))
-    };
     let axes = candidates.filter_map(|axis| Direction::new(axis).ok());
-    let halfway: Vec<(f64, Direction)> = axes.filter_map(|axis| Some((highest(axis, 3)?, axis))).collect();
+    let halfway: Vec<(f64, Direction)> = axes.filter_map(|axis| Some((cost(axis, 3)?, axis))).collect();
     let Some((least, first)) = lowest(&halfway, h.stiffness_mev()) else { return Direction::X };
     let near = least + ALIKE * least.abs() + 1e-9 * h.stiffness_mev();
     let alike: Vec<Direction> = halfway.iter().filter(|(e, _)| *e <= near).map(|(_, axis)| *axis).collect();
     if alike.len() < 2 || !(holds_wall(a) || holds_wall(b)) {
         return first;
     }
-    let ways: Vec<(f64, Direction)> = alike.iter().filter_map(|axis| Some((highest(*axis, WAY)?, *axis))).collect();
+    let ways: Vec<(f64, Direction)> = alike.iter().filter_map(|axis| Some((cost(*axis, WAY)?, *axis))).collect();
     lowest(&ways, h.stiffness_mev()).map_or(first, |(_, axis)| axis)
 }
 

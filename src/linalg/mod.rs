@@ -19,7 +19,7 @@ pub use double_double::DoubleDouble;
 pub use fft::Fft;
 pub use general::{General, Lu};
 pub use ldl::Ldl;
-pub use lowest::{Mode, lowest_modes, rayleigh_ritz};
+pub use lowest::{Mode, lowest_modes, rayleigh_ritz, soft_modes};
 pub use small::{eigen_symmetric, eigenvalues_symmetric, solve_dense};
 pub use tail::{Decays, Tail};
 pub use tail_ldl::TailLdl;

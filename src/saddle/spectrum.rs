@@ -1,7 +1,6 @@
 //! Counting negative, flat and positive directions of a Hessian, zero modes apart.
 //!
-//! A sign is told only above the noise floor: 8·eps·‖H‖₁, or what the Hessian of a long-ranged chain is known to, if that is
-//! more. The counts come from the inertia of H ± floor with the zero modes
+//! A sign is told only above the noise floor 8·eps·‖H‖₁. The counts come from the inertia of H ± floor with the zero modes
 //! pinned (see [`super::Pinned`]), so they hold for all eigenvalues, not just the few that are computed.
 
 use super::pinned::pin;
@@ -18,7 +17,7 @@ pub struct Spectrum {
     pub flat: usize,
     /// Exact zero modes: rotations about symmetry axes.
     pub zero: usize,
-    /// The noise floor (meV).
+    /// The floor 8·eps·‖H‖₁ (meV).
     pub floor_mev: f64,
     /// ‖H‖₁ (meV).
     pub norm_mev: f64,
@@ -30,8 +29,18 @@ impl Spectrum {
     /// Of a state, with `count` of its eigenvalues. The counts of signs cost two factorisations; eigenvalues cost far more.
     pub fn of(h: &Hamiltonian, state: &State, count: usize) -> Spectrum {
         let norm_mev = state.hessian.norm1();
-        let left_out = h.long_range().map_or(0.0, |long| long.error_mev(true));
-        let floor_mev = (8.0 * f64::EPSILON * norm_mev).max(left_out);
+        let floor_mev = floor_mev(h, norm_mev);
+        let (negative, flat) = Spectrum::count(h, state);
+        let frozen = (0..h.sites()).filter(|&i| h.is_frozen(i)).count();
+        let free = state.hessian.order() - 2 * frozen - state.zeros.len().min(state.hessian.order() - 2 * frozen);
+        let modes = lowest_modes(&state.hessian, count.min(free), &state.zeros);
+        let lowest_mev = modes.into_iter().map(|m| m.value).collect();
+        Spectrum { negative, flat, zero: state.zeros.len(), floor_mev, norm_mev, lowest_mev }
+    }
+
+    /// Negative and flat directions of a state, zero modes apart.
+    pub fn count(h: &Hamiltonian, state: &State) -> (usize, usize) {
+        let floor_mev = floor_mev(h, state.hessian.norm1());
         let below = |shift: f64| {
             let mut matrix = state.hessian.clone();
             let mut used = Vec::new();
@@ -42,12 +51,7 @@ impl Spectrum {
             matrix.factor().negatives()
         };
         let negative = below(floor_mev);
-        let flat = below(-floor_mev).saturating_sub(negative);
-        let frozen = (0..h.sites()).filter(|&i| h.is_frozen(i)).count();
-        let free = state.hessian.order() - 2 * frozen - state.zeros.len().min(state.hessian.order() - 2 * frozen);
-        let modes = lowest_modes(&state.hessian, count.min(free), &state.zeros);
-        let lowest_mev = modes.into_iter().map(|m| m.value).collect();
-        Spectrum { negative, flat, zero: state.zeros.len(), floor_mev, norm_mev, lowest_mev }
+        (negative, below(-floor_mev).saturating_sub(negative))
     }
 
     /// Zero modes and flat ones together, as results report them.
@@ -59,4 +63,10 @@ impl Spectrum {
     pub fn is_stationary(&self, torque_mev: f64) -> bool {
         torque_mev <= 1e-12 * self.norm_mev
     }
+}
+
+/// What an eigenvalue must exceed in size to have a sign (meV): the rounding error, or what a long-ranged Hessian leaves out.
+fn floor_mev(h: &Hamiltonian, norm_mev: f64) -> f64 {
+    let left_out = h.long_range().map_or(0.0, |long| long.error_mev(true));
+    (8.0 * f64::EPSILON * norm_mev).max(left_out)
 }
