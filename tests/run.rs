@@ -126,7 +126,7 @@ fn lists_come_from_the_registries_and_say_what_parses() {
         ("guesses", "sweep"),
         ("optimisers", "implicit"),
         ("formats", "csv"),
-        ("materials", "none"),
+        ("materials", "permalloy"),
     ] {
         let (code, out, _) = spinneb(folder.path(), &["list", what]);
         assert_eq!(code, Some(0));
