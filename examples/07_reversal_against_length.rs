@@ -247,3 +247,19 @@ fn figure(rows: &[Row], predicted_local_nm: f64, predicted_demag_nm: f64) -> Lin
                 .label("demagnetising field"),
         )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_local_easy_axis_has_the_barrier_of_its_theory_below_and_above_the_critical_length() {
+        assert!((local_barrier(PI) - PI).abs() < 1e-12 && (local_barrier(40.0) - 4.0).abs() < 1e-12);
+        for (sites, together) in [(14, true), (40, false)] {
+            let row = row(sites).unwrap();
+            assert!((row.local.barrier_mev / row.theory_mev - 1.0).abs() < 3e-3, "{sites}");
+            assert_eq!(row.local.asymmetry < 1e-6, together);
+            assert_eq!(row.demag.asymmetry < 1e-6, row.odd_mev > 0.0);
+        }
+    }
+}

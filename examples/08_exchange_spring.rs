@@ -89,11 +89,11 @@ impl Grain {
         Ok(outcome.barrier.context("a barrier")?.forward_mev)
     }
 
-    /// The field (T) in which the grain, magnetised up, runs down to the other side: raised in steps of 1/400 of the largest
+    /// The field (T) in which the grain, magnetised up, runs down to the other side: raised in steps of 1/2000 of the largest
     /// anisotropy field, the last step then halved ten times.
     fn switching_t(&self) -> Result<f64> {
         let fields = self.anisotropy_mev.iter().zip(&self.moment_mev_per_t).map(|(k, m)| 2.0 * k / m);
-        let mut step = fields.fold(0.0, f64::max) / 400.0;
+        let mut step = fields.fold(0.0, f64::max) / 2000.0;
         let mut state = Spins::uniform(self.anisotropy_mev.len(), Direction::Z);
         let (mut b, mut halved) = (0.0, 0);
         while halved < 10 {
@@ -101,7 +101,7 @@ impl Grain {
             let relaxed = relax_to_minimum(&h, &state, 1e-10 * h.stiffness_mev())?;
             // where a mode is just going soft, the last digits of the torque are not to be had
             let torque = relaxed.max_torque_mev / h.stiffness_mev();
-            ensure!(torque < 1e-4, "a torque of {torque:e} of the stiffness is left at {} T", b + step);
+            ensure!(torque < 1e-7, "a torque of {torque:e} of the stiffness is left at {} T", b + step);
             let hard_end = relaxed.spins.get(self.anisotropy_mev.len() - 1)[2];
             if hard_end < 0.0 {
                 (step, halved) = (0.5 * step, halved + 1);
@@ -201,4 +201,20 @@ fn figure(rows: &[(f64, Found, Found)]) -> LinePlot {
         .with(level(4.0).label("published: 1, 2 and 4"))
         .with(Series::line(curve(|r| r.2.merit)).colour(BLUE).marker(Marker::Disc).label("K as depth squared"))
         .with(Series::line(curve(|r| r.1.merit)).colour(VERMILLION).marker(Marker::Square).label("soft and hard half"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn published_figures_of_merit_and_the_field_of_a_step_are_found() {
+        let whole = Grain::of_fept(CELL_NM, |_| 1.0).unwrap().measured().unwrap();
+        assert!((whole.merit - 1.0).abs() < 1e-5, "{whole:?}");
+        let (ms, _, k) = fept().unwrap();
+        let step = Grain::of_fept(30.0, |t| if t < 0.5 { 0.0 } else { 1.0 }).unwrap().measured().unwrap();
+        assert!((step.switching_t * ms.0 / (2.0 * k.0) - 0.25).abs() < 1e-3, "{step:?}");
+        let square = Grain::of_fept(27.0, |t| t * t).unwrap().measured().unwrap();
+        assert!(3.4 < square.merit && square.merit < 4.0, "{square:?}");
+    }
 }
