@@ -13,6 +13,7 @@
 //! | [`band`], [`saddle`] | the force on a path; saddles to machine precision |
 //! | [`energy`], [`path`], [`optimise`] | energy terms; first paths; methods that move spins |
 //! | [`state`] | spin states |
+//! | [`files`] | files of spins: OVF, npz, npy, csv, VTK |
 //! | [`spins`], [`sphere`] | configurations and the product of spheres they live on |
 //! | [`lattice`], [`geometry`], [`units`], [`field`], [`linalg`], [`registry`], [`words`], [`error`] | the ground |
 
@@ -21,6 +22,7 @@ pub mod config;
 pub mod drive;
 pub mod energy;
 pub mod error;
+pub mod files;
 pub mod field;
 pub mod geometry;
 pub mod lattice;

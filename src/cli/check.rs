@@ -47,8 +47,8 @@ fn print(out: &mut impl Write, loaded: &Loaded, problem: &Problem) -> io::Result
         row("rates", asked_for(rates))?;
     }
     row("memory", format!("about {}", memory::shown(needed_bytes(problem, &scales))))?;
-    for kind in loaded.config.output.left_out() {
-        row("warning", format!("output.formats: \"{kind}\" cannot be written by this version and is left out"))?;
+    for warning in &loaded.warnings {
+        row("warning", warning.clone())?;
     }
     Ok(())
 }

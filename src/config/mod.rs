@@ -4,6 +4,7 @@
 //! wrong in a config is found before anything large is allocated or computed.
 
 mod built;
+mod inputs;
 mod json;
 mod load;
 mod material;
@@ -17,7 +18,7 @@ mod set;
 pub mod text;
 
 pub use built::{expected_images, needed_bytes};
-pub use load::{Loaded, Text, load};
+pub use load::{Loaded, Text, load, load_text};
 pub use material::{Material, MaterialChoice};
 pub use name::Name;
 pub use neb::{NebConfig, SaddleConfig};

@@ -5,10 +5,7 @@ use crate::words::{nearest, quoted};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer};
 
-/// Kinds of files that have a name and no writer: asked for, they are left out with a warning.
-const NOT_WRITTEN: &[&str] = &["npz", "ovf"];
-
-/// `"output": {"formats": ["csv"], "plots": ["svg", "png"]}`; everything if absent.
+/// `"output": {"formats": ["csv"], "plots": ["svg", "png"]}`; the usual kinds if absent.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct OutputConfig {
@@ -27,23 +24,12 @@ impl Default for OutputConfig {
     }
 }
 
-impl OutputConfig {
-    /// Kinds that were asked for and are left out.
-    pub fn left_out(&self) -> Vec<&'static str> {
-        let written: Vec<&str> = names(Group::Formats).collect();
-        let asked = |name: &&str| self.formats.iter().any(|f| f == name) && !written.contains(name);
-        NOT_WRITTEN.iter().copied().filter(asked).collect()
-    }
-}
-
 fn names(group: Group) -> impl Iterator<Item = &'static str> {
     KINDS.iter().filter(move |kind| kind.group == group).map(|kind| kind.name)
 }
 
 fn formats<'de, D: Deserializer<'de>>(d: D) -> Result<Vec<String>, D::Error> {
-    let mut known: Vec<&str> = names(Group::Formats).collect();
-    known.extend(NOT_WRITTEN.iter().filter(|name| names(Group::Formats).all(|n| n != **name)));
-    checked(d, &known)
+    checked(d, &names(Group::Formats).chain(names(Group::OnRequest)).collect::<Vec<_>>())
 }
 
 fn plots<'de, D: Deserializer<'de>>(d: D) -> Result<Vec<String>, D::Error> {
