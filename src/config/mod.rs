@@ -15,6 +15,7 @@ mod output;
 mod path;
 pub mod rates;
 mod set;
+mod strict;
 pub mod text;
 
 pub use built::{expected_images, needed_bytes};
