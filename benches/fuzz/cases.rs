@@ -2,6 +2,7 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use serde_json::Value;
 use spinneb::config::load_text;
 use spinneb::files::{Array, Mesh, OvfData, Segment, read, write_csv, write_npy, write_npz, write_ovf};
 use spinneb::geometry::Vector;
@@ -23,6 +24,10 @@ const WORDS: &[&str] = &[
 /// What is mutated: texts of configs and of materials, and files with their names.
 pub struct Corpus {
     configs: Vec<Vec<u8>>,
+    /// Those that are right as they are.
+    trees: Vec<Value>,
+    /// Every value that stands anywhere in the trees.
+    values: Vec<Value>,
     files: Vec<(&'static str, Vec<u8>)>,
     config: PathBuf,
 }
@@ -49,10 +54,16 @@ impl Corpus {
             .flat_map(|f| fs::read_dir(root.join(f)).expect("configs").map(|e| e.expect("an entry").path()))
             .filter(|p| p.extension().is_some_and(|e| e == "json"))
             .collect();
-        paths.sort();
+        // those in tests/configs/bad are wrong in one thing each: values to graft from
+        paths.sort_by_key(|p| (p.ancestors().any(|f| f.ends_with("bad")), p.clone()));
+        let good = paths.iter().filter(|p| !p.ancestors().any(|f| f.ends_with("bad"))).count();
         let mut configs: Vec<Vec<u8>> = paths.iter().map(|p| fs::read(p).expect("a config")).collect();
-        configs.push(WITH_FILES.as_bytes().to_vec());
-        Corpus { configs, files, config: folder.join("fuzz.json") }
+        configs.insert(good, WITH_FILES.as_bytes().to_vec());
+        let mut trees: Vec<Value> = configs.iter().filter_map(|c| serde_json::from_slice(c).ok()).collect();
+        let mut values: Vec<Value> = WORDS.iter().filter_map(|w| serde_json::from_str(w).ok()).collect();
+        trees.iter().for_each(|tree| collect(tree, &mut values));
+        trees.truncate(good + 1);
+        Corpus { configs, trees, values, files, config: folder.join("fuzz.json") }
     }
 
     /// Case `number` of a seed: whether it was read and not refused, or what went wrong.
@@ -61,7 +72,10 @@ impl Corpus {
         r.set_stream(2 * number + u64::from(kind == Kind::Files));
         let outcome = match kind {
             Kind::Configs => {
-                let text = mutated(&self.configs, &mut r);
+                let text = match r.random() {
+                    true => mutated(&self.configs, &mut r),
+                    false => self.grafted(&mut r).to_string().into_bytes(),
+                };
                 catch_unwind(AssertUnwindSafe(|| self.config(text)))
             }
             Kind::Files => {
@@ -82,12 +96,54 @@ impl Corpus {
         }
     }
 
+    /// A config in which one to three values gave way to others, came or went.
+    fn grafted(&self, r: &mut ChaCha8Rng) -> Value {
+        let mut tree = self.trees[r.random_range(0..self.trees.len())].clone();
+        for _ in 0..r.random_range(1..=3) {
+            let mut node = &mut tree;
+            // down to some value, not too often the whole
+            loop {
+                let stop = r.random_range(0..4) == 0;
+                let count = match &*node {
+                    Value::Object(members) => members.len(),
+                    Value::Array(values) => values.len(),
+                    _ => 0,
+                };
+                if count == 0 || stop {
+                    break;
+                }
+                let k = r.random_range(0..count);
+                node = match node {
+                    Value::Object(members) => members.values_mut().nth(k).expect("a member"),
+                    Value::Array(values) => &mut values[k],
+                    _ => break,
+                };
+            }
+            let other = self.values[r.random_range(0..self.values.len())].clone();
+            match node {
+                Value::Array(values) if r.random() => values.push(other),
+                Value::Array(values) if r.random() => drop(values.pop()),
+                Value::Object(members) if r.random() => {
+                    let from = self.trees[r.random_range(0..self.trees.len())].as_object();
+                    members.extend(from.into_iter().flatten().take(8).map(|(k, v)| (k.clone(), v.clone())).last());
+                }
+                Value::Number(n) if r.random() => {
+                    let x = n.as_f64().unwrap_or(1.0) * [0.0, 0.5, -1.0, 2.0, 1e3, 1e9, 1e300][r.random_range(0..7)];
+                    *node = if x.abs() < 1e15 && x.fract() == 0.0 { Value::from(x as i64) } else { Value::from(x) };
+                }
+                _ => *node = other,
+            }
+        }
+        tree
+    }
+
     fn config(&self, text: Vec<u8>) -> Result<bool, String> {
         let file = self.config.display().to_string();
+        let folder = self.config.parent().map(|p| p.display().to_string()).unwrap_or_default();
         let named = |e: spinneb::error::Error| {
             let said = e.to_string();
             // without a place there is no help
-            if said.contains(&file) || said.contains("materials") { Ok(false) } else { Err(format!("no file in {said:?}")) }
+            if said.contains(&folder) { Ok(false) } else { Err(format!("no file in {said:?}")) }
         };
         let text = match spinneb::config::text::decode(&file, text) {
             Ok(text) => text,
@@ -113,6 +169,16 @@ fn file(name: &str, bytes: &[u8]) -> Result<bool, String> {
                 false => Err("images that are none were read".into()),
             }
         }
+    }
+}
+
+/// A value and all values in it.
+fn collect(value: &Value, found: &mut Vec<Value>) {
+    found.push(value.clone());
+    match value {
+        Value::Object(members) => members.values().for_each(|v| collect(v, found)),
+        Value::Array(values) => values.iter().for_each(|v| collect(v, found)),
+        _ => {}
     }
 }
 
