@@ -27,7 +27,10 @@ fn ovf(data: OvfData, images: &[Vec<Vector>]) -> Vec<u8> {
 }
 
 fn array(images: &[Vec<Vector>]) -> Array {
-    Array { shape: vec![images.len(), images[0].len(), 3], numbers: images.iter().flatten().flatten().copied().collect() }
+    Array {
+        shape: vec![images.len(), images[0].len(), 3],
+        numbers: images.iter().flatten().flatten().copied().collect(),
+    }
 }
 
 fn npz(images: &[Vec<Vector>]) -> Vec<u8> {
@@ -108,7 +111,10 @@ fn errors_name_the_place() {
         refused("m.ovf", (lines.join("\n") + "\n").as_bytes())
     };
     let line = node + 1;
-    assert_eq!(with(node, "0 0 nan"), format!("m.ovf: line {line}: segment 0, node 1: the z component is NaN, which is no direction"));
+    assert_eq!(
+        with(node, "0 0 nan"),
+        format!("m.ovf: line {line}: segment 0, node 1: the z component is NaN, which is no direction")
+    );
     assert!(with(node, "0 0 0").contains(&format!("line {line}: segment 0, node 1: the vector is zero")));
     assert!(with(node, "0 0 x").contains(&format!("line {line}: segment 0: found \"x\", expected a number")));
     assert!(with(node, "0 0").contains("found 14 numbers, but 5 nodes have 3 each"));
@@ -124,7 +130,10 @@ fn errors_name_the_place() {
     bytes[data + 8 + 24 + 6] = 0xf0;
     bytes[data + 8 + 24..data + 8 + 24 + 6].fill(0);
     let said = refused("m.ovf", &bytes);
-    assert_eq!(said, format!("m.ovf: byte {}: segment 0, node 1: the x component is inf, which is no direction", data + 32));
+    assert_eq!(
+        said,
+        format!("m.ovf: byte {}: segment 0, node 1: the x component is inf, which is no direction", data + 32)
+    );
 
     let mut npz = npz(&given);
     let at = npz.len() / 3;
@@ -189,7 +198,8 @@ fn other_dialects_of_ovf_are_understood() {
     assert_eq!(read("m.ovf", loose.as_bytes()).unwrap().images, given);
 
     // positions before the vectors on an irregular mesh, as the format has it
-    let placed: String = given[0].iter().enumerate().map(|(i, [x, y, z])| format!("{i} 0 0 {x:?} {y:?} {z:?}\n")).collect();
+    let placed: String =
+        given[0].iter().enumerate().map(|(i, [x, y, z])| format!("{i} 0 0 {x:?} {y:?} {z:?}\n")).collect();
     let irregular = format!(
         "# OOMMF OVF 2.0\n# Segment count: 1\n# Begin: Segment\n# Begin: Header\n# meshtype: irregular\n# pointcount: 3\n\
          # valuedim: 3\n# End: Header\n# Begin: Data Text\n{placed}# End: Data Text\n# End: Segment\n"
@@ -197,9 +207,10 @@ fn other_dialects_of_ovf_are_understood() {
     assert_eq!(read("m.ovf", irregular.as_bytes()).unwrap().images, given[..1]);
 
     // mumax: binary 4 without a line feed behind the data; and numbers of the other byte order
-    let mut binary = b"# OOMMF OVF 2.0\n# Segment count: 1\n# Begin: Segment\n# Begin: Header\n# meshtype: rectangular\n\
+    let mut binary =
+        b"# OOMMF OVF 2.0\n# Segment count: 1\n# Begin: Segment\n# Begin: Header\n# meshtype: rectangular\n\
         # xnodes: 1\n# ynodes: 3\n# znodes: 1\n# valuedim: 3\n# End: Header\n# Begin: Data Binary 4\n"
-        .to_vec();
+            .to_vec();
     binary.extend_from_slice(&1234567.0f32.to_be_bytes());
     binary.extend(given[0].iter().flatten().flat_map(|x| (*x as f32).to_be_bytes()));
     binary.extend_from_slice(b"# End: Data Binary 4\n# End: Segment\n");
@@ -232,7 +243,8 @@ fn tables_and_arrays_of_other_programs_are_understood() {
     assert_eq!(npy("|i1", "False", "(2, 3)", &[0, 0, 1, 1, 0, 0]), [up_and_along.clone()]);
     assert_eq!(npy("|i1", "True", "(2L, 3L)", &[0, 1, 0, 0, 1, 0]), [up_and_along.clone()]);
     assert_eq!(npy(">i2", "False", "(1, 2, 1, 1, 3)", &[0, 0, 0, 0, 0, 1, 0, 1, 0, 0, 0, 0]), [up_and_along.clone()]);
-    let deflated = fs::read(std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/compressed.npz")).unwrap();
+    let deflated =
+        fs::read(std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/compressed.npz")).unwrap();
     assert_eq!(read("compressed.npz", &deflated).unwrap().images, [up_and_along.clone(), up_and_along]);
 }
 

@@ -524,7 +524,7 @@ fn a_summary_that_is_not_ours_is_refused() {
 fn a_failed_write_leaves_the_old_result_as_it_was() {
     let dir = tempfile::tempdir().unwrap();
     disk::write_result(dir.path(), &[file("path.csv", "old"), file("summary.json", "{}")], &[]).unwrap();
-    let bad = [file("path.csv", "new"), file("no_such_folder/x", ""), file("summary.json", "{}")];
+    let bad = [file("path.csv", "new"), file("path.csv/x", ""), file("summary.json", "{}")];
     assert!(disk::write_result(dir.path(), &bad, &[]).is_err());
     assert!(!names(dir.path()).iter().any(|n| n.starts_with(".spinneb")), "temporary files stay behind");
 }

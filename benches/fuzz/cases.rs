@@ -15,10 +15,52 @@ const LONGEST_CHAIN: usize = 2000;
 
 /// Words and numbers that have meant trouble somewhere.
 const WORDS: &[&str] = &[
-    "0", "-1", "1", "3", "1e18", "1000000000000000000", "18446744073709551615", "18446744073709551616", "1e308", "1e-308",
-    "1e999", "-0.0", "0.1", "nan", "inf", "null", "true", "[]", "{}", "[[]]", "\"\"", "\"1e400 meV\"", "\"1 meV\"", "\"-1 T\"",
-    "\u{feff}", "\r\n", "\n", "\0", "#", "##", ":", ",", ";", " ", "\t", "# End: Header\n", "# Begin: Segment\n", "(3, 3)",
-    "(0, 3)", "'<f8'", "'|O'", "True", "image,site,m_x,m_y,m_z\n", "{\"file\": {\"path\": \"m.ovf\"}}", "µ", "\u{10ffff}",
+    "0",
+    "-1",
+    "1",
+    "3",
+    "1e18",
+    "1000000000000000000",
+    "18446744073709551615",
+    "18446744073709551616",
+    "1e308",
+    "1e-308",
+    "1e999",
+    "-0.0",
+    "0.1",
+    "nan",
+    "inf",
+    "null",
+    "true",
+    "[]",
+    "{}",
+    "[[]]",
+    "\"\"",
+    "\"1e400 meV\"",
+    "\"1 meV\"",
+    "\"-1 T\"",
+    "\u{feff}",
+    "\r\n",
+    "\n",
+    "\0",
+    "#",
+    "##",
+    ":",
+    ",",
+    ";",
+    " ",
+    "\t",
+    "# End: Header\n",
+    "# Begin: Segment\n",
+    "(3, 3)",
+    "(0, 3)",
+    "'<f8'",
+    "'|O'",
+    "True",
+    "image,site,m_x,m_y,m_z\n",
+    "{\"file\": {\"path\": \"m.ovf\"}}",
+    "µ",
+    "\u{10ffff}",
 ];
 
 /// What is mutated: texts of configs and of materials, and files with their names.
@@ -193,13 +235,17 @@ const WITH_FILES: &str = r#"{
 
 /// A file of every format and representation.
 fn files() -> Vec<(&'static str, Vec<u8>)> {
-    let images: Vec<Vec<Vector>> =
-        (0..3).map(|k| (0..5).map(|i| if (i + k) % 2 == 0 { [0.0, 0.6, 0.8] } else { [0.28, 0.0, -0.96] }).collect()).collect();
+    let images: Vec<Vec<Vector>> = (0..3)
+        .map(|k| (0..5).map(|i| if (i + k) % 2 == 0 { [0.0, 0.6, 0.8] } else { [0.28, 0.0, -0.96] }).collect())
+        .collect();
     let segments: Vec<Segment> = images.iter().map(|spins| Segment { description: "fuzz", spins }).collect();
     let mesh = Mesh { step: [1e-9; 3], unit: "m" };
     let ovf = |data| write_ovf(data, &mesh, &segments);
     let array = Array { shape: vec![3, 5, 3], numbers: images.iter().flatten().flatten().copied().collect() };
-    let arrays = [("spins".to_string(), array.clone()), ("energy_meV".to_string(), Array { shape: vec![1], numbers: vec![0.5] })];
+    let arrays = [
+        ("spins".to_string(), array.clone()),
+        ("energy_meV".to_string(), Array { shape: vec![1], numbers: vec![0.5] }),
+    ];
     let packed = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/compressed.npz");
     vec![
         ("text.ovf", ovf(OvfData::Text)),

@@ -3,13 +3,16 @@
 use crate::energy::TermSpec;
 use crate::error::{Error, Result};
 use crate::units::{Magnetisation, Moment};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{self, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
+use serde_json::json;
+use std::borrow::Cow;
 use std::fmt;
 
 /// A material: its moment (or magnetisation) and its energy terms.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[allow(non_snake_case)]
 pub struct Material {
@@ -59,6 +62,17 @@ pub enum MaterialChoice {
     Named(String),
     /// The material.
     Inline(Box<Material>),
+}
+
+impl JsonSchema for MaterialChoice {
+    fn schema_name() -> Cow<'static, str> {
+        "MaterialChoice".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let named = json!({"type": "string", "description": "a file, looked for beside the config"});
+        json_schema!({"oneOf": [named, generator.subschema_for::<Material>()]})
+    }
 }
 
 impl<'de> Deserialize<'de> for MaterialChoice {

@@ -14,6 +14,7 @@ mod neb;
 mod output;
 mod path;
 pub mod rates;
+mod schema;
 mod set;
 mod strict;
 pub mod text;
@@ -26,19 +27,24 @@ pub use neb::{NebConfig, SaddleConfig};
 pub use output::OutputConfig;
 pub use path::{ImageCount, PathConfig};
 pub use rates::{RatesConfig, Temperatures};
+pub use schema::{SCHEMA_FILE, schema};
 
 use crate::energy::TermSpec;
 use crate::lattice::Lattice;
 use crate::state::StateSpec;
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// A config as written. Only `material`, `lattice`, `initial` and `final` are required.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Config {
     /// Where editors find the schema; not used here.
     #[serde(default, rename = "$schema")]
     pub schema: Option<String>,
+    /// What you want to say about it: a text, or one of several lines.
+    #[serde(default)]
+    pub comment: Option<Comment>,
     /// Name of the run and of its folder; the file's name without its ending if absent.
     #[serde(default)]
     pub name: Option<Name>,
@@ -72,6 +78,16 @@ pub struct Config {
     /// What is written.
     #[serde(default)]
     pub output: OutputConfig,
+}
+
+/// A text, or one of several lines. It is kept with the config and means nothing.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "a text, or a list of its lines")]
+pub enum Comment {
+    /// A text.
+    Text(String),
+    /// Its lines.
+    Lines(Vec<String>),
 }
 
 fn yes() -> bool {

@@ -1,19 +1,23 @@
 //! What a run writes.
 
+use super::schema::names_schema;
 use crate::output::{Group, KINDS};
 use crate::words::{nearest, quoted};
+use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer};
 
 /// `"output": {"formats": ["csv"], "plots": ["svg", "png"]}`; the usual kinds if absent.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct OutputConfig {
     /// Kinds of data files.
     #[serde(deserialize_with = "formats")]
+    #[schemars(schema_with = "format_names")]
     pub formats: Vec<String>,
     /// Kinds of figures.
     #[serde(deserialize_with = "plots")]
+    #[schemars(schema_with = "plot_names")]
     pub plots: Vec<String>,
 }
 
@@ -22,6 +26,14 @@ impl Default for OutputConfig {
         let all = |group| names(group).map(String::from).collect();
         OutputConfig { formats: all(Group::Formats), plots: all(Group::Plots) }
     }
+}
+
+fn format_names(_: &mut SchemaGenerator) -> Schema {
+    names_schema(names(Group::Formats).chain(names(Group::OnRequest)))
+}
+
+fn plot_names(_: &mut SchemaGenerator) -> Schema {
+    names_schema(names(Group::Plots))
 }
 
 fn names(group: Group) -> impl Iterator<Item = &'static str> {

@@ -4,8 +4,8 @@
 //! serde_json, and by the type that is wanted. What that type refuses is put in plain words, with the line and column
 //! of the value itself.
 
-use super::strict::Strict;
 use super::json::{self, Node, Step, position, scan, written};
+use super::strict::Strict;
 use crate::error::{Error, Result};
 use crate::words::quoted;
 use serde::de::DeserializeOwned;

@@ -81,7 +81,8 @@ fn read(bytes: &[u8], images: &mut Collector) -> Result<()> {
             state.comment(comment);
         } else if !body.is_empty() {
             if !line.ends_with('\n') {
-                let message = "the last line has no end, so that its last number may be cut short: end it with a newline";
+                let message =
+                    "the last line has no end, so that its last number may be cut short: end it with a newline";
                 return Err(images.error(place, message));
             }
             state.row(&split(body), &place, images)?;
@@ -187,7 +188,9 @@ impl State {
             let sites = self.promised.map_or(0, |(_, sites)| sites);
             if begun && sites > 0 && images.sites() != sites {
                 let found = images.sites();
-                return Err(images.error(place, format!("the image before has {found} sites, but {sites} are promised")));
+                return Err(
+                    images.error(place, format!("the image before has {found} sites, but {sites} are promised"))
+                );
             }
             images.begin(0);
             self.image = image;

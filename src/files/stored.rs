@@ -36,7 +36,8 @@ pub fn open(folder: &Path, named: &str, sha256: Option<&str>) -> Result<Arc<Stor
     if let Some(wanted) = sha256 {
         let found = sha256_of(&bytes);
         if !found.eq_ignore_ascii_case(wanted) {
-            let message = format!("the file {file} has the hash {found}: it is not the one this config was written for");
+            let message =
+                format!("the file {file} has the hash {found}: it is not the one this config was written for");
             return Err(Error::invalid("sha256", message));
         }
     }

@@ -54,8 +54,7 @@ pub fn write_pvd(files: &[(f64, String)]) -> Vec<u8> {
 }
 
 fn vectors(name: &str, vectors: &[Vector]) -> String {
-    let mut text =
-        format!("<DataArray type=\"Float64\" Name=\"{name}\" NumberOfComponents=\"3\" format=\"ascii\">\n");
+    let mut text = format!("<DataArray type=\"Float64\" Name=\"{name}\" NumberOfComponents=\"3\" format=\"ascii\">\n");
     for [x, y, z] in vectors {
         let _ = writeln!(text, "{x:?} {y:?} {z:?}");
     }

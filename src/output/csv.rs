@@ -84,10 +84,8 @@ impl Format for HistoryCsv {
 /// The columns of `path.csv` behind the number of the image.
 pub(super) fn path_columns(outcome: &Outcome) -> Vec<(String, &[f64])> {
     let t = &outcome.images;
-    let mut columns: Vec<(String, &[f64])> = vec![
-        ("reaction_coordinate_rad".into(), &t.reaction_coordinate_rad),
-        ("energy_meV".into(), &t.energy_mev),
-    ];
+    let mut columns: Vec<(String, &[f64])> =
+        vec![("reaction_coordinate_rad".into(), &t.reaction_coordinate_rad), ("energy_meV".into(), &t.energy_mev)];
     columns.extend(t.terms_mev.iter().map(|(term, energy)| (format!("{}_meV", column_name(term)), &energy[..])));
     columns.push(("max_perpendicular_torque_meV".into(), &t.max_perpendicular_torque_mev));
     columns.push(("energy_above_initial_meV".into(), &t.above_initial_mev));

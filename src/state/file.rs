@@ -5,12 +5,13 @@ use crate::error::{Error, Result};
 use crate::files::{self, Stored};
 use crate::geometry::Vector;
 use crate::registry::Described;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::Path;
 use std::sync::Arc;
 
 /// `{"file": {"path": "relaxed.ovf", "segment": 0}}`.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct File {
     /// The file, looked for beside the config.
@@ -53,9 +54,10 @@ impl StateBuilder for File {
         let (found, sites) = (image.len(), context.chain.sites);
         match found == sites {
             true => Ok(image.to_vec()),
-            false => {
-                Err(Error::invalid("path", format!("{} has {found} spins, but the chain has {sites} sites", stored.file)))
-            }
+            false => Err(Error::invalid(
+                "path",
+                format!("{} has {found} spins, but the chain has {sites} sites", stored.file),
+            )),
         }
     }
 

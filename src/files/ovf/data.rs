@@ -32,7 +32,8 @@ pub(super) fn read(
         "databinary8" => binary(Stored::F8, header, lines, images, segment)?,
         _ => {
             let found = quoted(begin.text.trim());
-            let message = format!("segment {segment}: found {found}, expected Data Text, Data Binary 4 or Data Binary 8");
+            let message =
+                format!("segment {segment}: found {found}, expected Data Text, Data Binary 4 or Data Binary 8");
             return Err(images.error(begin.place(), message));
         }
     }
@@ -96,7 +97,9 @@ fn text(header: &Header, lines: &mut Lines, images: &mut Collector, segment: usi
 
 fn binary(kind: Stored, header: &Header, lines: &mut Lines, images: &mut Collector, segment: usize) -> Result<()> {
     let (size, data, start) = (kind.size(), lines.rest(), lines.byte());
-    let wrong = |images: &Collector, at: usize, m: String| Err(images.error(format!("byte {at}"), format!("segment {segment}: {m}")));
+    let wrong = |images: &Collector, at: usize, m: String| {
+        Err(images.error(format!("byte {at}"), format!("segment {segment}: {m}")))
+    };
     let columns = if header.irregular { &[6, 3][..] } else { &[3] };
     let mut lengths = columns.iter().map(|c| (*c, (header.sites * c + 1) * size));
     let end = |length: usize| {
@@ -111,7 +114,8 @@ fn binary(kind: Stored, header: &Header, lines: &mut Lines, images: &mut Collect
         let needed = lengths.next_back().map_or(0, |(_, length)| length);
         if data.len() < needed {
             let (sites, there) = (header.sites, data.len());
-            let m = format!("{sites} nodes take {needed} bytes with the check value, {there} are left: it is cut short");
+            let m =
+                format!("{sites} nodes take {needed} bytes with the check value, {there} are left: it is cut short");
             return wrong(images, start, m);
         }
         let m = "expected \"# End: Data\" behind the data of all nodes: the file is damaged or cut short";
@@ -138,6 +142,9 @@ fn checked(kind: Stored, bytes: &[u8]) -> std::result::Result<bool, String> {
     let found = [false, true].map(|big_endian| kind.value(bytes, big_endian));
     match found.iter().position(|x| *x == wanted) {
         Some(k) => Ok(k == 1),
-        None => Err(format!("the check value is {:e}, not {wanted}: the file is damaged, or its numbers are others", found[0])),
+        None => Err(format!(
+            "the check value is {:e}, not {wanted}: the file is damaged, or its numbers are others",
+            found[0]
+        )),
     }
 }

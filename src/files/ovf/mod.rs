@@ -59,7 +59,8 @@ fn read(bytes: &[u8], images: &mut Collector) -> Result<()> {
     match promised {
         Some(count) if count != images.count() => {
             let found = images.count();
-            Err(images.error(lines.place(), format!("the file ends after {found} of its {count} segments: it is cut short")))
+            Err(images
+                .error(lines.place(), format!("the file ends after {found} of its {count} segments: it is cut short")))
         }
         _ => Ok(()),
     }

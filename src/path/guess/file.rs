@@ -10,11 +10,12 @@ use crate::geometry::Vector;
 use crate::path::Path;
 use crate::registry::Described;
 use crate::spins::Spins;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::sync::Arc;
 
 /// `{"file": {"path": "results/wall/path.npz"}}`.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PathFile {
     /// The file, looked for beside the config.

@@ -10,10 +10,11 @@ use crate::path::Path;
 use crate::registry::Described;
 use crate::spins::Spins;
 use crate::state::StateSpec;
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// `{"waypoints": {"states": [{"domain_wall": {"center": 3}}]}}`.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Waypoints {
     /// The states on the way, in order; the two ends are not repeated.
