@@ -255,7 +255,7 @@ pub enum What {
     Guesses,
     /// Methods that move a path to its minimum
     Optimisers,
-    /// Files that a run can write
+    /// Files that a run can write, and files that states and paths can be read from
     Formats,
     /// Materials that come with the program
     Materials,

@@ -47,7 +47,7 @@ pub fn write_npy(array: &Array) -> Vec<u8> {
     let shape = if array.shape.len() == 1 { shape } else { shape.trim_end_matches(',').to_string() };
     let mut header = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({shape}), }}");
     let start = MAGIC.len() + 4;
-    while (start + header.len() + 1) % ALIGNMENT != 0 {
+    while !(start + header.len() + 1).is_multiple_of(ALIGNMENT) {
         header.push(' ');
     }
     header.push('\n');
