@@ -1,13 +1,15 @@
 //! From a band's top to a refined saddle, and away from saddles of higher index.
 
+use super::minimum::{turned, turns};
 use super::top::{Top, highest};
 use crate::band::Band;
 use crate::energy::Hamiltonian;
 use crate::field::project;
 use crate::linalg::{lowest_modes, slab};
 use crate::path::{Path, largest_angle};
-use crate::saddle::{Refined, Spectrum, Verdict, refine};
+use crate::saddle::{Refined, Spectrum, Verdict, follow_modes, refine};
 use crate::sphere::{move_points, rotation_of};
+use crate::spins::Spins;
 
 /// A mode of less than this part of c is shallow.
 const SHALLOW: f64 = 1e-3;
@@ -16,7 +18,7 @@ pub const ZOOMS: usize = 4;
 /// How far a path is pushed off a saddle of higher index (rad).
 const PUSH: f64 = 0.8;
 /// A saddle this far from the place where its search began (rad, any spin) is another one.
-const SAME_PLACE: f64 = 1.5;
+const SAME_PLACE: f64 = 2.5;
 
 /// Where a refined saddle was looked for, and what was found.
 #[derive(Clone, Debug)]
@@ -32,8 +34,11 @@ impl Found {
     /// mode by `hop` (rad), for the one beside it.
     pub fn at(h: &Hamiltonian, top: Top, c: f64, hop: f64) -> Found {
         let refined = refine(h, &top.m, &top.tau, c);
-        let found = Found { top, refined };
+        let mut found = Found { top, refined };
         if !found.is_stationary(c) {
+            if let Some(refined) = follow_modes(h, &found.top.m, c) {
+                found.refined = refined;
+            }
             return found;
         }
         let state = &found.refined.state;
@@ -42,7 +47,8 @@ impl Found {
         {
             return found;
         }
-        [hop, -hop].into_iter().find_map(|far| found.beside(h, c, far)).unwrap_or(found)
+        // two walls, one on a site and one between two, have a period of half a site
+        [hop, -hop, 0.5 * hop, -0.5 * hop].into_iter().find_map(|far| found.beside(h, c, far)).unwrap_or(found)
     }
 
     /// The saddle of index one a little along the second-lowest mode.
@@ -56,10 +62,13 @@ impl Found {
         let mut v = state.field(&other.vector);
         let size = rotation_of(&v);
         slab::scale(&mut v, far / size);
-        let refined = refine(h, &state.moved(&v), &self.refined.valley, c);
-        let found = Found { top: self.top.clone(), refined };
-        let better = found.is_stationary(c) && Spectrum::of(h, &found.refined.state, 0).negative <= 1;
-        better.then_some(found)
+        let start = state.moved(&v);
+        let better = |refined: Refined| {
+            let found = Found { top: self.top.clone(), refined };
+            let better = found.is_stationary(c) && Spectrum::of(h, &found.refined.state, 0).negative <= 1;
+            better.then_some(found)
+        };
+        better(refine(h, &start, &self.refined.valley, c)).or_else(|| better(follow_modes(h, &start, c)?))
     }
 
     /// Stationary to machine precision, and still the start's saddle.
@@ -67,6 +76,16 @@ impl Found {
         let done = matches!(self.refined.verdict, Verdict::Saddle | Verdict::Flat | Verdict::HigherIndex);
         let zero = (1e-9 * c).max(1e-12 * self.refined.state.hessian.norm1());
         done && self.refined.state.max_torque_mev() < zero && self.refined.rotation_rad < SAME_PLACE
+    }
+
+    /// Whether `other` ended in this saddle too, symmetry turns apart.
+    pub fn is_same(&self, h: &Hamiltonian, other: &Found) -> bool {
+        let (a, b) = (&self.refined.state, &other.refined.state);
+        if (a.energy_mev - b.energy_mev).abs() > 1e-9 * h.stiffness_mev() {
+            return false;
+        }
+        let [p, q] = [a, b].map(|s| Spins::from_unit_components(&s.m));
+        same(&a.m, turned(&q, &turns(h, &q, &p)).as_slice())
     }
 
     /// A stationary state with at most one negative direction.

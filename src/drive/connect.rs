@@ -1,16 +1,22 @@
 //! The whole sequence: every saddle of a path with the minima between them, from the initial to the final state.
 //!
 //! A saddle's two descents either end in the ends of its stretch of path, or in minima on the way; there the stretch is split,
-//! and the parts are treated alike.
+//! and the parts are treated alike. On a row of shallow minima a stretch's top may lead to a saddle beside it that is known
+//! already; then its other maxima are tried, and then the way up from either end along a soft mode. Minima joined by a valley
+//! that is flat to rounding have no saddle between them and count as one.
 
 use super::climb::{Found, ZOOMS, zoomed};
 use super::minimum::{Link, Minimum};
 use super::relaxation::{Goal, Relaxation};
-use super::top::tops;
+use super::top::{Top, direction, tops};
 use crate::band::Band;
+use crate::energy::Hamiltonian;
 use crate::error::Result;
+use crate::linalg::{Mode, slab, soft_modes};
 use crate::path::guess::{Edge, FirstGuess, GuessContext, Sweep};
 use crate::path::{Path, distance};
+use crate::saddle::{State, follow_modes};
+use crate::sphere::rotation_of;
 use crate::spins::Spins;
 
 /// Most stretches of one path.
@@ -19,6 +25,19 @@ const MOST: usize = 600;
 const FEWEST: usize = 9;
 /// Band evaluations a stretch may take.
 const EVALUATIONS: usize = 30;
+/// Energies that differ by less than this part of the largest stiffness along a whole stretch make it flat.
+const FLAT: f64 = 1e-11;
+/// Band evaluations until a stretch shows itself as flat.
+const FLAT_EVALUATIONS: usize = 60;
+/// Maxima of a stretch that are tried, at most.
+const MOST_TOPS: usize = 5;
+/// A saddle higher than a band's top by more than this part of the band's height is not the band's.
+const ABOVE: f64 = 0.2;
+/// Modes of a minimum that are followed uphill: at most so many, and below this part of c.
+const SOFT_MODES: usize = 3;
+const SOFT: f64 = 0.5;
+/// How far from a minimum the way uphill starts (rad, any spin).
+const START: f64 = 0.1;
 
 /// Saddles in path order, each with its neighbours.
 #[derive(Debug, Default)]
@@ -59,9 +78,20 @@ pub fn follow(
             sequence.gap = Some(format!("the path has more than {MOST} stretches between minima"));
             break;
         }
+        if stretch.saddle.is_none() && is_flat(relaxation, h, &stretch) {
+            close(&mut sequence, &mut open, &stretch.b, h);
+            continue;
+        }
+        let mut again = false;
         let found = match stretch.saddle {
             Some(found) => Some(found),
-            None => top_of(relaxation, h, &stretch.path, c),
+            None => {
+                let known: Vec<&Found> =
+                    sequence.links.iter().chain(open.iter().map(|o| &o.1)).map(|l| &l.found).collect();
+                let found = new_saddle(relaxation, h, &stretch, &known, c);
+                again = found.as_ref().is_some_and(|f| known.iter().any(|k| k.is_same(h, f)));
+                found
+            }
         };
         let Some(found) = found.filter(|f| f.is_saddle(c)) else {
             sequence.gap =
@@ -75,8 +105,10 @@ pub fn follow(
         }
         let left_done = link.before.is_same(h, &stretch.a);
         let right_done = link.after.is_same(h, &stretch.b);
-        let astray =
-            (!left_done && link.before.is_same(h, &stretch.b)) || (!right_done && link.after.is_same(h, &stretch.a));
+        // a saddle met a second time is of use only where it joins the two ends
+        let astray = (again && !(left_done && right_done))
+            || (!left_done && link.before.is_same(h, &stretch.b))
+            || (!right_done && link.after.is_same(h, &stretch.a));
         if astray {
             sequence.gap = Some("a descent from a saddle leads back to where it came from".into());
         }
@@ -99,7 +131,7 @@ pub fn follow(
 }
 
 /// Saddles that waited for the stretch before them, which is now followed to `reached`.
-fn close(sequence: &mut Sequence, open: &mut Vec<(Minimum, Link)>, reached: &Minimum, h: &crate::energy::Hamiltonian) {
+fn close(sequence: &mut Sequence, open: &mut Vec<(Minimum, Link)>, reached: &Minimum, h: &Hamiltonian) {
     let mut reached = reached.clone();
     while let Some((wanted, _)) = open.last() {
         if !wanted.is_same(h, &reached) {
@@ -112,26 +144,84 @@ fn close(sequence: &mut Sequence, open: &mut Vec<(Minimum, Link)>, reached: &Min
     }
 }
 
-/// The refined top of a stretch, after a loose relaxation.
-fn top_of(relaxation: &mut Relaxation, h: &crate::energy::Hamiltonian, path: &Path, c: f64) -> Option<Found> {
-    let mut band = Band::new(h, path.clone());
+/// Whether two minima are joined by a valley that is flat as far as double precision tells: a soliton on a ring, moved along it.
+fn is_flat(relaxation: &mut Relaxation, h: &Hamiltonian, stretch: &Stretch) -> bool {
+    let flat = FLAT * h.stiffness_mev();
+    if h.difference_mev(stretch.a.spins.as_slice(), stretch.b.spins.as_slice()).abs() > flat {
+        return false;
+    }
+    let mut band = Band::new(h, stretch.path.clone());
+    relaxation.run(&mut band, Goal::Tight, FLAT_EVALUATIONS);
+    let start = stretch.a.spins.as_slice();
+    band.path().largest_rotation() < 1.0
+        && (0..band.images()).all(|k| h.difference_mev(band.path().image(k), start).abs() < flat)
+}
+
+/// A saddle on a stretch after a loose relaxation: one that is none of the known ones, if there is any.
+fn new_saddle(
+    relaxation: &mut Relaxation,
+    h: &Hamiltonian,
+    stretch: &Stretch,
+    known: &[&Found],
+    c: f64,
+) -> Option<Found> {
+    let mut band = Band::new(h, stretch.path.clone());
     relaxation.run(&mut band, Goal::Loose, EVALUATIONS);
     for _ in 0..ZOOMS {
         let Some(path) = zoomed(&band, band.images() + 4) else { break };
         band = Band::new(h, path);
         relaxation.run(&mut band, Goal::Loose, EVALUATIONS);
     }
-    // the highest maximum may be where a path that overshoots turns round; any other saddle on the way will do to go on from
     let hop = relaxation.scales.half_site_rad();
-    let mut highest = None;
-    for top in tops(&band, f64::INFINITY) {
-        let found = Found::at(h, top, c, hop);
-        if found.is_saddle(c) {
+    let is_new = |f: &Found| f.is_saddle(c) && !known.iter().any(|k| k.is_same(h, f));
+    let tops = tops(&band, f64::INFINITY);
+    let e = band.energies_mev();
+    let last = band.images() - 1;
+    let highest = tops.first().map_or(e[0].max(e[last]), |top| top.energy_mev);
+    // a saddle far above the band leads elsewhere
+    let most = highest + ABOVE * (highest - e[0].min(e[last]));
+    let mut high: Vec<Found> = Vec::new();
+    let mut keep = |found: Found| {
+        if !is_new(&found) {
+            return None;
+        }
+        if found.refined.state.energy_mev <= most {
             return Some(found);
         }
-        highest = highest.or(Some(found));
-    }
-    highest
+        high.push(found);
+        None
+    };
+    let low = tops
+        .iter()
+        .take(MOST_TOPS)
+        .find_map(|top| keep(Found::at(h, top.clone(), c, hop)))
+        .or_else(|| uphill(h, &band, 0, 1, c).into_iter().find_map(&mut keep))
+        .or_else(|| uphill(h, &band, last, last - 1, c).into_iter().find_map(&mut keep));
+    low.or_else(|| high.into_iter().min_by(|p, q| p.refined.state.energy_mev.total_cmp(&q.refined.state.energy_mev)))
+        .or_else(|| tops.first().map(|top| Found::at(h, top.clone(), c, hop)))
+}
+
+/// Saddles above the minimum at one end of a band, along its soft modes towards the next image.
+fn uphill(h: &Hamiltonian, band: &Band, end: usize, next: usize, c: f64) -> Vec<Found> {
+    let state = State::at(h, band.path().image(end).to_vec());
+    let towards = state.basis.coordinates(&direction(&state.m, band.path().image(next), 1.0));
+    let modes = soft_modes(&state.hessian, SOFT_MODES, &state.zeros, SOFT * c);
+    let from = |mode: &Mode| {
+        let along = slab::dot(&mode.vector, &towards);
+        let mut tau = state.field(&mode.vector);
+        if along < 0.0 {
+            slab::scale(&mut tau, -1.0);
+        }
+        let mut v = tau.clone();
+        slab::scale(&mut v, START / rotation_of(&tau));
+        let refined = follow_modes(h, &state.moved(&v), c)?;
+        let (energy_mev, s) = (refined.state.energy_mev, band.path().reaction_coordinate()[end]);
+        if end > next {
+            slab::scale(&mut tau, -1.0);
+        }
+        Some(Found { top: Top { m: state.m.clone(), tau, energy_mev, s, image: end }, refined })
+    };
+    modes.iter().filter(|m| m.value < SOFT * c).filter_map(from).collect()
 }
 
 /// The part of a path between two states on it; a wall that moves if the part has too few images.

@@ -4,7 +4,7 @@ use crate::energy::{Hamiltonian, TangentBasis, assemble};
 use crate::error::{Error, Result};
 use crate::linalg::{Banded, lowest_modes, slab};
 use crate::path::largest_angle;
-use crate::saddle::orthonormal;
+use crate::saddle::{Spectrum, State, descend, polish};
 use crate::sphere::{move_points, rotation_of};
 use crate::spins::Spins;
 
@@ -12,8 +12,11 @@ use crate::spins::Spins;
 const CAP: f64 = 0.5;
 /// Most Newton steps.
 const STEPS: usize = 500;
-/// Rotation with which a stationary state that is no minimum is left (rad).
-const KICK: f64 = 0.1;
+/// How often a stationary state that is no minimum is left.
+const KICKS: usize = 8;
+
+/// An end that turned by more than this left the place where it was put (rad).
+const FAR: f64 = 1.0;
 
 /// A relaxed state.
 #[derive(Clone, Debug)]
@@ -64,6 +67,7 @@ pub fn relax_to_minimum(h: &Hamiltonian, start: &Spins, tolerance_mev: f64) -> R
     let mut p = Point::at(h, start.as_slice().to_vec());
     let mut shift = 0.0;
     let mut left_saddle = false;
+    let mut kicks = 0;
     let mut steps = 0;
     let mut stalled = 0;
     while steps < STEPS {
@@ -72,21 +76,26 @@ pub fn relax_to_minimum(h: &Hamiltonian, start: &Spins, tolerance_mev: f64) -> R
                 "the forces on the state are not finite numbers: are the energies absurdly large?".into(),
             ));
         }
-        let basis = TangentBasis::at(&p.m);
-        let hessian = assemble(h, &p.m, &p.gradient, &basis);
         if p.torque() <= tolerance_mev || stalled >= 2 {
-            let Some(kick) = way_down(h, &p, &hessian, &basis) else { break };
+            let Some(below) = way_down(h, &p).filter(|_| kicks < KICKS) else { break };
             left_saddle = true;
-            p = p.moved(h, &kick);
+            kicks += 1;
+            p = below;
             (shift, stalled, steps) = (0.0, 0, steps + 1);
             continue;
         }
         let before = p.torque();
+        let basis = TangentBasis::at(&p.m);
+        let hessian = assemble(h, &p.m, &p.gradient, &basis);
         let next = newton_step(h, &p, &hessian, &basis, &mut shift);
         let Some(next) = next else { break };
-        stalled = if next.torque() > 0.5 * before && next.torque() < 1e3 * tolerance_mev { stalled + 1 } else { 0 };
+        stalled = if next.torque() > 0.5 * before && next.torque() < 20.0 * tolerance_mev { stalled + 1 } else { 0 };
         p = next;
         steps += 1;
+    }
+    if p.torque() > tolerance_mev && p.torque() < 1e6 * tolerance_mev {
+        // the shift makes steps along a valley that is all but flat short
+        p = Point::at(h, polish(h, State::at(h, p.m)).m);
     }
     Ok(Relaxed {
         max_torque_mev: p.torque(),
@@ -127,21 +136,47 @@ fn newton_step(h: &Hamiltonian, p: &Point, hessian: &Banded, basis: &TangentBasi
     None
 }
 
-/// From a stationary state: the move along its lowest mode if that is plainly negative, else nothing.
-fn way_down(h: &Hamiltonian, p: &Point, hessian: &Banded, basis: &TangentBasis) -> Option<Vec<f64>> {
-    let mut lifted = hessian.clone();
-    lifted.shift(1e-7 * h.stiffness_mev());
-    if lifted.factor().negatives() == 0 {
+/// From a stationary state with a negative direction: the minimum below it; nothing if it is a minimum itself.
+fn way_down(h: &Hamiltonian, p: &Point) -> Option<Point> {
+    let state = State::at(h, p.m.clone());
+    if Spectrum::count(h, &state).0 == 0 {
         return None;
     }
-    let known = orthonormal(h.symmetry_axes_at(&p.m).iter().map(|axis| basis.rotation(*axis)).collect(), 1e-6);
-    let mode = lowest_modes(hessian, 1, &known).into_iter().next()?;
-    if mode.value > -1e-7 * h.stiffness_mev() {
-        return None;
+    let mode = lowest_modes(&state.hessian, 1, &state.zeros).into_iter().next()?;
+    let descent = descend(h, &state, &state.field(&mode.vector), h.stiffness_mev());
+    Some(Point::at(h, descent.m))
+}
+
+/// An end that stays as given.
+pub fn kept(h: &Hamiltonian, spins: &Spins) -> Relaxed {
+    let m = spins.as_slice();
+    let (mut g, mut f) = (vec![0.0; m.len()], vec![0.0; m.len()]);
+    h.energy_gradient(m, &mut g);
+    h.force(m, &g, &mut f);
+    let max_torque_mev = slab::max_abs(&f);
+    Relaxed {
+        spins: spins.clone(),
+        max_torque_mev,
+        steps: 0,
+        largest_rotation_rad: 0.0,
+        left_saddle: false,
+        converged: true,
     }
-    let mut v = vec![0.0; p.m.len()];
-    basis.field(&mode.vector, &mut v);
-    let size = rotation_of(&v);
-    slab::scale(&mut v, KICK / size);
-    Some(v)
+}
+
+/// What a user should know of how an end relaxed.
+pub fn judge_end(r: &Relaxed, which: &str) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let degrees = r.largest_rotation_rad.to_degrees();
+    if r.left_saddle {
+        warnings.push(format!("the {which} state was stationary but no minimum; it was left along its lowest mode"));
+    }
+    if r.largest_rotation_rad > FAR {
+        warnings.push(format!("the {which} state relaxed far from where it was put: a spin turned by {degrees:.0} degrees, so it may be another state than meant"));
+    }
+    if !r.converged {
+        warnings
+            .push(format!("the {which} state did not relax fully: a torque of {:.1e} meV remains", r.max_torque_mev));
+    }
+    warnings
 }

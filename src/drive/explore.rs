@@ -5,37 +5,68 @@
 
 use super::Problem;
 use crate::geometry::{Direction, Vector, vector};
-use crate::path::guess::{Edge, FirstGuess, Geodesic, GuessContext, GuessSpec, NoiseSpec, Rotation, Sweep, best_turn};
+use crate::path::guess::{Edge, Geodesic, GuessContext, GuessSpec, NoiseSpec, Rotation, Sweep, best_turn};
 use crate::spins::Spins;
 use crate::units::Angle;
 
 /// Noise that frees a swept wall from accidental symmetries (rad).
 const NOISE: f64 = 2e-3;
 
+/// Energies that differ by more than this part of the largest stiffness tell two senses of rotation apart.
+const DIFFERENT: f64 = 1e-6;
+
 /// Turns by less (rad) are no rotation of the whole.
 const TURNS: f64 = 0.3;
 
 /// The geodesic; rigid rotations in both senses, where one brings the states together; a wall that enters from either end
-/// (from the middle of a ring): each with the noise it starts with.
+/// (from the middle of a ring): each with the noise it starts with. Opposite spins turn about the axis whose configuration
+/// halfway is lowest, for each guess its own (with a Dzyaloshinskii–Moriya interaction a wall from the left and one from the
+/// right want opposite senses), and also the other way round where the two senses differ.
 pub fn natural_guesses(
     problem: &Problem,
     a: &Spins,
     b: &Spins,
-    axis: Direction,
+    context: &GuessContext,
 ) -> Vec<(GuessSpec, Option<NoiseSpec>)> {
-    let geodesic = GuessSpec::Geodesic(Geodesic { axis: Some(axis) });
-    let mut guesses = vec![(geodesic, None)];
+    let mut guesses = Vec::new();
+    let geodesic = |axis| GuessSpec::Geodesic(Geodesic { axis: Some(axis) });
+    guesses.extend(both_senses(problem, a, b, context, &geodesic).into_iter().map(|g| (g, None)));
     for axis in rotation_axes(problem, a, b) {
         guesses.push((GuessSpec::Rotation(Rotation { axis: Some(axis) }), None));
     }
     if problem.chain.sites > 1 {
-        let edges = if problem.chain.periodic { vec![Edge::Center, Edge::Left] } else { vec![Edge::Left, Edge::Right] };
+        let edges = if problem.chain.periodic { [Edge::Center, Edge::Left] } else { [Edge::Left, Edge::Right] };
         for from in edges {
-            let sweep = GuessSpec::Sweep(Sweep { from, width: None, axis: Some(axis) });
-            guesses.push((sweep, Some(NoiseSpec { amplitude: Angle(NOISE), seed: 5 })));
+            let sweep = |axis| GuessSpec::Sweep(Sweep { from, width: None, axis: Some(axis) });
+            let noise = NoiseSpec { amplitude: Angle(NOISE), seed: 5 };
+            guesses.extend(both_senses(problem, a, b, context, &sweep).into_iter().map(|g| (g, Some(noise))));
         }
     }
     guesses
+}
+
+/// A guess about its best axis, and about the same axis the other way round if its image halfway has another energy there.
+fn both_senses(
+    problem: &Problem,
+    a: &Spins,
+    b: &Spins,
+    context: &GuessContext,
+    guess: &dyn Fn(Direction) -> GuessSpec,
+) -> Vec<GuessSpec> {
+    let cost = |axis: Direction| halfway_mev(problem, a, b, context, &guess(axis));
+    let axis = best_axis(problem, cost);
+    let other = axis.reversed();
+    let differ = match (cost(axis), cost(other)) {
+        (Some(e), Some(f)) => (e - f).abs() > DIFFERENT * problem.hamiltonian.stiffness_mev(),
+        _ => false,
+    };
+    if differ { vec![guess(axis), guess(other)] } else { vec![guess(axis)] }
+}
+
+/// Energy of a guess's image halfway (meV).
+fn halfway_mev(problem: &Problem, a: &Spins, b: &Spins, context: &GuessContext, guess: &GuessSpec) -> Option<f64> {
+    let path = guess.member().path(a, b, 3, context).ok()?;
+    Some(problem.hamiltonian.energy_mev(path.image(1)))
 }
 
 /// Axes (x, y, z and the symmetry axes, both senses of a half turn) about which a rigid turn brings a to b, all spins to a
@@ -63,19 +94,20 @@ fn rotation_axes(problem: &Problem, a: &Spins, b: &Spins) -> Vec<Direction> {
 
 /// The axis about which opposite spins turn: of ±x, ±y, ±z and the symmetry axes, the one whose wall halfway is lowest.
 pub fn turning_axis(problem: &Problem, a: &Spins, b: &Spins, context: &GuessContext) -> Direction {
+    let wall = |axis| GuessSpec::Sweep(Sweep { from: Edge::Left, width: None, axis: Some(axis) });
+    best_axis(problem, |axis| halfway_mev(problem, a, b, context, &wall(axis)))
+}
+
+/// Of ±x, ±y, ±z and the symmetry axes the one of least cost (meV); of equal ones the first.
+fn best_axis(problem: &Problem, cost: impl Fn(Direction) -> Option<f64>) -> Direction {
     let h = &problem.hamiltonian;
     let cartesian = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let candidates = cartesian.iter().chain(h.symmetry_axes()).flat_map(|v| [*v, v.map(|c| -c)]);
-    let cost = |axis: Vector| -> Option<(f64, Direction)> {
-        let axis = Direction::new(axis).ok()?;
-        let wall = Sweep { from: Edge::Left, width: None, axis: Some(axis) }.path(a, b, 3, context).ok()?;
-        Some((h.energy_mev(wall.image(1)), axis))
-    };
     let mut best: Option<(f64, Direction)> = None;
-    for found in candidates.filter_map(cost) {
-        let better = best.is_none_or(|(e, _)| found.0 < e - 1e-9 * h.stiffness_mev());
-        if better {
-            best = Some(found);
+    for axis in candidates.filter_map(|v: Vector| Direction::new(v).ok()) {
+        let Some(e) = cost(axis) else { continue };
+        if best.is_none_or(|(lowest, _)| e < lowest - 1e-9 * h.stiffness_mev()) {
+            best = Some((e, axis));
         }
     }
     best.map_or(Direction::X, |(_, axis)| axis)

@@ -6,6 +6,7 @@ use crate::energy::Hamiltonian;
 use crate::error::Result;
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, rotate, vector};
+use crate::linalg::{lowest_modes, slab};
 use crate::path::guess::best_turn;
 use crate::path::largest_angle;
 use crate::saddle::{Spectrum, State, descend};
@@ -13,6 +14,8 @@ use crate::spins::Spins;
 
 /// How many eigenvalues of a saddle are reported.
 const REPORTED: usize = 6;
+/// A valley with less than this (of its curvature) left over when the Hessian acts on it is a mode.
+const PURE: f64 = 0.1;
 /// Spins of two states of one minimum differ by less (rad).
 const SAME: f64 = 1e-3;
 
@@ -61,17 +64,30 @@ impl Minimum {
     /// Whether a rotation about the symmetry axes makes `other` of this minimum.
     pub fn is_turned(&self, h: &Hamiltonian, other: &Minimum) -> bool {
         let a = self.spins.as_slice();
-        let axes = h.symmetry_axes_at(a);
-        let mut turned = other.spins.clone();
-        for _ in 0..4 {
-            for axis in &axes {
-                let Ok(axis) = Direction::new(*axis) else { continue };
-                let (angle, _) = best_turn(&turned, &self.spins, axis);
-                turned = rotated(&turned, axis, angle);
-            }
-        }
-        !axes.is_empty() && largest_angle(a, turned.as_slice()) < SAME
+        let turn = turns(h, &other.spins, &self.spins);
+        !turn.is_empty() && largest_angle(a, turned(&other.spins, &turn).as_slice()) < SAME
     }
+}
+
+/// Turns about the symmetry axes, one after the other, that bring a state nearest to another. None without symmetry axes.
+pub fn turns(h: &Hamiltonian, from: &Spins, to: &Spins) -> Vec<(Direction, f64)> {
+    let axes = h.symmetry_axes_at(to.as_slice());
+    let axes: Vec<Direction> = axes.iter().filter_map(|axis| Direction::new(*axis).ok()).collect();
+    let mut now = from.clone();
+    let mut turns = Vec::new();
+    for _ in 0..if axes.len() > 1 { 4 } else { 1 } {
+        for axis in &axes {
+            let (angle, _) = best_turn(&now, to, *axis);
+            now = rotated(&now, *axis, angle);
+            turns.push((*axis, angle));
+        }
+    }
+    turns
+}
+
+/// A state after turns.
+pub fn turned(spins: &Spins, turns: &[(Direction, f64)]) -> Spins {
+    turns.iter().fold(spins.clone(), |s, (axis, angle)| if *angle == 0.0 { s } else { rotated(&s, *axis, *angle) })
 }
 
 fn rotated(spins: &Spins, axis: Direction, angle: f64) -> Spins {
@@ -82,6 +98,25 @@ fn rotated(spins: &Spins, axis: Direction, angle: f64) -> Spins {
         ComponentsMut::new(&mut out).set(i, vector::unit_or(v, v));
     }
     Spins::from_unit_components(&out)
+}
+
+/// The direction (3N) in which a saddle falls: the valley that its search followed, or, where that is a mixture of soft modes,
+/// the lowest mode, if that is plainly negative.
+fn falling(found: &Found) -> Vec<f64> {
+    let (state, valley) = (&found.refined.state, &found.refined.valley);
+    let v = state.basis.coordinates(valley);
+    let mut residual = vec![0.0; v.len()];
+    state.hessian.multiply(&v, &mut residual);
+    let curvature = slab::dot(&v, &residual) / slab::dot(&v, &v);
+    slab::add_scaled(&mut residual, -curvature, &v);
+    if slab::norm(&residual) < PURE * curvature.abs() * slab::norm(&v) {
+        return valley.clone();
+    }
+    let floor = 1e3 * f64::EPSILON * state.hessian.norm1();
+    match lowest_modes(&state.hessian, 1, &state.zeros).into_iter().next() {
+        Some(lowest) if lowest.value < -floor => state.field(&lowest.vector),
+        _ => valley.clone(),
+    }
 }
 
 /// A saddle with the minima on its two sides.
@@ -97,30 +132,34 @@ pub struct Link {
     pub after: Minimum,
     /// How far the energy fell on either side (meV).
     pub fallen_mev: [f64; 2],
+    /// The descents: states on the way down to `before` and to `after`, without the two ends.
+    pub ways: [Vec<Spins>; 2],
 }
 
 impl Link {
     /// Descends from a saddle on both sides.
     pub fn of(h: &Hamiltonian, found: Found, c: f64) -> Result<Link> {
         let state = &found.refined.state;
-        let along = crate::linalg::slab::dot(&found.refined.valley, &found.top.tau);
-        let sign = if along < 0.0 { -1.0 } else { 1.0 };
-        let side = |direction: f64| -> Result<(Minimum, f64)> {
-            let valley: Vec<f64> = found.refined.valley.iter().map(|v| direction * sign * v).collect();
+        let falls = falling(&found);
+        let sign = if slab::dot(&falls, &found.top.tau) < 0.0 { -1.0 } else { 1.0 };
+        let side = |direction: f64| -> Result<(Minimum, f64, Vec<Spins>)> {
+            let valley: Vec<f64> = falls.iter().map(|v| direction * sign * v).collect();
             let d = descend(h, state, &valley, c);
             let relaxed = relax_to_minimum(h, &Spins::from_unit_components(&d.m), 1e-14 * h.stiffness_mev())?;
-            Ok((Minimum::examine(h, &relaxed.spins), d.fallen_mev))
+            let way = d.way.iter().map(|m| Spins::from_unit_components(m)).collect();
+            Ok((Minimum::examine(h, &relaxed.spins), d.fallen_mev, way))
         };
         let (sides, spectrum) =
             rayon::join(|| rayon::join(|| side(-1.0), || side(1.0)), || Spectrum::of(h, state, REPORTED));
-        let ((before, f), (after, g)) = (sides.0?, sides.1?);
-        Ok(Link { spectrum, before, after, fallen_mev: [f, g], found })
+        let ((before, f, back), (after, g, on)) = (sides.0?, sides.1?);
+        Ok(Link { spectrum, before, after, fallen_mev: [f, g], ways: [back, on], found })
     }
 
     /// Exchanges its two sides: which of them the path comes from is not always plain at the saddle itself.
     pub fn reverse(&mut self) {
         std::mem::swap(&mut self.before, &mut self.after);
         self.fallen_mev.reverse();
+        self.ways.reverse();
     }
 
     /// Why this is not a proven saddle of index one between two proven minima; nothing if it is.
@@ -142,9 +181,10 @@ impl Link {
         if s.negative == 0 && s.flat == 0 {
             return Some("the saddle has no negative mode".into());
         }
-        if !self.before.is_proven() || !self.after.is_proven() {
-            return Some("a descent from the saddle ended in a state that is not proven to be a minimum".into());
-        }
-        None
+        let unproven = [&self.before, &self.after].into_iter().find(|m| !m.is_proven())?;
+        Some(format!(
+            "a descent from the saddle ended in a state that is not proven to be a minimum ({} negative modes, a torque of {:.1e} meV)",
+            unproven.spectrum.negative, unproven.max_torque_mev
+        ))
     }
 }

@@ -1,9 +1,11 @@
 //! From two states to a barrier: relax the ends, make a first path, relax the band, read off what it found.
 
+mod candidate;
 mod climb;
 mod connect;
 mod ends;
 mod explore;
+mod join;
 mod minimum;
 mod outcome;
 mod problem;

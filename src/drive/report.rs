@@ -1,13 +1,13 @@
 //! From a finished run to its outcome: tables, barrier, warnings.
 
 use super::Problem;
+use super::candidate::Candidate;
 use super::climb::Found;
 use super::ends::Relaxed;
 use super::minimum::{Link, Minimum};
 use super::outcome::*;
 use super::rates::{self, Known};
 use super::relaxation::{height, prominent_maxima};
-use super::run::Candidate;
 use crate::band::{Band, Extremum};
 use crate::energy::Hamiltonian;
 use crate::linalg::slab;

@@ -1,9 +1,11 @@
 //! A whole run.
 
+use super::candidate::{Candidate, describe, rejection};
 use super::climb::{Found, ZOOMS, conclude, escapes, same, zoomed};
 use super::connect::{Sequence, follow};
-use super::ends::{Relaxed, relax_to_minimum};
+use super::ends::{Relaxed, judge_end, kept, relax_to_minimum};
 use super::explore::{natural_guesses, turning_axis};
+use super::join::{Joined, Tools, joined};
 use super::minimum::{Link, Minimum};
 use super::outcome::*;
 use super::relaxation::{Goal, Relaxation, height, image_levels, needs_laplacian, refined};
@@ -13,7 +15,6 @@ use super::{Images, Observer, Problem, Scales, Silent, Stop};
 use crate::band::{Band, Laplacian, align_rotations};
 use crate::error::Result;
 use crate::geometry::{Direction, Vector};
-use crate::linalg::slab;
 use crate::path::guess::{FirstGuess, GuessContext, GuessSpec, NoiseSpec, Rotation, add_noise, smooth};
 use crate::path::{Path, distance};
 use crate::spins::Spins;
@@ -28,12 +29,20 @@ const COARSEST: f64 = 2.0;
 const MOST_IMAGES: usize = 2001;
 /// Evaluations after which first paths are compared.
 const TRIAL: usize = 8;
+/// Evaluations of a band before its minima are looked at.
+const FIRST: usize = 60;
+/// Further paths that are followed to the end when the best one cannot be proven.
+const SECOND_TRIES: usize = 2;
+/// They are not if their top is higher than the best one's times this.
+const SECOND_BELOW: f64 = 1.2;
+/// Another path is tried beside a proven one if its top is lower by more than this part.
+const BELOW: f64 = 1e-6;
+/// A proven path takes the place of an unproven one unless it is higher by more than this part: images may straddle a top.
+const AS_LOW: f64 = 1e-3;
 /// Rounds of leaving a saddle of higher index.
 const ESCAPES: usize = 3;
 /// Maxima within this part of the path's height of the highest are refined.
 const WINDOW: f64 = 0.1;
-/// An end that turned by more than this left the place where it was put (rad).
-const FAR: f64 = 1.0;
 /// Force at a relaxed end, in parts of the largest stiffness.
 const END_TOLERANCE: f64 = 1e-14;
 
@@ -42,42 +51,27 @@ pub fn run(problem: &Problem, observer: &mut dyn Observer) -> Result<Outcome> {
     Run::prepare(problem, observer)?.finish()
 }
 
-/// A first path on its way.
-pub struct Candidate<'a> {
-    /// What it started from.
-    pub name: String,
-    /// Where it is.
-    pub band: Band<'a>,
-    /// How its last relaxation ended.
-    pub stop: Stop,
-    /// Its iterations.
-    pub history: Vec<HistoryRow>,
-    /// Its refined top.
-    pub found: Option<Found>,
-    /// Saddles of higher index that were left: energy above the first image (meV) and index.
-    escapes: Vec<(f64, usize)>,
+/// A path with what is known of it.
+struct Settled<'a> {
+    candidate: Candidate<'a>,
+    found: Vec<Found>,
+    proof: Proof,
 }
 
-impl Candidate<'_> {
-    /// Highest image above the first (meV).
-    fn top_mev(&self) -> f64 {
-        self.band.energies_mev()[self.band.highest()] - self.band.energies_mev()[0]
+impl Settled<'_> {
+    /// The highest that the path is known to pass above its first image (meV): an image or a saddle.
+    fn seen_mev(&self) -> f64 {
+        let reference = self.candidate.band.energies_mev()[0];
+        let saddles = self.proof.links.iter().map(|l| l.found.refined.state.energy_mev - reference);
+        saddles.fold(self.candidate.top_mev(), f64::max)
     }
+}
 
-    /// The refined saddle above the first image (meV), or the highest image.
-    fn barrier_mev(&self) -> f64 {
-        let refined = self.found.as_ref().map(|f| f.refined.state.energy_mev - self.band.energies_mev()[0]);
-        refined.unwrap_or(self.top_mev())
-    }
-
-    /// 0: a saddle of index one; 1: nothing refined; 2: a saddle of higher index.
-    fn rank(&self) -> u8 {
-        match &self.found {
-            Some(f) if f.refined.index <= 1 => 0,
-            None => 1,
-            Some(_) => 2,
-        }
-    }
+/// What no image of a path over these saddles exceeds (meV above the first image): the highest of them or an end, and rounding.
+fn over(c: &Candidate, links: &[Link]) -> f64 {
+    let e = c.band.energies_mev();
+    let saddles = links.iter().map(|l| l.found.refined.state.energy_mev - e[0]);
+    saddles.fold((e[e.len() - 1] - e[0]).max(0.0), f64::max) + 1e-6 * height(&c.band)
 }
 
 struct Run<'a, 'o> {
@@ -102,7 +96,7 @@ impl<'a, 'o> Run<'a, 'o> {
         let mut warnings = Vec::new();
         let mut end = |spins: &Spins, which: &str| -> Result<Relaxed> {
             if !problem.relax_ends {
-                return Ok(kept(problem, spins));
+                return Ok(kept(h, spins));
             }
             let relaxed = relax_to_minimum(h, spins, END_TOLERANCE * h.stiffness_mev())?;
             warnings.extend(judge_end(&relaxed, which));
@@ -148,29 +142,132 @@ impl<'a, 'o> Run<'a, 'o> {
         if let Some(flat) = self.turned_minimum()? {
             return Ok(flat);
         }
-        let (mut candidate, rejected) = match &self.problem.guess {
+        let mut candidates = match &self.problem.guess {
             Some(guess) => {
                 let mut c = self.start(guess, self.problem.noise.as_ref(), self.problem.smooth, usize::MAX)?;
                 self.conclude(&mut c);
-                (c, Vec::new())
+                vec![c]
             }
-            None => self.best_natural()?,
+            None => self.natural()?,
         };
-        loop {
-            self.resolve(&mut candidate);
-            let images = candidate.band.images();
-            self.relax(&mut candidate, Goal::Tight, usize::MAX);
-            let coarse = self.problem.images == Images::Auto && candidate.band.path().largest_rotation() > RESOLVED;
-            if !coarse || images >= MOST_IMAGES || !candidate.stop.is_converged() {
+        let mut best = self.settle(candidates.remove(0))?;
+        let mut others = Vec::new();
+        let scale = self.scales.stiffness_mev;
+        for _ in 0..SECOND_TRIES.min(candidates.len()) {
+            if !self.problem.certify || !self.problem.seeks_saddles() {
                 break;
             }
+            let mut next = candidates.remove(0);
+            // a proven path is the one, unless what is known of another lies below its highest saddle
+            let part = if best.proof.doubts.is_empty() { 1.0 - BELOW } else { SECOND_BELOW };
+            if next.barrier_mev(scale) > part * best.seen_mev() {
+                others.push(next);
+                continue;
+            }
+            if next.found.is_none() {
+                self.conclude(&mut next);
+            }
+            let next = self.settle(next)?;
+            // the images of an unproven path are an upper bound all the same
+            let allowed = if best.proof.doubts.is_empty() { 0.0 } else { AS_LOW * best.seen_mev().abs() };
+            let better = next.proof.doubts.is_empty() && next.seen_mev() < best.seen_mev() + allowed;
+            let mut left = if better { std::mem::replace(&mut best, next) } else { next };
+            left.candidate.followed_mev = Some(left.seen_mev());
+            others.push(left.candidate);
         }
-        let found = self.all_saddles(&candidate);
-        if self.problem.neb.climb && seat(&mut candidate.band, &found) {
-            self.relax(&mut candidate, Goal::Tight, usize::MAX);
+        others.append(&mut candidates);
+        let rejected = others.iter().map(|c| rejection(c, &best.candidate, scale)).collect();
+        Ok(report::outcome(self.summary(), best.candidate, &best.found, best.proof, rejected))
+    }
+
+    /// A path in full: as many images as it needs, its saddles, and what could be proven of them.
+    fn settle(&mut self, mut c: Candidate<'a>) -> Result<Settled<'a>> {
+        self.relax_resolved(&mut c, FIRST);
+        let found = self.all_saddles(&c);
+        if self.problem.certify && self.problem.seeks_saddles() {
+            let proof = self.prove(&c, &found)?;
+            if self.needs_joining(&c, &proof) && self.join(&mut c, &proof) {
+                return Ok(Settled { candidate: c, found, proof });
+            }
+            if c.stop.is_converged() && !self.is_coarse(&c) {
+                return self.seated(c, found, Some(proof));
+            }
         }
-        let proof = self.prove(&candidate, &found)?;
-        Ok(report::outcome(self.summary(), candidate, &found, proof, rejected))
+        self.relax_resolved(&mut c, usize::MAX);
+        let found = self.all_saddles(&c);
+        self.seated(c, found, None)
+    }
+
+    /// Relaxes tightly with as many images as it takes, each time with at most `more` evaluations.
+    fn relax_resolved(&mut self, c: &mut Candidate<'a>, more: usize) {
+        loop {
+            let before = c.band.images();
+            self.resolve(c, more);
+            let images = c.band.images();
+            self.relax(c, Goal::Tight, c.band.evaluations().saturating_add(more));
+            let finer = self.is_coarse(c) && images > before && images < MOST_IMAGES;
+            if !finer || !c.stop.is_converged() || more < usize::MAX {
+                return;
+            }
+        }
+    }
+
+    /// With its saddles as images, and proven.
+    fn seated(&mut self, mut c: Candidate<'a>, found: Vec<Found>, proof: Option<Proof>) -> Result<Settled<'a>> {
+        if self.problem.neb.climb && seat(&mut c.band, &found) {
+            self.relax(&mut c, Goal::Tight, usize::MAX);
+        }
+        let proof = match proof {
+            Some(proof) => proof,
+            None => self.prove(&c, &found)?,
+        };
+        Ok(Settled { candidate: c, found, proof })
+    }
+
+    /// Whether an automatic path needs more images.
+    fn is_coarse(&self, c: &Candidate<'a>) -> bool {
+        self.problem.images == Images::Auto && c.band.path().largest_rotation() > RESOLVED
+    }
+
+    /// Whether a path is better put together from its proven stretches: it has minima between its ends, or the band is not
+    /// where the saddles are.
+    fn needs_joining(&self, c: &Candidate<'a>, proof: &Proof) -> bool {
+        self.is_coarse(c) || !c.stop.is_converged() || proof.links.len() > 1 || c.top_mev() > over(c, &proof.links)
+    }
+
+    /// The path from stretch to stretch in the place of the band, if all of it is proven; says whether it took the place.
+    fn join(&mut self, c: &mut Candidate<'a>, proof: &Proof) -> bool {
+        let h = &self.problem.hamiltonian;
+        if !proof.doubts.is_empty() || !self.problem.relax_ends {
+            return false;
+        }
+        self.observer.stage("putting the path together");
+        let tools = Tools {
+            settings: &self.problem.neb,
+            scales: self.scales,
+            axes: &self.axes,
+            laplacian: self.laplacian.as_ref(),
+        };
+        let ends = [&self.ends[0].spins, &self.ends[1].spins];
+        let joined = joined(h, &proof.links, ends, self.problem.images, 0.9 * RESOLVED, &tools);
+        let Some(Joined { path, stops }) = joined else { return false };
+        let mut band = Band::continued(h, path, c.band.evaluations());
+        for k in stops {
+            let m = band.path().image(k).to_vec();
+            band.hold(k, &m);
+        }
+        let before = std::mem::replace(&mut c.band, band);
+        let stop = c.stop;
+        self.relax(c, Goal::Tight, c.band.evaluations() + FIRST);
+        let fits = c.top_mev() <= over(c, &proof.links);
+        if fits && !c.stop.is_converged() {
+            self.relax(c, Goal::Tight, usize::MAX);
+        }
+        let good = fits && (c.stop.is_converged() || !stop.is_converged());
+        if !good {
+            (c.band, c.stop) = (before, stop);
+        }
+        good
     }
 
     /// Follows the path from its highest saddle down to both ends, and says what was proven on the way.
@@ -252,21 +349,30 @@ impl<'a, 'o> Run<'a, 'o> {
         }
         let name = "rotation".to_string();
         let stop = Stop::Converged { rotation: 0.0, tolerance: self.problem.neb.tolerance };
-        let c = Candidate { name, band, stop, history: Vec::new(), found: None, escapes: Vec::new() };
+        let c =
+            Candidate { name, band, stop, history: Vec::new(), found: None, escapes: Vec::new(), followed_mev: None };
         let doubt =
             "the two states are one minimum turned about a symmetry axis: between them there is no saddle to prove";
         let proof = Proof { ends, links: Vec::new(), doubts: vec![doubt.into()] };
         Ok(Some(report::outcome(self.summary(), c, &[], proof, Vec::new())))
     }
 
-    /// The lowest of the natural first paths, and what became of the others: a few evaluations each, the best two finished.
-    fn best_natural(&mut self) -> Result<(Candidate<'a>, Vec<RejectedPath>)> {
+    /// The natural first paths, the most promising first: a few evaluations each, the best two followed to their saddles.
+    fn natural(&mut self) -> Result<Vec<Candidate<'a>>> {
         let mut tried = Vec::new();
-        for (guess, noise) in natural_guesses(self.problem, &self.ends[0].spins, &self.ends[1].spins, self.axis) {
-            self.observer.stage(&format!("first path: {}", describe(&guess)));
-            tried.push(self.start(&guess, noise.as_ref(), None, TRIAL)?);
+        let context = self.context();
+        let guesses = natural_guesses(self.problem, &self.ends[0].spins, &self.ends[1].spins, &context);
+        for (guess, noise) in &guesses {
+            let namesakes =
+                guesses.iter().filter(|(other, _)| describe(other, false) == describe(guess, false)).count();
+            let name = describe(guess, namesakes > 1);
+            self.observer.stage(&format!("first path: {name}"));
+            let mut candidate = self.start(guess, noise.as_ref(), None, TRIAL)?;
+            candidate.name = name;
+            tried.push(candidate);
         }
         tried.sort_by(|p, q| p.top_mev().total_cmp(&q.top_mev()));
+        let scale = self.scales.stiffness_mev;
         let mut finished = 0;
         for c in &mut tried {
             let lowest = c.top_mev();
@@ -274,14 +380,13 @@ impl<'a, 'o> Run<'a, 'o> {
             if worth && !(finished == 1 && lowest > 1.2 * self.lowest_top) {
                 self.conclude(c);
                 finished += 1;
-                self.lowest_top = self.lowest_top.min(c.barrier_mev());
+                self.lowest_top = self.lowest_top.min(c.barrier_mev(scale));
             }
         }
-        tried.sort_by(|p, q| p.rank().cmp(&q.rank()).then(p.barrier_mev().total_cmp(&q.barrier_mev())));
-        let mut rest = tried.into_iter();
-        let Some(best) = rest.next() else { unreachable!("the geodesic is always among the guesses") };
-        let rejected = rest.map(|c| rejection(&c, &best)).collect();
-        Ok((best, rejected))
+        tried.sort_by(|p, q| {
+            p.rank(scale).cmp(&q.rank(scale)).then(p.barrier_mev(scale).total_cmp(&q.barrier_mev(scale)))
+        });
+        Ok(tried)
     }
 
     /// Relaxes a path until its top is a refined saddle of index one, leaving saddles of higher index sideways.
@@ -374,24 +479,31 @@ impl<'a, 'o> Run<'a, 'o> {
         };
         let band = Band::new(&self.problem.hamiltonian, make(coarsest)?);
         let mut c = Candidate {
-            name: describe(guess),
+            name: describe(guess, false),
             band,
             stop: Stop::NotFinite,
             history: Vec::new(),
             found: None,
             escapes: Vec::new(),
+            followed_mev: None,
         };
         self.relax(&mut c, Goal::Loose, limit);
         Ok(c)
     }
 
     /// More images, each time relaxed loosely: to the number asked for, or until neighbours are within 1 rad a spin.
-    fn resolve(&mut self, c: &mut Candidate<'a>) {
+    fn resolve(&mut self, c: &mut Candidate<'a>, more: usize) {
         if !c.stop.is_converged() {
             self.relax(c, Goal::Loose, c.band.evaluations() + 24);
         }
+        let mut apart = f64::INFINITY;
         loop {
             let now = c.band.images();
+            // steps over minima stay as long as they are, however many images there are
+            let before = std::mem::replace(&mut apart, c.band.path().largest_rotation());
+            if (more < usize::MAX || now > 257) && self.problem.images == Images::Auto && apart > 0.8 * before {
+                return;
+            }
             let next = match self.problem.images {
                 Images::Count(n) if now < n => image_levels(n, |_| true).into_iter().find(|l| *l > now).unwrap_or(n),
                 Images::Auto if c.band.path().largest_rotation() > RESOLVED && now < MOST_IMAGES => 2 * now - 1,
@@ -429,61 +541,4 @@ fn seat(band: &mut Band, found: &[Found]) -> bool {
         }
     }
     seated
-}
-
-/// Why a path was not the one.
-fn rejection(c: &Candidate, best: &Candidate) -> RejectedPath {
-    let (barrier_mev, negative_modes) = (Some(c.barrier_mev()), c.found.as_ref().map(|f| f.refined.index));
-    let reason = match &c.found {
-        Some(f) if f.refined.index > 1 => "its top is a saddle of higher index".to_string(),
-        Some(_) => format!("its saddle is not below that of \"{}\"", best.name),
-        None => format!(
-            "its highest image lies above the path \"{}\" after {} evaluations",
-            best.name,
-            c.band.evaluations()
-        ),
-    };
-    RejectedPath { guess: c.name.clone(), barrier_mev, negative_modes, reason }
-}
-
-/// The config fragment of a guess, for people.
-fn describe(guess: &GuessSpec) -> String {
-    match guess {
-        GuessSpec::Sweep(s) => format!("sweep from {}", s.from),
-        other => other.name().to_string(),
-    }
-}
-
-/// An end that stays as given.
-fn kept(problem: &Problem, spins: &Spins) -> Relaxed {
-    let h = &problem.hamiltonian;
-    let m = spins.as_slice();
-    let (mut g, mut f) = (vec![0.0; m.len()], vec![0.0; m.len()]);
-    h.energy_gradient(m, &mut g);
-    h.force(m, &g, &mut f);
-    let max_torque_mev = slab::max_abs(&f);
-    Relaxed {
-        spins: spins.clone(),
-        max_torque_mev,
-        steps: 0,
-        largest_rotation_rad: 0.0,
-        left_saddle: false,
-        converged: true,
-    }
-}
-
-fn judge_end(r: &Relaxed, which: &str) -> Vec<String> {
-    let mut warnings = Vec::new();
-    let degrees = r.largest_rotation_rad.to_degrees();
-    if r.left_saddle {
-        warnings.push(format!("the {which} state was stationary but no minimum; it was left along its lowest mode"));
-    }
-    if r.largest_rotation_rad > FAR {
-        warnings.push(format!("the {which} state relaxed far from where it was put: a spin turned by {degrees:.0} degrees, so it may be another state than meant"));
-    }
-    if !r.converged {
-        warnings
-            .push(format!("the {which} state did not relax fully: a torque of {:.1e} meV remains", r.max_torque_mev));
-    }
-    warnings
 }

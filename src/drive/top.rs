@@ -104,7 +104,7 @@ fn through(band: &Band, k: usize) -> Vec<f64> {
 }
 
 /// ± the unit initial velocity of the geodesic from m to `to`.
-fn direction(m: &[f64], to: &[f64], sign: f64) -> Vec<f64> {
+pub(super) fn direction(m: &[f64], to: &[f64], sign: f64) -> Vec<f64> {
     let (a, b) = (Components::new(m), Components::new(to));
     let mut t = vec![0.0; m.len()];
     for i in 0..a.sites() {

@@ -5,6 +5,7 @@ use crate::error::{Error, Result};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize};
 use std::borrow::Cow;
+use std::fmt;
 
 /// A unit vector. Any vector of non-zero length serves to make one; it is normalised.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -49,6 +50,22 @@ impl JsonSchema for Direction {
             "minItems": 3,
             "maxItems": 3,
         })
+    }
+}
+
+impl fmt::Display for Direction {
+    /// "+x", "−z", or the three numbers.
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        for (axis, name) in [(Direction::X, "x"), (Direction::Y, "y"), (Direction::Z, "z")] {
+            if *self == axis {
+                return write!(f, "+{name}");
+            }
+            if *self == axis.reversed() {
+                return write!(f, "−{name}");
+            }
+        }
+        let [x, y, z] = self.0;
+        write!(f, "[{x:.3}, {y:.3}, {z:.3}]")
     }
 }
 

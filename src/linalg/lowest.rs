@@ -27,6 +27,12 @@ pub struct Mode {
 /// found, until the wanted vectors are eigenvectors (Golub, Underwood, Mathematical Software III, 361 (1977),
 /// doi:10.1016/B978-0-12-587260-7.50018-2).
 pub fn lowest_modes(matrix: &Banded, count: usize, known: &[Vec<f64>]) -> Vec<Mode> {
+    soft_modes(matrix, count, known, f64::INFINITY)
+}
+
+/// The modes among the `count` lowest that are below a limit, but one at least; as [`lowest_modes`], without the time that the
+/// modes above the limit take, which on long chains are close together.
+pub fn soft_modes(matrix: &Banded, count: usize, known: &[Vec<f64>], below: f64) -> Vec<Mode> {
     let n = matrix.order();
     let room = n.saturating_sub(known.len());
     let count = count.min(room);
@@ -41,7 +47,8 @@ pub fn lowest_modes(matrix: &Banded, count: usize, known: &[Vec<f64>]) -> Vec<Mo
     for step in 1..=STEPS {
         let grown = krylov.grow(room);
         let enough = krylov.basis.len() >= count + BLOCK && step % 2 == 0;
-        if let Some(vectors) = krylov.settled(count, !grown || step == STEPS, enough) {
+        let least = 1.0 / (below + shift);
+        if let Some(vectors) = krylov.settled(count, least, !grown || step == STEPS, enough) {
             return rayleigh_ritz(matrix, &vectors);
         }
     }
@@ -119,14 +126,18 @@ impl<'a> Krylov<'a> {
         (0..k * k).map(|e| self.products[(e / k).max(e % k)][(e / k).min(e % k)]).collect()
     }
 
-    /// The `count` vectors to which the inverse is largest, orthonormal, if `look` and they are eigenvectors, or at `last`.
-    fn settled(&self, count: usize, last: bool, look: bool) -> Option<Vec<Vec<f64>>> {
+    /// The `count` vectors to which the inverse is largest, orthonormal, if `look` and they are eigenvectors, or at `last`; but
+    /// for the first only those to which it is more than `least`.
+    fn settled(&self, count: usize, least: f64, last: bool, look: bool) -> Option<Vec<Vec<f64>>> {
         if !look && !last {
             return None;
         }
         let (values, weights) = eigen_symmetric(&self.projected(), self.basis.len());
         let mut vectors = Vec::with_capacity(count);
         for (theta, w) in values.iter().zip(&weights).rev().take(count) {
+            if !vectors.is_empty() && *theta < least {
+                break;
+            }
             let v = combination(w, &self.basis);
             if !last {
                 let mut rest = combination(w, &self.images);

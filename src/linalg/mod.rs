@@ -13,5 +13,5 @@ mod twisted;
 pub use banded::Banded;
 pub use general::{General, Lu};
 pub use ldl::Ldl;
-pub use lowest::{Mode, lowest_modes, rayleigh_ritz};
+pub use lowest::{Mode, lowest_modes, rayleigh_ritz, soft_modes};
 pub use small::{eigen_symmetric, eigenvalues_symmetric, solve_dense};

@@ -1,19 +1,31 @@
 //! Down from a saddle to the minimum on one side.
 //!
-//! First along the valley, with everything across it relaxed, until the energy has plainly fallen: near a flat top the gradient
-//! is rounding error and no guide. Then down the gradient by implicit Euler steps, (H + 1/Δt) v = −g, whose Δt grows as long as
-//! H + 1/Δt stays positive definite: the steepest descent with its stiff directions relaxed.
+//! First along the valley, with everything across it relaxed, until the energy has plainly fallen or the Hessian has become
+//! positive: near a flat top the gradient is rounding error and no guide. Then down the gradient by implicit Euler steps,
+//! (H + 1/Δt) v = −g, whose Δt grows as long as H + 1/Δt stays positive definite and the energy falls as foretold: the steepest
+//! descent with its stiff directions relaxed. Where the forces vanish in double precision but a direction is still negative, as
+//! on a long plateau, the descent goes on along that direction, and ends only where the inertia counts none.
 
 use super::pinned::Pinned;
+use super::spectrum::Spectrum;
 use super::state::State;
+use super::trail::Trail;
 use crate::energy::Hamiltonian;
-use crate::linalg::slab;
+use crate::linalg::{lowest_modes, slab};
 use crate::sphere::rotation_of;
 
 /// Largest rotation of a spin in one step (rad).
 const CAP: f64 = 0.3;
-/// Most steps of either part.
+/// A valley that has risen by more than this part of c leads nowhere.
+const RISEN: f64 = 1e-3;
+/// Most steps along a valley at a time.
+const MARCH: usize = 600;
+/// Most Newton steps across a valley after each step along it.
+const CORRECTIONS: usize = 3;
+/// Most steps down the gradient.
 const STEPS: usize = 20_000;
+/// How often a descent goes on from where the forces vanish.
+const ROUNDS: usize = 8;
 
 /// Where a descent ended.
 #[derive(Debug)]
@@ -22,66 +34,119 @@ pub struct Descent {
     pub m: Vec<f64>,
     /// Energy fallen (meV), positive.
     pub fallen_mev: f64,
-    /// It ended at a stationary point.
+    /// It ended at a stationary point without a negative direction.
     pub arrived: bool,
+    /// Points on the way, each with a spin turned by a quarter radian or more since the last (more on long chains, so that they
+    /// fit into memory).
+    pub way: Vec<Vec<f64>>,
 }
 
 /// Descends from a saddle along ± its valley (a unit field of 3N numbers); c is the stiffness scale (meV).
 pub fn descend(h: &Hamiltonian, saddle: &State, valley: &[f64], c: f64) -> Descent {
-    let top = saddle.energy_mev;
-    let noise = 64.0 * f64::EPSILON * (top.abs() + h.stiffness_mev());
-    let state = march(h, saddle, valley, c, noise.max(1e-9 * c));
-    let (state, arrived) = fall(h, state, c);
-    Descent { fallen_mev: h.difference_mev(&saddle.m, &state.m), arrived, m: state.m }
-}
-
-/// Along the valley until the energy is `enough` below the start.
-fn march(h: &Hamiltonian, saddle: &State, valley: &[f64], c: f64, enough: f64) -> State {
-    let kappa = (h.stiffness_mev() / 3.0).max(c);
+    let noise = 64.0 * f64::EPSILON * h.stiffness_mev();
+    let mut trail = Trail::from(&saddle.m);
     let mut state = saddle.clone();
     let mut tau = valley.to_vec();
-    let mut step = 0.02;
-    for _ in 0..STEPS {
-        if h.difference_mev(&saddle.m, &state.m) > enough {
+    let mut enough = noise;
+    let mut arrived = false;
+    for _ in 0..ROUNDS {
+        state = march(h, state, &mut tau, c, enough, &mut trail);
+        (state, arrived) = fall(h, state, c, &mut trail);
+        if Spectrum::count(h, &state).0 == 0 {
             break;
         }
-        let t = state.basis.coordinates(&tau);
-        let p = Pinned::new(&state, &t, 1e-6 * c, &[], kappa);
-        let minus: Vec<f64> = state.slope.iter().map(|g| -g).collect();
-        let (d, _) = p.solve(&minus, 0.0);
-        let (w, _) = p.solve(&vec![0.0; d.len()], 1.0);
-        let (mut across, mut along) = (state.field(&d), state.field(&w));
-        if p.complement_negatives > 0 || slab::dot(&w, &p.soft).abs() < 0.05 * slab::norm(&w) {
-            // the valley is lost: straight on, the descent will find the way
-            along = state.field(&p.soft);
-            across.fill(0.0);
+        arrived = false;
+        crate::field::project(&state.m, &mut tau);
+        let Some(mode) = lowest_modes(&state.hessian, 1, &state.zeros).into_iter().next() else { break };
+        let mut on = state.field(&mode.vector);
+        if slab::dot(&on, &tau) < 0.0 {
+            slab::scale(&mut on, -1.0);
         }
-        let size = rotation_of(&along);
-        slab::scale(&mut along, step / size);
-        let correction = rotation_of(&across);
-        slab::add_scaled(&mut along, if correction > CAP { CAP / correction } else { 1.0 }, &across);
-        let m = state.moved(&along);
-        tau = along;
-        crate::field::project(&m, &mut tau);
-        state = State::at(h, m);
+        tau = on;
+        enough *= 100.0;
+    }
+    Descent { fallen_mev: h.difference_mev(&saddle.m, &state.m), arrived, m: state.m, way: trail.into_points() }
+}
+
+/// Along the valley until the energy is `enough` below the start, or the Hessian positive; or the energy plainly above, which
+/// then is no saddle along this valley.
+fn march(h: &Hamiltonian, start: State, tau: &mut Vec<f64>, c: f64, enough: f64, trail: &mut Trail) -> State {
+    let floor = 8.0 * f64::EPSILON * start.hessian.norm1();
+    let top = start.m.clone();
+    let mut state = start;
+    let mut step = 0.02;
+    for _ in 0..MARCH {
+        let mut along = tau.clone();
+        slab::scale(&mut along, step / rotation_of(tau));
+        state = State::at(h, state.moved(&along));
+        crate::field::project(&state.m, tau);
+        let mut curvature = f64::NEG_INFINITY;
+        for _ in 0..CORRECTIONS {
+            let Some(correction) = correct(h, &mut state, tau, c) else { break };
+            curvature = correction.curvature;
+            if correction.rotation < 1e-3 * step {
+                break;
+            }
+        }
+        trail.pass(&state.m);
+        let fallen = h.difference_mev(&top, &state.m);
+        if fallen > enough || fallen < -RISEN * c || (curvature > floor && fallen >= 0.0) {
+            break;
+        }
         step = (1.3f64 * step).min(CAP);
     }
     state
 }
 
-/// Implicit Euler down the gradient, to a stationary point.
-fn fall(h: &Hamiltonian, mut state: State, c: f64) -> (State, bool) {
+/// A Newton step across a valley.
+struct Correction {
+    /// Its size (rad, any spin).
+    rotation: f64,
+    /// Curvature along the valley before it (meV).
+    curvature: f64,
+}
+
+/// One Newton step across the valley, which bends away from any straight step along it, and the valley's direction there. None
+/// where the valley is lost: straight on, the descent will find the way.
+fn correct(h: &Hamiltonian, state: &mut State, tau: &mut Vec<f64>, c: f64) -> Option<Correction> {
+    let kappa = (h.stiffness_mev() / 3.0).max(c);
+    let shift = 1e-6 * c;
+    let p = Pinned::new(state, &state.basis.coordinates(tau), shift, &[], kappa);
+    let minus: Vec<f64> = state.slope.iter().map(|g| -g).collect();
+    let (d, _) = p.solve(&minus, 0.0);
+    let (w, pull) = p.solve(&vec![0.0; d.len()], 1.0);
+    if p.complement_negatives > 0 || slab::dot(&w, &p.soft).abs() < 0.05 * slab::norm(&w) {
+        return None;
+    }
+    let curvature = -pull / slab::dot(&w, &w) - shift;
+    let mut across = state.field(&d);
+    let rotation = rotation_of(&across);
+    if rotation > CAP {
+        slab::scale(&mut across, CAP / rotation);
+    }
+    *tau = state.field(&w);
+    *state = State::at(h, state.moved(&across));
+    crate::field::project(&state.m, tau);
+    Some(Correction { rotation, curvature })
+}
+
+/// Implicit Euler down the gradient, to a point where it vanishes.
+fn fall(h: &Hamiltonian, mut state: State, c: f64, trail: &mut Trail) -> (State, bool) {
     let scale = h.stiffness_mev();
-    let tolerance = 1e-13 * scale;
+    let tolerance = 4e-15 * scale;
     let mut rate = c;
     for _ in 0..STEPS {
         if state.max_torque_mev() <= tolerance {
             return (state, true);
         }
         let Some(next) = euler(h, &state, &mut rate, scale) else { return (state, false) };
-        let stuck = state.energy_mev - next.energy_mev <= 4.0 * f64::EPSILON * (state.energy_mev.abs() + scale);
-        let settled = stuck && next.max_torque_mev() < 1e-9 * c && next.max_torque_mev() > 0.5 * state.max_torque_mev();
+        // plain Newton steps that gain nothing: the rest is rounding
+        let settled = rate == 0.0
+            && next.max_torque_mev() < 1e-9 * c
+            && next.max_torque_mev() > 0.5 * state.max_torque_mev()
+            && h.difference_mev(&state.m, &next.m) <= 64.0 * f64::EPSILON * scale;
         state = next;
+        trail.pass(&state.m);
         if settled {
             return (state, true);
         }
@@ -89,12 +154,22 @@ fn fall(h: &Hamiltonian, mut state: State, c: f64) -> (State, bool) {
     (state, false)
 }
 
-/// One step; the rate 1/Δt falls after a success and rises until H + rate is positive definite and the energy does not rise.
+/// −g·v − ½ vᵀHv: how far the energy is to fall (meV); x are the coordinates of v.
+fn predicted(state: &State, x: &[f64]) -> f64 {
+    let mut hx = vec![0.0; x.len()];
+    state.hessian.multiply(x, &mut hx);
+    -slab::dot(&state.slope, x) - 0.5 * slab::dot(x, &hx)
+}
+
+/// One step. The rate 1/Δt rises until H + rate is positive definite and the energy falls as foretold, and falls again after a
+/// step that succeeds at once.
 fn euler(h: &Hamiltonian, state: &State, rate: &mut f64, scale: f64) -> Option<State> {
-    let slack = 1e-13 * (state.energy_mev.abs() + scale);
+    let noise = 256.0 * f64::EPSILON * scale;
+    let smallest = 1e-14 * scale;
+    let mut refused = false;
     while *rate < 1e6 * scale {
         let mut matrix = state.hessian.clone();
-        matrix.shift(*rate + 1e-12 * scale);
+        matrix.shift(*rate + smallest);
         let factors = matrix.factor();
         if factors.negatives() == 0 {
             let mut x: Vec<f64> = state.slope.iter().map(|g| -g).collect();
@@ -103,14 +178,21 @@ fn euler(h: &Hamiltonian, state: &State, rate: &mut f64, scale: f64) -> Option<S
             let rotation = rotation_of(&v);
             if rotation > CAP {
                 slab::scale(&mut v, CAP / rotation);
+                slab::scale(&mut x, CAP / rotation);
             }
             let next = State::at(h, state.moved(&v));
-            if next.energy_mev <= state.energy_mev + slack {
-                *rate = if *rate < 1e-8 * scale { 0.0 } else { *rate / 4.0 };
+            let (told, fallen) = (predicted(state, &x), h.difference_mev(&state.m, &next.m));
+            // a fall that was not foretold leads over a maximum into another valley
+            let foretold = told < 16.0 * noise || (0.25 * told..4.0 * told).contains(&fallen);
+            if foretold && fallen >= -noise {
+                if !refused {
+                    *rate = if *rate < 4.0 * smallest { 0.0 } else { *rate / 4.0 };
+                }
                 return Some(next);
             }
         }
-        *rate = (4.0 * *rate).max(1e-9 * scale);
+        refused = true;
+        *rate = (4.0 * *rate).max(smallest);
     }
     None
 }

@@ -4,14 +4,19 @@
 //! oscillates there; so the soft mode is split off (Lyapunov–Schmidt): Newton across it, a safeguarded search along it.
 
 mod descent;
+mod modes;
 mod pinned;
+mod polish;
 mod spectrum;
 mod state;
+mod trail;
 mod valley;
 
 pub use descent::{Descent, descend};
+pub use modes::follow_modes;
 pub use pinned::Pinned;
 pub(crate) use pinned::pin;
+pub use polish::polish;
 pub use spectrum::Spectrum;
 pub use state::{State, orthonormal};
 pub use valley::{Refined, Verdict, refine};

@@ -30,6 +30,17 @@ impl Spectrum {
     pub fn of(h: &Hamiltonian, state: &State, count: usize) -> Spectrum {
         let norm_mev = state.hessian.norm1();
         let floor_mev = 8.0 * f64::EPSILON * norm_mev;
+        let (negative, flat) = Spectrum::count(h, state);
+        let frozen = (0..h.sites()).filter(|&i| h.is_frozen(i)).count();
+        let free = state.hessian.order() - 2 * frozen - state.zeros.len().min(state.hessian.order() - 2 * frozen);
+        let modes = lowest_modes(&state.hessian, count.min(free), &state.zeros);
+        let lowest_mev = modes.into_iter().map(|m| m.value).collect();
+        Spectrum { negative, flat, zero: state.zeros.len(), floor_mev, norm_mev, lowest_mev }
+    }
+
+    /// Negative and flat directions of a state, zero modes apart.
+    pub fn count(h: &Hamiltonian, state: &State) -> (usize, usize) {
+        let floor_mev = 8.0 * f64::EPSILON * state.hessian.norm1();
         let below = |shift: f64| {
             let mut matrix = state.hessian.clone();
             let mut used = Vec::new();
@@ -40,12 +51,7 @@ impl Spectrum {
             matrix.factor().negatives()
         };
         let negative = below(floor_mev);
-        let flat = below(-floor_mev).saturating_sub(negative);
-        let frozen = (0..h.sites()).filter(|&i| h.is_frozen(i)).count();
-        let free = state.hessian.order() - 2 * frozen - state.zeros.len().min(state.hessian.order() - 2 * frozen);
-        let modes = lowest_modes(&state.hessian, count.min(free), &state.zeros);
-        let lowest_mev = modes.into_iter().map(|m| m.value).collect();
-        Spectrum { negative, flat, zero: state.zeros.len(), floor_mev, norm_mev, lowest_mev }
+        (negative, below(-floor_mev).saturating_sub(negative))
     }
 
     /// Zero modes and flat ones together, as results report them.

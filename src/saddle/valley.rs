@@ -10,6 +10,7 @@
 //! that stays so is kicked along the lowest of them, at most twice.
 
 use super::pinned::Pinned;
+use super::polish::polish;
 use super::state::{State, orthonormal, remove};
 use crate::energy::Hamiltonian;
 use crate::linalg::{Mode, lowest_modes, slab};
@@ -366,6 +367,10 @@ impl Search<'_> {
     }
 
     fn report(mut self, verdict: Verdict, steps: usize) -> Refined {
+        if verdict != Verdict::Left {
+            self.state = polish(self.h, self.state);
+            self.tau = unit_tangent(&self.state.m, &self.tau);
+        }
         let t = self.state.basis.coordinates(&self.tau);
         let frozen: Vec<Vec<f64>> = self.frozen.iter().map(|f| self.state.basis.coordinates(f)).collect();
         let p = Pinned::new(&self.state, &t, 0.0, &frozen, self.kappa);

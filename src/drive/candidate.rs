@@ -1,0 +1,86 @@
+//! A first path on its way to become the one, or to be rejected.
+
+use super::Stop;
+use super::climb::Found;
+use super::outcome::{HistoryRow, RejectedPath};
+use crate::band::Band;
+use crate::geometry::Direction;
+use crate::path::guess::GuessSpec;
+
+/// A first path on its way.
+pub struct Candidate<'a> {
+    /// What it started from.
+    pub name: String,
+    /// Where it is.
+    pub band: Band<'a>,
+    /// How its last relaxation ended.
+    pub stop: Stop,
+    /// Its iterations.
+    pub history: Vec<HistoryRow>,
+    /// Its refined top.
+    pub found: Option<Found>,
+    /// Saddles of higher index that were left: energy above the first image (meV) and index.
+    pub escapes: Vec<(f64, usize)>,
+    /// The highest that it passes (meV above the first image), if it was followed from end to end.
+    pub followed_mev: Option<f64>,
+}
+
+impl Candidate<'_> {
+    /// Highest image above the first (meV).
+    pub fn top_mev(&self) -> f64 {
+        self.band.energies_mev()[self.band.highest()] - self.band.energies_mev()[0]
+    }
+
+    /// Its refined top, if that is stationary.
+    fn stationary(&self, c: f64) -> Option<&Found> {
+        self.found.as_ref().filter(|f| f.is_stationary(c))
+    }
+
+    /// The refined saddle above the first image (meV), or the highest image.
+    pub fn barrier_mev(&self, c: f64) -> f64 {
+        let refined = self.stationary(c).map(|f| f.refined.state.energy_mev - self.band.energies_mev()[0]);
+        refined.unwrap_or(self.top_mev())
+    }
+
+    /// 0: a saddle of index one; 1: nothing refined; 2: a saddle of higher index.
+    pub fn rank(&self, c: f64) -> u8 {
+        match self.stationary(c) {
+            Some(f) if f.refined.index <= 1 => 0,
+            None => 1,
+            Some(_) => 2,
+        }
+    }
+}
+
+/// Why a path was not the one.
+pub fn rejection(c: &Candidate, best: &Candidate, scale: f64) -> RejectedPath {
+    let found = c.stationary(scale);
+    let barrier_mev = Some(c.followed_mev.unwrap_or(c.barrier_mev(scale)));
+    let negative_modes = found.map(|f| f.refined.index);
+    let reason = match found {
+        Some(f) if f.refined.index > 1 => "its top is a saddle of higher index".to_string(),
+        Some(_) if c.followed_mev.is_some() => {
+            format!("followed from end to end, it passes no lower than \"{}\"", best.name)
+        }
+        Some(_) => format!("its saddle is not below that of \"{}\"", best.name),
+        None => format!(
+            "its highest image lies above the path \"{}\" after {} evaluations",
+            best.name,
+            c.band.evaluations()
+        ),
+    };
+    RejectedPath { guess: c.name.clone(), barrier_mev, negative_modes, reason }
+}
+
+/// The config fragment of a guess, for people; with its axis, if `axis` is asked for.
+pub fn describe(guess: &GuessSpec, axis: bool) -> String {
+    let about = |name: String, direction: &Option<Direction>| match direction {
+        Some(direction) if axis => format!("{name} about {direction}"),
+        _ => name,
+    };
+    match guess {
+        GuessSpec::Sweep(s) => about(format!("sweep from {}", s.from), &s.axis),
+        GuessSpec::Geodesic(g) => about(guess.name().to_string(), &g.axis),
+        other => other.name().to_string(),
+    }
+}

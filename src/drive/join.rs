@@ -1,0 +1,161 @@
+//! One path through every proven saddle and every minimum between them: a stretch from each saddle down to each of its minima,
+//! relaxed on its own, all stretches at once, and put together again.
+//!
+//! A band over many minima relaxes slowly, because its images have to share themselves among them. A stretch between a saddle
+//! and a minimum has neither on the way: it starts as the descent itself and is monotone.
+
+use super::minimum::{Link, turned, turns};
+use super::relaxation::{Goal, Relaxation};
+use super::{Images, NebSettings, Scales, Silent};
+use crate::band::{Band, Laplacian};
+use crate::energy::Hamiltonian;
+use crate::geometry::Vector;
+use crate::optimise::Follows;
+use crate::path::{Path, largest_angle};
+use crate::spins::Spins;
+use rayon::prelude::*;
+
+/// Two states of one minimum differ by less (rad, any spin).
+const SAME: f64 = 1e-3;
+/// Rounds of making a stretch's images fewer radians apart.
+const ROUNDS: usize = 12;
+
+/// A path, and which of its images are stationary and stay where they are.
+pub struct Joined {
+    /// All images, both ends counted.
+    pub path: Path,
+    /// Saddles and minima between the ends, ascending.
+    pub stops: Vec<usize>,
+}
+
+/// What the stretches are relaxed with.
+pub struct Tools<'a> {
+    pub settings: &'a NebSettings,
+    pub scales: Scales,
+    pub axes: &'a [Vector],
+    pub laplacian: Option<&'a Laplacian>,
+}
+
+/// The path from `a` to `b` over the links. None where they do not meet state for state (minima that are flat), or where there
+/// are fewer images than stretches.
+pub fn joined(
+    h: &Hamiltonian,
+    links: &[Link],
+    [a, b]: [&Spins; 2],
+    images: Images,
+    apart: f64,
+    tools: &Tools,
+) -> Option<Joined> {
+    let raw = stretches(h, links, a, b)?;
+    let counts = counts(&raw, images, apart)?;
+    let pieces: Vec<Path> =
+        raw.par_iter().zip(&counts).map(|(piece, &n)| relaxed(h, piece.resampled(n), tools)).collect();
+    let mut row: Vec<Spins> = vec![a.clone()];
+    let mut stops = Vec::new();
+    for piece in &pieces {
+        row.extend((1..piece.images()).map(|k| piece.spins(k)));
+        stops.push(row.len() - 1);
+    }
+    stops.pop();
+    Some(Joined { path: Path::new(&row), stops })
+}
+
+/// The descents from the saddles, end to end from `a` to `b`: minimum to saddle, saddle to minimum, …
+fn stretches(h: &Hamiltonian, links: &[Link], a: &Spins, b: &Spins) -> Option<Vec<Path>> {
+    let mut pieces = Vec::new();
+    let mut here = a.clone();
+    for (k, link) in links.iter().enumerate() {
+        let turn = turns(h, &link.before.spins, &here);
+        let turned = |s: &Spins| turned(s, &turn);
+        if largest_angle(turned(&link.before.spins).as_slice(), here.as_slice()) > SAME {
+            return None;
+        }
+        let saddle = turned(&Spins::from_unit_components(&link.found.refined.state.m));
+        let mut up = vec![here.clone()];
+        up.extend(link.ways[0].iter().rev().map(turned));
+        up.push(saddle.clone());
+        let mut there = turned(&link.after.spins);
+        if k + 1 == links.len() {
+            if largest_angle(there.as_slice(), b.as_slice()) > SAME {
+                return None;
+            }
+            there = b.clone();
+        }
+        let mut down = vec![saddle];
+        down.extend(link.ways[1].iter().map(turned));
+        down.push(there.clone());
+        pieces.extend([Path::new(&up), Path::new(&down)]);
+        here = there;
+    }
+    (!pieces.is_empty()).then_some(pieces)
+}
+
+/// Images of each stretch, both ends counted: so many that neighbours are at most `apart` (rad, any spin), or so many that all
+/// together have the number asked for.
+fn counts(pieces: &[Path], images: Images, apart: f64) -> Option<Vec<usize>> {
+    let enough = |piece: &Path| {
+        let mut n = 3;
+        for _ in 0..ROUNDS {
+            let far = piece.resampled(n).largest_rotation();
+            if far <= apart {
+                break;
+            }
+            n = 1 + ((n - 1) as f64 * (far / apart).min(2.0)).ceil() as usize;
+        }
+        n
+    };
+    match images {
+        Images::Auto => Some(pieces.par_iter().map(enough).collect()),
+        Images::Count(n) => shared(&pieces.iter().map(Path::length).collect::<Vec<_>>(), n - 1)
+            .map(|intervals| intervals.into_iter().map(|i| i + 1).collect()),
+    }
+}
+
+/// `total` intervals shared out in proportion to lengths, at least one each.
+fn shared(lengths: &[f64], total: usize) -> Option<Vec<usize>> {
+    let mut counts = vec![1; lengths.len()];
+    for _ in 0..total.checked_sub(lengths.len())? {
+        let longest = |best: usize, k: usize| {
+            if lengths[k] / counts[k] as f64 > lengths[best] / counts[best] as f64 { k } else { best }
+        };
+        let k = (0..lengths.len()).fold(0, longest);
+        counts[k] += 1;
+    }
+    Some(counts)
+}
+
+/// A stretch between its two stationary ends, relaxed.
+fn relaxed(h: &Hamiltonian, path: Path, tools: &Tools) -> Path {
+    if path.images() < 3 {
+        return path;
+    }
+    let limit = match tools.settings.optimiser.member().follows() {
+        Follows::Sweep => 100,
+        _ => 2000,
+    };
+    let mut silent = Silent;
+    let mut relaxation = Relaxation {
+        settings: tools.settings,
+        climb: false,
+        scales: tools.scales,
+        axes: tools.axes,
+        laplacian: tools.laplacian,
+        history: Vec::new(),
+        observer: &mut silent,
+    };
+    let mut band = Band::new(h, path);
+    relaxation.run(&mut band, Goal::Tight, limit.min(tools.settings.max_evaluations));
+    band.into_path()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::shared;
+
+    #[test]
+    fn intervals_are_shared_by_length_and_every_stretch_has_one() {
+        assert_eq!(shared(&[1.0, 3.0, 0.1], 8), Some(vec![2, 5, 1]));
+        assert_eq!(shared(&[1.0, 1.0, 1.0], 3), Some(vec![1, 1, 1]));
+        assert_eq!(shared(&[1.0, 1.0, 1.0], 2), None);
+    }
+}

@@ -1,0 +1,129 @@
+//! Saddles by mode following, for starts from which the valley search does not arrive.
+//!
+//! Where two walls may each stand on any site, the energy is a lattice of shallow minima, saddles and maxima, and the valley
+//! through a start may lead to a maximum. Here every step is taken in the frame of the Hessian's soft modes u_k, ascending:
+//!
+//! ```text
+//! up along the lowest, a₀ = g₀/|λ₀|;  down along the other soft ones, a_k = −g_k/|λ_k|;  Newton across all of them
+//! ```
+//! each a_k within a trust radius, which follows how well ½ vᵀHv + g·v told the energy. What it ends in has index one.
+//! (Cerjan, Miller, J. Chem. Phys. 75, 2800 (1981), doi:10.1063/1.442352; Baker, J. Comput. Chem. 7, 385 (1986).)
+
+use super::pinned::Pinned;
+use super::polish::polish;
+use super::state::State;
+use super::valley::{Refined, Verdict};
+use crate::energy::Hamiltonian;
+use crate::linalg::{Mode, lowest_modes, slab, soft_modes};
+use crate::path::largest_angle;
+use crate::sphere::rotation_of;
+
+/// Most steps, accepted or not.
+const STEPS: usize = 120;
+/// Most modes that are followed one by one.
+const MODES: usize = 5;
+/// A mode below this part of c is soft.
+const SOFT: f64 = 0.1;
+/// Largest rotation of a spin along one mode in one step (rad).
+const RADIUS: f64 = 0.3;
+/// Farthest from the start (rad, any spin).
+const FARTHEST: f64 = 2.0;
+
+/// The saddle of index one that mode following reaches from `m`, if it reaches one nearby; c is the stiffness scale (meV).
+pub fn follow_modes(h: &Hamiltonian, m: &[f64], c: f64) -> Option<Refined> {
+    let kappa = (h.stiffness_mev() / 3.0).max(c);
+    let mut state = State::at(h, m.to_vec());
+    let mut radius = RADIUS / 3.0;
+    let mut steps = 0;
+    let mut factorisations = 0;
+    while state.max_torque_mev() > 1e-11 * c.max(h.stiffness_mev()) {
+        let frame = Frame::at(&state, c, kappa)?;
+        factorisations += 1;
+        loop {
+            steps += 1;
+            if steps > STEPS || radius < 1e-7 {
+                return None;
+            }
+            let (v, longest) = frame.step(&state, radius);
+            let next = State::at(h, state.moved(&v));
+            let told = frame.predicted(&state, &v);
+            let noise = 256.0 * f64::EPSILON * (state.energy_mev.abs() + h.stiffness_mev());
+            let ratio = h.difference_mev(&next.m, &state.m) / told;
+            let known = told.abs() > noise;
+            if known && !(0.25..4.0).contains(&ratio) {
+                radius = 0.3 * longest.min(radius);
+                continue;
+            }
+            if !known || (0.7..1.4).contains(&ratio) {
+                radius = (2.0 * radius).min(RADIUS);
+            }
+            state = next;
+            break;
+        }
+        if largest_angle(m, &state.m) > FARTHEST {
+            return None;
+        }
+    }
+    let state = polish(h, state);
+    let lowest = lowest_modes(&state.hessian, 2, &state.zeros);
+    let valley = lowest.first()?;
+    let below = lowest.get(1).is_none_or(|second| second.value > -1e-13 * h.stiffness_mev());
+    (valley.value < 0.0 && below).then(|| Refined {
+        verdict: Verdict::Saddle,
+        valley: state.field(&valley.vector),
+        steps,
+        factorisations,
+        index: 1,
+        curvature_mev: valley.value,
+        rotation_rad: largest_angle(m, &state.m),
+        state,
+    })
+}
+
+/// The soft modes of a state, and the Newton step across them.
+struct Frame {
+    soft: Vec<Mode>,
+    across: Vec<f64>,
+}
+
+impl Frame {
+    /// None where more directions are negative than are followed.
+    fn at(state: &State, c: f64, kappa: f64) -> Option<Frame> {
+        let mut soft = soft_modes(&state.hessian, MODES, &state.zeros, SOFT * c);
+        let count = soft.iter().take_while(|m| m.value < SOFT * c).count().max(1);
+        soft.truncate(count);
+        let others: Vec<Vec<f64>> = soft.iter().skip(1).map(|m| m.vector.clone()).collect();
+        let p = Pinned::new(state, &soft.first()?.vector, 0.0, &others, kappa);
+        let minus: Vec<f64> = state.slope.iter().map(|g| -g).collect();
+        let (across, _) = p.solve(&minus, 0.0);
+        let positive = slab::dot(&across, &minus) >= 0.0 && soft.last().is_none_or(|m| count < MODES || m.value > 0.0);
+        positive.then_some(Frame { soft, across })
+    }
+
+    /// The step as a vector field, and its longest part along a soft mode (rad, any spin).
+    fn step(&self, state: &State, radius: f64) -> (Vec<f64>, f64) {
+        let mut v = state.field(&self.across);
+        let far = rotation_of(&v);
+        if far > RADIUS {
+            slab::scale(&mut v, RADIUS / far);
+        }
+        let mut longest = 0.0f64;
+        for (k, mode) in self.soft.iter().enumerate() {
+            let u = state.field(&mode.vector);
+            let reach = radius / rotation_of(&u).max(f64::MIN_POSITIVE);
+            let down = -slab::dot(&state.slope, &mode.vector) / mode.value.abs().max(f64::MIN_POSITIVE);
+            let a = if k == 0 { -down } else { down }.clamp(-reach, reach);
+            longest = longest.max(a.abs() * rotation_of(&u));
+            slab::add_scaled(&mut v, a, &u);
+        }
+        (v, longest)
+    }
+
+    /// g·v + ½ vᵀHv (meV).
+    fn predicted(&self, state: &State, v: &[f64]) -> f64 {
+        let x = state.basis.coordinates(v);
+        let mut hx = vec![0.0; x.len()];
+        state.hessian.multiply(&x, &mut hx);
+        slab::dot(&state.slope, &x) + 0.5 * slab::dot(&x, &hx)
+    }
+}

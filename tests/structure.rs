@@ -1,0 +1,92 @@
+//! Paths with many saddles, and paths that are long beside a wall's width.
+
+mod common;
+
+use common::{Build, forward, solve};
+use spinneb::drive::{Outcome, Problem};
+use spinneb::energy::Exchange;
+use spinneb::geometry::Direction;
+use spinneb::lattice::Chain;
+
+/// A run from default settings: certified, resolved, and with its barrier at the highest of its saddles.
+fn certified(what: &str, problem: &Problem) -> Outcome {
+    let outcome = solve(problem);
+    println!(
+        "{what}: {} meV, {} saddles, {} images, {:.2} s",
+        forward(&outcome),
+        outcome.saddles.len(),
+        outcome.path.images(),
+        outcome.work.seconds
+    );
+    assert!(outcome.certified, "{what}: {:?}", outcome.warnings);
+    assert!(outcome.path.largest_rotation() < 1.5, "{what}: {}", outcome.path.largest_rotation());
+    let s = outcome.path.reaction_coordinate();
+    assert!(s.windows(2).all(|w| w[1] > w[0]), "{what}: {s:?}");
+    let heights = heights(&outcome);
+    let highest = heights.iter().copied().fold(f64::MIN, f64::max);
+    assert!((highest - forward(&outcome)).abs() < 1e-12, "{what}: {heights:?}");
+    assert_eq!(outcome.intermediate_minima.len() + 1, heights.len(), "{what}");
+    outcome
+}
+
+fn heights(outcome: &Outcome) -> Vec<f64> {
+    outcome.saddles.iter().map(|s| s.above_initial_mev).collect()
+}
+
+#[test]
+fn a_wall_three_sites_wide_crosses_five_hundred_sites() {
+    let outcome = certified("N = 500", &Build::open(500).easy(0.05).reversal());
+    // the barrier of a chain of any length: a wall, 2√(2JK), less a little for the lattice
+    assert!((forward(&outcome) - 0.629_778_104_052).abs() < 1e-11, "{}", forward(&outcome));
+}
+
+#[test]
+fn a_wall_crosses_weak_and_strong_sites_one_after_the_other() {
+    let chain = || Build::open(150).easy(0.05).defect(30, -0.02).defect(75, 0.04).defect(100, -0.03);
+    let outcome = certified("defects", &chain().reversal());
+    assert_eq!(outcome.saddles.len(), 3);
+    // the strong site is the highest of them; the other two are a free wall
+    let heights = heights(&outcome);
+    assert!(heights[1] > heights[0] + 0.03 && heights[1] > heights[2] + 0.03, "{heights:?}");
+    // from weak site to weak site over the strong one: the same top, less the wall in the weak site
+    let pinned = |site: f64| chain().wall(site, 10f64.sqrt(), Direction::X);
+    let inner = certified("defects, inner", &chain().problem(pinned(30.0), pinned(100.0)));
+    let top = |o: &Outcome, start: f64| start + forward(o);
+    let lowest = inner.initial.energy_mev - outcome.initial.energy_mev;
+    assert!((top(&inner, lowest) - forward(&outcome)).abs() < 1e-9, "{} {}", top(&inner, lowest), forward(&outcome));
+}
+
+#[test]
+fn competing_neighbours_make_a_row_of_saddles() {
+    for sites in [50, 100] {
+        let mut build = Build::on(Chain::open(sites));
+        build.terms[0] = Box::new(Exchange::uniform(&build.chain, &[1.0, -0.2]));
+        let outcome = certified("J2 = −0.2 J", &build.easy(0.05).reversal());
+        let heights = heights(&outcome);
+        // the chain is its own mirror, and so is the row
+        for (a, b) in heights.iter().zip(heights.iter().rev()) {
+            assert!((a - b).abs() < 1e-9, "{heights:?}");
+        }
+        assert!((forward(&outcome) - 0.317_355_717_496).abs() < 1e-11, "{}", forward(&outcome));
+    }
+}
+
+#[test]
+fn narrow_walls_hop_from_end_to_end_at_the_height_of_one_hop() {
+    let outcome = certified("K = J", &Build::open(60).easy(1.0).reversal());
+    let heights = heights(&outcome);
+    // far from the ends a hop starts from 2 J, the energy of a wall between two sites, and costs what the reference says
+    let hop = 0.637_963_409_109_5;
+    assert!((forward(&outcome) - 2.0 - hop).abs() < 1e-11, "{}", forward(&outcome));
+    assert!(heights.iter().all(|h| *h < 2.0 + hop + 1e-11), "{heights:?}");
+    // at the ends the wall enters over less
+    assert!(heights[0] < 2.1 && heights[heights.len() - 1] < 2.1, "{heights:?}");
+}
+
+#[test]
+fn dzyaloshinskii_rings_and_their_mirror_images_have_one_barrier() {
+    for d in [0.1, 0.3] {
+        let [a, b] = [d, -d].map(|d| solve(&Build::ring(30).easy(0.2).dmi(d, Direction::Y).reversal()));
+        assert!((forward(&a) - forward(&b)).abs() < 1e-10, "D = ±{d}: {} {}", forward(&a), forward(&b));
+    }
+}
