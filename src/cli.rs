@@ -4,6 +4,7 @@ pub mod check;
 pub mod list;
 pub mod rate;
 pub mod run;
+pub mod start;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use spinneb::config::rates;
@@ -30,6 +31,7 @@ pub struct Cli {
 
 const EXAMPLES: &str = "\
 Examples:
+  spinneb init                          a config to start from: chain.json
   spinneb check configs/wall.json       what would run, and whether the config is right
   spinneb run configs/wall.json         find the path; results in results/wall/
   spinneb list terms                    what can be written in a config
@@ -53,6 +55,59 @@ pub enum Command {
     List(List),
     /// Rates and lifetimes over the saddles of results that are there already
     Rate(Rate),
+    /// Write a starter config with explanations, and the schema beside it
+    Init(Init),
+    /// Print the JSON Schema of a config, for editors that complete and check it
+    Schema,
+    /// Print the completions of this command line for a shell
+    Completions(Completions),
+    /// Print a man page
+    Man(Man),
+}
+
+/// The arguments of `init`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  spinneb init
+  spinneb init nanowire --out wires/first.json")]
+pub struct Init {
+    /// Which config to start from
+    #[arg(value_enum, default_value = "chain")]
+    pub template: start::Template,
+
+    /// The file to write [default: <template>.json]
+    #[arg(short, long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+
+    /// Replace the file if it exists
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// The arguments of `completions`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  spinneb completions bash > ~/.local/share/bash-completion/completions/spinneb
+  spinneb completions fish > ~/.config/fish/completions/spinneb.fish
+  spinneb completions zsh > ~/.zfunc/_spinneb")]
+pub struct Completions {
+    /// For which shell
+    #[arg(value_enum)]
+    pub shell: clap_complete::Shell,
+}
+
+/// The arguments of `man`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  spinneb man > ~/.local/share/man/man1/spinneb.1
+  spinneb man run | man -l -")]
+pub struct Man {
+    /// The command to tell of; all of them in short if left out
+    #[arg(value_name = "COMMAND")]
+    pub command: Option<String>,
 }
 
 /// The arguments of `run`.
@@ -200,7 +255,7 @@ pub enum What {
     Guesses,
     /// Methods that move a path to its minimum
     Optimisers,
-    /// Files that a run can write
+    /// Files that a run can write, and files that states and paths can be read from
     Formats,
     /// Materials that come with the program
     Materials,
@@ -256,6 +311,11 @@ mod tests {
             "spinneb list",
             "spinneb list terms",
             "spinneb run a.json --resume",
+            "spinneb init",
+            "spinneb init nanowire --out a.json --force",
+            "spinneb schema",
+            "spinneb completions fish",
+            "spinneb man run",
         ] {
             assert!(Cli::try_parse_from(line.split(' ')).is_ok(), "{line}");
         }

@@ -4,14 +4,17 @@ use crate::error::{Error, Result};
 use crate::geometry::Direction;
 use crate::profile::Profile;
 use crate::units::{Length, Magnetisation, Moment};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
+use serde_json::json;
+use std::borrow::Cow;
 
 /// The most sites a chain may have; a longer one is refused before anything is allocated.
 pub const MAX_SITES: usize = 100_000_000;
 
 /// `{"chain": {…}}`.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Lattice {
     /// A row of equally spaced sites.
@@ -19,10 +22,11 @@ pub enum Lattice {
 }
 
 /// A row of equally spaced sites, counted from 0. Bond i joins sites i and i + 1; a ring's last bond joins N − 1 and 0.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Chain {
     /// Number of sites.
+    #[schemars(range(min = 1, max = MAX_SITES))]
     pub sites: usize,
     /// Distance between neighbours.
     #[serde(default)]
@@ -51,7 +55,7 @@ pub struct Chain {
 }
 
 /// Sites with a moment of their own.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[allow(non_snake_case)]
 pub struct SiteMoment {
@@ -100,7 +104,7 @@ impl SiteMoment {
 }
 
 /// Sites with a cross-section of their own.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SiteSection {
     /// Which ones.
@@ -130,7 +134,7 @@ impl SiteSection {
 }
 
 /// Spins that never move.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Frozen {
     /// Which ones.
@@ -338,6 +342,28 @@ fn out_of_range(place: String, found: usize, count: usize, what: &str) -> Error 
         _ => format!("found {what} {found}, but {what}s are counted from 0 to {}", count - 1),
     };
     Error::invalid(place, message)
+}
+
+impl JsonSchema for Selection {
+    fn schema_name() -> Cow<'static, str> {
+        "Selection".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let index = json!({"type": "integer", "minimum": 0});
+        json_schema!({
+            "description": "indices like [3, 4] or a range like {\"from\": 3, \"to\": 9}, both ends included",
+            "oneOf": [
+                {"type": "array", "items": index, "uniqueItems": true},
+                {
+                    "type": "object",
+                    "properties": {"from": index, "to": index},
+                    "required": ["from", "to"],
+                    "additionalProperties": false,
+                },
+            ],
+        })
+    }
 }
 
 impl<'de> Deserialize<'de> for Selection {

@@ -13,6 +13,7 @@
 //! | [`band`], [`saddle`] | the force on a path; saddles to machine precision |
 //! | [`energy`], [`path`], [`optimise`] | energy terms; first paths; methods that move spins |
 //! | [`state`] | spin states |
+//! | [`files`] | files of spins: OVF, npz, npy, csv, VTK |
 //! | [`spins`], [`sphere`] | configurations and the product of spheres they live on |
 //! | [`lattice`], [`profile`], [`geometry`], [`units`], [`field`], [`linalg`], [`registry`], [`words`], [`error`] | the ground |
 
@@ -22,6 +23,7 @@ pub mod drive;
 pub mod energy;
 pub mod error;
 pub mod field;
+pub mod files;
 pub mod geometry;
 pub mod lattice;
 pub mod linalg;

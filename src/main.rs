@@ -12,6 +12,10 @@ fn main() -> ExitCode {
         Command::Check(arguments) => cli::check::check(&arguments),
         Command::List(arguments) => cli::list::list(&arguments),
         Command::Rate(arguments) => cli::rate::rate(&arguments),
+        Command::Init(arguments) => cli::start::init(&arguments),
+        Command::Schema => cli::start::print_schema(),
+        Command::Completions(arguments) => cli::start::completions(&arguments),
+        Command::Man(arguments) => cli::start::man(&arguments),
     };
     ExitCode::from(done.unwrap_or_else(|error| cli::report(&error)))
 }

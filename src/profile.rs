@@ -9,7 +9,9 @@
 //! tanh s = ½ + ½ tanh(6t − 3)/tanh 3, two thirds of whose rise lie within a quarter of the length.
 
 use crate::error::{Error, Result};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{self, Deserialize, Deserializer, IntoDeserializer, MapAccess, SeqAccess, Visitor};
+use std::borrow::Cow;
 use std::fmt;
 use std::marker::PhantomData;
 
@@ -32,7 +34,7 @@ pub enum Profile<T> {
 }
 
 /// How a ramp rises.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum RampShape {
     /// Evenly.
@@ -113,6 +115,29 @@ impl<T: Copy> Profile<T> {
 /// Where number k of `count` is on the way from 0 to 1.
 fn place(k: usize, count: usize) -> f64 {
     if count > 1 { k as f64 / (count - 1) as f64 } else { 0.0 }
+}
+
+impl<T: JsonSchema> JsonSchema for Profile<T> {
+    fn schema_name() -> Cow<'static, str> {
+        format!("Profile_of_{}", T::schema_name()).into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let (one, shape) = (generator.subschema_for::<T>(), generator.subschema_for::<RampShape>());
+        json_schema!({
+            "description": "one value, a list of them, or a ramp",
+            "anyOf": [
+                one,
+                {"type": "array", "items": one},
+                {
+                    "type": "object",
+                    "properties": {"from": one, "to": one, "shape": shape},
+                    "required": ["from", "to"],
+                    "additionalProperties": false,
+                },
+            ],
+        })
+    }
 }
 
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for Profile<T> {

@@ -3,6 +3,9 @@
 //! A member describes itself where it is defined; the config enum, the lists and the contract tests come from the
 //! family's one list of members.
 
+use schemars::{Schema, json_schema};
+use serde_json::json;
+
 /// What a member of a family says of itself.
 pub trait Described {
     /// Its name in configs.
@@ -55,6 +58,33 @@ macro_rules! family {
                 match self { $($family::$variant(m) => m),+ }
             }
         }
+
+        impl schemars::JsonSchema for $family {
+            fn schema_name() -> std::borrow::Cow<'static, str> {
+                stringify!($family).into()
+            }
+
+            fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+                let members = [$(generator.subschema_for::<$spec>()),+];
+                $crate::registry::one_of($family::ENTRIES, &members)
+            }
+        }
     };
 }
 pub(crate) use family;
+
+/// The schema of a family: an object with one of the members' names and what that member is made of.
+pub(crate) fn one_of(entries: &[Entry], members: &[Schema]) -> Schema {
+    let choice = |(entry, member): (&Entry, &Schema)| {
+        let example: Option<serde_json::Value> = serde_json::from_str(entry.example).ok();
+        json!({
+            "type": "object",
+            "description": entry.summary,
+            "properties": { entry.name: member },
+            "required": [entry.name],
+            "additionalProperties": false,
+            "examples": example.into_iter().collect::<Vec<_>>(),
+        })
+    };
+    json_schema!({ "oneOf": entries.iter().zip(members).map(choice).collect::<Vec<_>>() })
+}

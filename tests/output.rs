@@ -6,6 +6,7 @@ use spinneb::drive::{
 };
 use spinneb::error::{Error, Result};
 use spinneb::geometry::Direction;
+use spinneb::lattice::Chain;
 use spinneb::output::disk::{self, Destination, File};
 use spinneb::output::{
     EnergyPath, EnergyPathPlot, Format, HistoryCsv, KINDS, PathCsv, Picture, ProfileCsv, RunReport, SpinsPlot, Summary,
@@ -14,6 +15,7 @@ use spinneb::output::{
 use spinneb::path::Path;
 use spinneb::spins::Spins;
 use std::io::ErrorKind;
+use std::sync::LazyLock;
 
 /// A path along which a tanh wall of width 4 sites moves through a chain, its plane turning by a right angle.
 fn wall_sweep(sites: usize, images: usize) -> Path {
@@ -148,7 +150,9 @@ fn tiny() -> Outcome {
 }
 
 fn report(outcome: &Outcome) -> RunReport<'_> {
-    RunReport { name: "tiny", version: "0.1.0", config_sha256: "abc", config_text: "{}", outcome }
+    static CHAIN: LazyLock<Chain> = LazyLock::new(|| Chain::open(1));
+    let (inputs, chain) = (&[], &*CHAIN);
+    RunReport { name: "tiny", version: "0.1.0", config_sha256: "abc", config_text: "{}", inputs, chain, outcome }
 }
 
 fn text(format: &dyn Format, outcome: &Outcome) -> String {
@@ -520,7 +524,7 @@ fn a_summary_that_is_not_ours_is_refused() {
 fn a_failed_write_leaves_the_old_result_as_it_was() {
     let dir = tempfile::tempdir().unwrap();
     disk::write_result(dir.path(), &[file("path.csv", "old"), file("summary.json", "{}")], &[]).unwrap();
-    let bad = [file("path.csv", "new"), file("no_such_folder/x", ""), file("summary.json", "{}")];
+    let bad = [file("path.csv", "new"), file("path.csv/x", ""), file("summary.json", "{}")];
     assert!(disk::write_result(dir.path(), &bad, &[]).is_err());
     assert!(!names(dir.path()).iter().any(|n| n.starts_with(".spinneb")), "temporary files stay behind");
 }

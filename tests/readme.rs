@@ -26,7 +26,10 @@ fn blocks(language: &str) -> Vec<String> {
     let mut found = Vec::new();
     while let (Some(block), Some(_)) = (parts.next(), parts.next()) {
         let (tag, content) = block.split_once('\n').unwrap();
-        assert!(["sh", "json", "rust", "text"].contains(&tag), "a block is tagged {tag:?}: rustdoc would compile it");
+        assert!(
+            ["sh", "json", "rust", "text", "python"].contains(&tag),
+            "a block is tagged {tag:?}: rustdoc would compile it"
+        );
         if tag == language {
             found.push(content.to_string());
         }

@@ -56,11 +56,8 @@ fn print(out: &mut impl Write, loaded: &Loaded, problem: &Problem) -> io::Result
     }
     row("memory", format!("about {}", memory::shown(needed_bytes(problem, &scales))))?;
     row("time", format!("about {}, by a measured step", duration(estimated_seconds(problem, &scales))))?;
-    for warning in &physics.warnings {
+    for warning in physics.warnings.iter().chain(&loaded.warnings) {
         row("warning", warning.clone())?;
-    }
-    for kind in loaded.config.output.left_out() {
-        row("warning", format!("output.formats: \"{kind}\" cannot be written by this version and is left out"))?;
     }
     Ok(())
 }

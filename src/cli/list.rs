@@ -6,6 +6,7 @@ use clap::ValueEnum;
 use spinneb::config::MaterialScales;
 use spinneb::config::library::{self, LibraryMaterial};
 use spinneb::energy::TermSpec;
+use spinneb::files::FORMATS;
 use spinneb::optimise::OptimiserSpec;
 use spinneb::output::KINDS;
 use spinneb::path::guess::GuessSpec;
@@ -38,7 +39,10 @@ fn print(out: &mut impl Write, what: What, indent: &str) -> io::Result<()> {
         What::Optimisers => family(out, OptimiserSpec::ENTRIES, indent),
         What::Formats => {
             let rows: Vec<_> = KINDS.iter().map(|kind| (kind.name, kind.summary)).collect();
-            table(out, &rows, indent)
+            table(out, &rows, indent)?;
+            writeln!(out, "{indent}read as states and paths:")?;
+            let rows: Vec<_> = FORMATS.iter().map(|format| (format.name, format.summary)).collect();
+            table(out, &rows, &format!("{indent}  "))
         }
         What::Materials => materials(out, indent),
     }

@@ -119,20 +119,26 @@ pub(super) fn outcome(
 ) -> Result<Outcome> {
     let mut outcome = drive::run(problem, observer)?;
     outcome.work.seconds = started.elapsed().as_secs_f64();
-    for kind in loaded.config.output.left_out() {
-        outcome.warnings.push(format!("output.formats: \"{kind}\" cannot be written by this version and is left out"));
-    }
+    outcome.warnings.extend(loaded.warnings.iter().cloned());
     Ok(outcome)
 }
 
 pub(super) fn write(loaded: &Loaded, outcome: &Outcome, directory: &Path) -> spinneb::error::Result<()> {
     let (name, sha) = (loaded.name.as_str(), loaded.sha256.as_str());
-    let run = RunReport { name, version: VERSION, config_sha256: sha, config_text: &loaded.as_run, outcome };
+    let run = RunReport {
+        name,
+        version: VERSION,
+        config_sha256: sha,
+        config_text: &loaded.as_run,
+        inputs: &loaded.inputs,
+        chain: loaded.chain(),
+        outcome,
+    };
     let output = &loaded.config.output;
     let named = |list: &[String], kind: &Kind| list.iter().any(|name| name == kind.name);
     let files = render_files(&run, |kind| match kind.group {
         Group::Always => true,
-        Group::Formats => named(&output.formats, kind),
+        Group::Formats | Group::OnRequest => named(&output.formats, kind),
         Group::Plots => named(&output.plots, kind),
     })?;
     disk::write_result(directory, &files, &known_files())

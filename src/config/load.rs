@@ -1,12 +1,14 @@
 //! From a config file to everything that it says, ready to be built.
 
+use super::inputs::Inputs;
 use super::library;
 use super::material::{Material, MaterialChoice};
 use super::text::{apply_set, at_place, decode, nearest, parse};
 use super::{Config, Name};
 use crate::error::{Error, Result};
+use crate::output;
 use crate::words::quoted;
-use serde_json::{Map, Value};
+use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::fs::File;
 use std::io::{self, Read};
@@ -48,22 +50,28 @@ pub struct Loaded {
     pub as_run: String,
     /// SHA-256 of [`as_run`](Self::as_run) in hexadecimal.
     pub sha256: String,
+    /// The files of spins that it names, as they are kept with the result.
+    pub inputs: Vec<output::disk::File>,
+    /// What the user should know of these files.
+    pub warnings: Vec<String>,
 }
 
 /// Reads a config, changed by `sets` (`KEY.PATH=JSON`), and the material it names.
 pub fn load(path: &Path, sets: &[String]) -> Result<Loaded> {
+    let text = apply_set(&path.display().to_string(), &read(path)?, sets)?;
+    load_text(path, text)
+}
+
+/// A config's text as if it were read from `path`, and what it names.
+pub fn load_text(path: &Path, text: String) -> Result<Loaded> {
     let file = path.display().to_string();
-    let text = apply_set(&file, &read(path)?, sets)?;
-    // An array would do for serde's structs, whose keys then go unsaid.
-    parse::<Map<String, Value>>(&file, &text)?;
-    let config: Config = parse(&file, &text)?;
+    let mut config: Config = parse(&file, &text)?;
     let text = Text { file, text };
     let name = name(path, &config).map_err(|e| text.locate(e))?;
     let (material, material_text) = match &config.material {
         MaterialChoice::Inline(material) => ((**material).clone(), None),
         MaterialChoice::Named(named) => {
             let from = material_file(path, named).map_err(|e| text.locate(e))?;
-            parse::<Map<String, Value>>(&from.file, &from.text)?;
             (parse(&from.file, &from.text)?, Some(from))
         }
     };
@@ -71,9 +79,11 @@ pub fn load(path: &Path, sets: &[String]) -> Result<Loaded> {
         Some(own) => own.locate(e),
         None => text.locate(e.within("material")),
     })?;
-    let as_run = as_run(&text, material_text.as_ref(), &name)?;
+    let inputs = Inputs::read(&mut config, path.parent().unwrap_or(Path::new(""))).map_err(|e| text.locate(e))?;
+    let as_run = as_run(&text, material_text.as_ref(), &name, &inputs)?;
     let sha256 = Sha256::digest(as_run.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect();
-    Ok(Loaded { text, config, name, material, material_text, as_run, sha256 })
+    let Inputs { files: inputs, warnings, .. } = inputs;
+    Ok(Loaded { text, config, name, material, material_text, as_run, sha256, inputs, warnings })
 }
 
 fn read(path: &Path) -> Result<String> {
@@ -164,7 +174,7 @@ fn neighbours(path: &Path) -> String {
 }
 
 /// The config as run, in one form: keys in order, two spaces deep, the material written out.
-fn as_run(text: &Text, material: Option<&Text>, name: &str) -> Result<String> {
+fn as_run(text: &Text, material: Option<&Text>, name: &str, inputs: &Inputs) -> Result<String> {
     let mut value: Value = parse(&text.file, &text.text)?;
     if let Some(config) = value.as_object_mut() {
         if let Some(own) = material {
@@ -177,6 +187,7 @@ fn as_run(text: &Text, material: Option<&Text>, name: &str) -> Result<String> {
         config.insert("name".into(), name.into());
         config.remove("$schema");
     }
+    inputs.rename(&mut value);
     let pretty = serde_json::to_string_pretty(&value).map_err(|e| Error::Numerical(e.to_string()))?;
     Ok(pretty + "\n")
 }

@@ -4,14 +4,17 @@ use crate::energy::TermSpec;
 use crate::error::{Error, Result};
 use crate::profile::Profile;
 use crate::units::{Magnetisation, Moment};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{self, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
+use serde_json::json;
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt;
 
 /// A material: its moment (or magnetisation) and its energy terms.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[allow(non_snake_case)]
 pub struct Material {
@@ -44,7 +47,7 @@ pub struct Material {
 }
 
 /// Where a quantity comes from.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Reference {
     /// The paper, with its DOI where it has one.
@@ -93,6 +96,17 @@ pub enum MaterialChoice {
     Named(String),
     /// The material.
     Inline(Box<Material>),
+}
+
+impl JsonSchema for MaterialChoice {
+    fn schema_name() -> Cow<'static, str> {
+        "MaterialChoice".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let named = json!({"type": "string", "description": "a file, looked for beside the config, or a name of the library"});
+        json_schema!({"oneOf": [named, generator.subschema_for::<Material>()]})
+    }
 }
 
 impl<'de> Deserialize<'de> for MaterialChoice {

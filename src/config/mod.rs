@@ -4,6 +4,7 @@
 //! wrong in a config is found before anything large is allocated or computed.
 
 mod built;
+mod inputs;
 mod json;
 pub mod library;
 mod load;
@@ -16,11 +17,13 @@ mod output;
 mod path;
 pub mod physics;
 pub mod rates;
+mod schema;
 mod set;
+mod strict;
 pub mod text;
 
 pub use built::{expected_images, needed_bytes};
-pub use load::{Loaded, Text, load};
+pub use load::{Loaded, Text, load, load_text};
 pub use material::{Material, MaterialChoice, Reference};
 pub use material_scales::MaterialScales;
 pub use name::Name;
@@ -28,19 +31,24 @@ pub use neb::{NebConfig, SaddleConfig};
 pub use output::OutputConfig;
 pub use path::{ImageCount, PathConfig};
 pub use rates::{RatesConfig, Temperatures};
+pub use schema::{SCHEMA_FILE, schema};
 
 use crate::energy::TermSpec;
 use crate::lattice::Lattice;
 use crate::state::StateSpec;
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// A config as written. Only `material`, `lattice`, `initial` and `final` are required.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Config {
     /// Where editors find the schema; not used here.
     #[serde(default, rename = "$schema")]
     pub schema: Option<String>,
+    /// What you want to say about it: a text, or one of several lines.
+    #[serde(default)]
+    pub comment: Option<Comment>,
     /// Name of the run and of its folder; the file's name without its ending if absent.
     #[serde(default)]
     pub name: Option<Name>,
@@ -74,6 +82,16 @@ pub struct Config {
     /// What is written.
     #[serde(default)]
     pub output: OutputConfig,
+}
+
+/// A text, or one of several lines. It is kept with the config and means nothing.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "a text, or a list of its lines")]
+pub enum Comment {
+    /// A text.
+    Text(String),
+    /// Its lines.
+    Lines(Vec<String>),
 }
 
 fn yes() -> bool {

@@ -3,20 +3,23 @@
 use crate::drive::NebSettings;
 use crate::optimise::OptimiserSpec;
 use crate::words::number;
+use schemars::JsonSchema;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer};
 
 /// `"neb": {"climb": true, "tolerance": 1e-6, "max_evaluations": 20000, "optimiser": {"implicit": {}}}`.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct NebConfig {
     /// Let the maxima climb.
     pub climb: bool,
     /// Largest predicted remaining rotation of any spin (rad).
     #[serde(deserialize_with = "tolerance")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub tolerance: f64,
     /// Most evaluations of the whole band.
     #[serde(deserialize_with = "evaluations")]
+    #[schemars(range(min = 1))]
     pub max_evaluations: usize,
     /// The method.
     pub optimiser: OptimiserSpec,
@@ -38,7 +41,7 @@ impl NebConfig {
 }
 
 /// `"saddle": {"refine": true, "certify": true}`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SaddleConfig {
     /// Refine each maximum of the band to the saddle itself.

@@ -1,22 +1,23 @@
 //! What a run writes.
 
+use super::schema::names_schema;
 use crate::output::{Group, KINDS};
 use crate::words::{nearest, quoted};
+use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer};
 
-/// Kinds of files that have a name and no writer: asked for, they are left out with a warning.
-const NOT_WRITTEN: &[&str] = &["npz", "ovf"];
-
-/// `"output": {"formats": ["csv"], "plots": ["svg", "png"]}`; everything if absent.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+/// `"output": {"formats": ["csv"], "plots": ["svg", "png"]}`; the usual kinds if absent.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct OutputConfig {
     /// Kinds of data files.
     #[serde(deserialize_with = "formats")]
+    #[schemars(schema_with = "format_names")]
     pub formats: Vec<String>,
     /// Kinds of figures.
     #[serde(deserialize_with = "plots")]
+    #[schemars(schema_with = "plot_names")]
     pub plots: Vec<String>,
 }
 
@@ -27,13 +28,12 @@ impl Default for OutputConfig {
     }
 }
 
-impl OutputConfig {
-    /// Kinds that were asked for and are left out.
-    pub fn left_out(&self) -> Vec<&'static str> {
-        let written: Vec<&str> = names(Group::Formats).collect();
-        let asked = |name: &&str| self.formats.iter().any(|f| f == name) && !written.contains(name);
-        NOT_WRITTEN.iter().copied().filter(asked).collect()
-    }
+fn format_names(_: &mut SchemaGenerator) -> Schema {
+    names_schema(names(Group::Formats).chain(names(Group::OnRequest)))
+}
+
+fn plot_names(_: &mut SchemaGenerator) -> Schema {
+    names_schema(names(Group::Plots))
 }
 
 fn names(group: Group) -> impl Iterator<Item = &'static str> {
@@ -41,9 +41,7 @@ fn names(group: Group) -> impl Iterator<Item = &'static str> {
 }
 
 fn formats<'de, D: Deserializer<'de>>(d: D) -> Result<Vec<String>, D::Error> {
-    let mut known: Vec<&str> = names(Group::Formats).collect();
-    known.extend(NOT_WRITTEN.iter().filter(|name| names(Group::Formats).all(|n| n != **name)));
-    checked(d, &known)
+    checked(d, &names(Group::Formats).chain(names(Group::OnRequest)).collect::<Vec<_>>())
 }
 
 fn plots<'de, D: Deserializer<'de>>(d: D) -> Result<Vec<String>, D::Error> {

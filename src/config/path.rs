@@ -3,12 +3,14 @@
 use crate::drive::Images;
 use crate::path::guess::{GuessSpec, NoiseSpec};
 use crate::words::{number, quoted};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{self, Visitor};
 use serde::{Deserialize, Deserializer};
+use std::borrow::Cow;
 use std::fmt;
 
 /// `"path": {"images": 20, "guess": {"geodesic": {}}, "noise": {…}, "smooth": 0.3}`.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct PathConfig {
     /// How many images, both ends counted.
@@ -19,6 +21,7 @@ pub struct PathConfig {
     pub noise: Option<NoiseSpec>,
     /// Smoothing of the guess, 0 (none) to 1.
     #[serde(deserialize_with = "smooth")]
+    #[schemars(range(min = 0, max = 1))]
     pub smooth: Option<f64>,
 }
 
@@ -29,6 +32,19 @@ pub struct ImageCount(pub Images);
 impl Default for ImageCount {
     fn default() -> Self {
         ImageCount(Images::Auto)
+    }
+}
+
+impl JsonSchema for ImageCount {
+    fn schema_name() -> Cow<'static, str> {
+        "ImageCount".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "description": "how many images, both ends counted",
+            "oneOf": [{"const": "auto"}, {"type": "integer", "minimum": 3}],
+        })
     }
 }
 

@@ -1,11 +1,14 @@
 //! What rates are asked for.
 
+use super::schema::names_schema;
 use crate::rates::{RateSettings, Theory};
 use crate::units::Temperature;
 use crate::words::{nearest, number, quoted};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Error, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
+use std::borrow::Cow;
 use std::fmt;
 
 /// Most temperatures of a range.
@@ -14,19 +17,22 @@ const MOST: usize = 100_000;
 const HOTTEST_K: f64 = 1e9;
 
 /// `"rates": {"temperatures": ["300 K"], "damping": 0.1, "g_factor": 2.0, "theory": ["htst", "langer"]}`.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RatesConfig {
     /// At which temperatures.
     pub temperatures: Temperatures,
     /// Gilbert damping.
     #[serde(default = "damping_default", deserialize_with = "damping")]
+    #[schemars(range(min = 0))]
     pub damping: f64,
     /// g factor.
     #[serde(default = "g_factor_default", deserialize_with = "g_factor")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub g_factor: f64,
     /// Which theories.
     #[serde(default = "all_theories", deserialize_with = "theories")]
+    #[schemars(schema_with = "theory_names")]
     pub theory: Vec<Theory>,
 }
 
@@ -148,6 +154,33 @@ fn points<'de, D: Deserializer<'de>>(d: D) -> Result<usize, D::Error> {
         n if (2..=MOST).contains(&n) => Ok(n),
         n => Err(D::Error::custom(format!("found {n}, but a range has 2 to {MOST} points"))),
     }
+}
+
+impl JsonSchema for Temperatures {
+    fn schema_name() -> Cow<'static, str> {
+        "Temperatures".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let one = generator.subschema_for::<Temperature>();
+        json_schema!({
+            "description": "a list of temperatures, or a range of evenly spaced ones with both ends",
+            "oneOf": [
+                {"type": "array", "items": one, "minItems": 1},
+                {
+                    "type": "object",
+                    "properties": {"from": one, "to": one, "points": {"type": "integer", "minimum": 2, "maximum": MOST}},
+                    "required": ["from", "to", "points"],
+                    "additionalProperties": false,
+                },
+            ],
+        })
+    }
+}
+
+/// The names of the theories.
+fn theory_names(_: &mut SchemaGenerator) -> Schema {
+    names_schema(Theory::ALL.iter().map(|t| t.name()))
 }
 
 impl<'de> Deserialize<'de> for Temperatures {

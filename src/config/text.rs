@@ -5,6 +5,7 @@
 //! of the value itself.
 
 use super::json::{self, Node, Step, position, scan, written};
+use super::strict::Strict;
 use crate::error::{Error, Result};
 use crate::words::quoted;
 use serde::de::DeserializeOwned;
@@ -38,7 +39,7 @@ pub fn parse<T: DeserializeOwned>(file: &str, text: &str) -> Result<T> {
         place: ".".into(),
         message: e.to_string(),
     })?;
-    serde_path_to_error::deserialize(&value).map_err(|e| {
+    serde_path_to_error::deserialize(Strict(&value)).map_err(|e| {
         let steps = e.path().iter().filter_map(step).collect();
         refusal(file, text, &root, steps, &e.inner().to_string())
     })

@@ -16,11 +16,12 @@ use crate::profile::Profile;
 use crate::registry::Described;
 use crate::units::SiteEnergy;
 use multiversion::multiversion;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::ops::Range;
 
 /// `{"K": "0.5 meV", "axis": [0, 0, 1]}`.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[allow(non_snake_case)]
 pub struct AnisotropySpec {

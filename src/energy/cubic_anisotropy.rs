@@ -15,11 +15,12 @@ use crate::profile::Profile;
 use crate::registry::Described;
 use crate::units::SiteEnergy;
 use multiversion::multiversion;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::ops::Range;
 
 /// `{"K": "48 kJ/m^3", "axes": [[1, 0, 0], [0, 1, 0]]}`.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[allow(non_snake_case)]
 pub struct CubicAnisotropySpec {

@@ -23,7 +23,7 @@ const SLENDER: f64 = 1000.0;
 const MOST_UNEQUAL: usize = 1024;
 
 /// `{}`.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DemagSpec {}
 

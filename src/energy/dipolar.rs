@@ -14,7 +14,7 @@ use crate::registry::Described;
 use serde::Deserialize;
 
 /// `{}`.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DipolarSpec {}
 

@@ -17,11 +17,12 @@ use crate::profile::Profile;
 use crate::registry::Described;
 use crate::units::BondEnergy;
 use multiversion::multiversion;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::ops::Range;
 
 /// `{"D": "2 meV", "direction": [0, 1, 0]}`.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[allow(non_snake_case)]
 pub struct DmiSpec {

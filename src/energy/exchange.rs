@@ -18,11 +18,12 @@ use crate::profile::Profile;
 use crate::registry::Described;
 use crate::units::{Energy, ExchangeStiffness};
 use multiversion::multiversion;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::ops::Range;
 
 /// `{"J": ["10 meV", "-1 meV"]}` or `{"A": "13 pJ/m"}`.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[allow(non_snake_case)]
 pub struct ExchangeSpec {

@@ -14,11 +14,12 @@ use crate::lattice::Selection;
 use crate::registry::Described;
 use crate::units::{FluxDensity, MU_B_MEV_PER_T};
 use multiversion::multiversion;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::ops::Range;
 
 /// `{"B": ["0 T", "0 T", "-0.1 T"]}`.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[allow(non_snake_case)]
 pub struct ZeemanSpec {

@@ -2,7 +2,9 @@
 
 use super::vector::{Vector, unit};
 use crate::error::{Error, Result};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize};
+use std::borrow::Cow;
 use std::fmt;
 
 /// A unit vector. Any vector of non-zero length serves to make one; it is normalised.
@@ -32,6 +34,22 @@ impl Direction {
     /// The unit vector.
     pub fn vector(self) -> Vector {
         self.0
+    }
+}
+
+impl JsonSchema for Direction {
+    fn schema_name() -> Cow<'static, str> {
+        "Direction".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "type": "array",
+            "description": "x, y, z of a direction; any length but zero",
+            "items": {"type": "number"},
+            "minItems": 3,
+            "maxItems": 3,
+        })
     }
 }
 

@@ -4,13 +4,14 @@ use super::{Follows, Method, Optimiser};
 use crate::registry::Described;
 use crate::sphere::{move_points, rotation_of};
 use rayon::prelude::*;
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// Largest rotation of a spin in one step (rad).
 const CAP: f64 = 0.3;
 
 /// `{"implicit": {}}`.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Implicit {}
 

@@ -8,6 +8,7 @@ use crate::field::project;
 use crate::linalg::slab;
 use crate::registry::Described;
 use crate::sphere::{move_points, rotation_of};
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::VecDeque;
 
@@ -15,7 +16,7 @@ use std::collections::VecDeque;
 const CAP: f64 = 0.1;
 
 /// `{"lbfgs": {"memory": 5}}`.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Lbfgs {
     /// Pairs of differences to keep.

@@ -11,6 +11,7 @@ use super::{Follows, Method, Optimiser};
 use crate::linalg::slab;
 use crate::registry::Described;
 use crate::sphere::move_points;
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 const RTOL: f64 = 0.1;
@@ -18,7 +19,7 @@ const C1: f64 = 0.01;
 const C2: f64 = 2.0;
 
 /// `{"preconditioned": {}}`.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Preconditioned {}
 

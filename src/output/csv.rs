@@ -37,13 +37,9 @@ impl Format for PathCsv {
         let t = &run.outcome.images;
         let mut table = Table::new("path.csv");
         table.add("image", whole(0..t.energy_mev.len()));
-        table.add("reaction_coordinate_rad", real(&t.reaction_coordinate_rad));
-        table.add("energy_meV", real(&t.energy_mev));
-        for (term, energy) in &t.terms_mev {
-            table.add(&format!("{}_meV", column_name(term)), real(energy));
+        for (name, column) in path_columns(run.outcome) {
+            table.add(&name, real(column));
         }
-        table.add("max_perpendicular_torque_meV", real(&t.max_perpendicular_torque_mev));
-        table.add("energy_above_initial_meV", real(&t.above_initial_mev));
         table.render()
     }
 }
@@ -83,6 +79,17 @@ impl Format for HistoryCsv {
         column("length_rad", |r| r.length_rad);
         table.render()
     }
+}
+
+/// The columns of `path.csv` behind the number of the image.
+pub(super) fn path_columns(outcome: &Outcome) -> Vec<(String, &[f64])> {
+    let t = &outcome.images;
+    let mut columns: Vec<(String, &[f64])> =
+        vec![("reaction_coordinate_rad".into(), &t.reaction_coordinate_rad), ("energy_meV".into(), &t.energy_mev)];
+    columns.extend(t.terms_mev.iter().map(|(term, energy)| (format!("{}_meV", column_name(term)), &energy[..])));
+    columns.push(("max_perpendicular_torque_meV".into(), &t.max_perpendicular_torque_mev));
+    columns.push(("energy_above_initial_meV".into(), &t.above_initial_mev));
+    columns
 }
 
 /// Energy of the initial image.

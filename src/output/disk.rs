@@ -11,13 +11,16 @@ use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 use tempfile::NamedTempFile;
 
+/// How temporary names begin.
+const PREFIX: &str = ".spinneb-";
+
 /// The file that marks a finished result.
 pub const MARK: &str = "summary.json";
 
 /// A file to write.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct File {
-    /// Its name in the directory.
+    /// Its name in the directory; `/` stands before a file in a folder of it.
     pub name: String,
     /// Its content.
     pub bytes: Vec<u8>,
@@ -82,14 +85,21 @@ pub fn stored_result(dir: &Path) -> Result<Option<StoredResult>> {
 }
 
 /// Writes the files of a result. Of a result that was there before, files named in `known` that the new one does not have are
-/// taken away, so that old and new do not mix; files of other names are left alone.
+/// taken away, so that old and new do not mix; files of other names are left alone. A name in `known` that ends in `/` is a folder:
+/// what is in it is the result's.
 pub fn write_result(dir: &Path, files: &[File], known: &[String]) -> Result<()> {
     create(dir)?;
     let mut staged = files.iter().map(|file| stage(dir, file)).collect::<Result<Vec<_>>>()?;
     staged.sort_by_key(|(name, _)| *name == MARK);
     if dir.join(MARK).is_file() {
-        let stale = known.iter().filter(|name| files.iter().all(|file| file.name != **name));
-        std::iter::once(&MARK.to_string()).chain(stale).try_for_each(|name| remove(&dir.join(name)))?;
+        remove(&dir.join(MARK))?;
+        for name in known {
+            match name.strip_suffix('/') {
+                Some(folder) => clear(dir, folder, files)?,
+                None if files.iter().all(|file| file.name != *name) => remove(&dir.join(name))?,
+                None => {}
+            }
+        }
     }
     for (name, file) in staged {
         let path = dir.join(name);
@@ -113,7 +123,10 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
 
 /// The file under a temporary name, on the disk.
 fn stage<'a>(dir: &Path, file: &'a File) -> Result<(&'a str, NamedTempFile)> {
-    let mut staged = temporary(dir)?;
+    let path = dir.join(&file.name);
+    let folder = path.parent().unwrap_or(dir);
+    create(folder)?;
+    let mut staged = temporary(folder)?;
     fill(&mut staged, &file.bytes).map_err(|e| io_error(&dir.join(&file.name), e))?;
     Ok((&file.name, staged))
 }
@@ -126,7 +139,7 @@ fn fill(file: &mut NamedTempFile, bytes: &[u8]) -> io::Result<()> {
 /// A new file that vanishes unless it is given a name; readable by all whom the umask allows.
 fn temporary(dir: &Path) -> Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".spinneb-");
+    builder.prefix(PREFIX);
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     builder
@@ -143,6 +156,27 @@ fn create(dir: &Path) -> Result<()> {
         let words = format!("the directory cannot be made: {}", reason(&e));
         io_error(dir, io::Error::new(e.kind(), words))
     })
+}
+
+/// Takes away what an older result left in a folder of its own, and the folder if it is empty then.
+fn clear(dir: &Path, folder: &str, files: &[File]) -> Result<()> {
+    let path = dir.join(folder);
+    let entries = match fs::read_dir(&path) {
+        Ok(entries) => entries,
+        Err(e) if matches!(e.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => return Ok(()),
+        Err(e) => return Err(io_error(&path, e)),
+    };
+    for entry in entries {
+        let entry = entry.map_err(|e| io_error(&path, e))?;
+        let name = entry.file_name().to_string_lossy().into_owned();
+        let staged = name.starts_with(PREFIX);
+        if !staged && entry.path().is_file() && files.iter().all(|file| file.name != format!("{folder}/{name}")) {
+            remove(&entry.path())?;
+        }
+    }
+    // with something in it, it stays
+    let _ = fs::remove_dir(&path);
+    Ok(())
 }
 
 fn remove(path: &Path) -> Result<()> {

@@ -12,6 +12,7 @@ mod energy_path_plot;
 mod font;
 mod rates_csv;
 mod rates_summary;
+mod spin_files;
 mod spins_plot;
 mod summary;
 
@@ -20,11 +21,14 @@ pub use config_copy::ConfigCopy;
 pub use csv::{HistoryCsv, PathCsv, ProfileCsv};
 pub use energy_path_plot::{EnergyPath, EnergyPathPlot, draw_energy_paths};
 pub use rates_csv::RatesCsv;
+pub use spin_files::{OvfImages, PathNpz, PathOvf, SaddleOvf, SpinsCsv, Vtk};
 pub use spins_plot::{SpinsPlot, draw_spins};
 pub use summary::Summary;
 
 use crate::drive::Outcome;
 use crate::error::Result;
+use crate::files::OvfData;
+use crate::lattice::Chain;
 
 /// Everything that a format may know about a run.
 #[derive(Clone, Copy, Debug)]
@@ -37,14 +41,31 @@ pub struct RunReport<'a> {
     pub config_sha256: &'a str,
     /// The config as run.
     pub config_text: &'a str,
+    /// Files of spins that the config names, as they are kept with the result.
+    pub inputs: &'a [disk::File],
+    /// The chain.
+    pub chain: &'a Chain,
     /// What was found.
     pub outcome: &'a Outcome,
 }
 
-/// One file of a result: a pure function of the outcome.
+/// The folder of a result with the files of spins that its config names.
+pub const INPUTS: &str = "inputs";
+
+/// One file of a result, perhaps with companions in a folder: a pure function of the outcome.
 pub trait Format {
     /// Its name in the directory of the result.
     fn file_name(&self) -> String;
+
+    /// The folder of its companions; whatever of their kind is in it is this format's.
+    fn folder(&self) -> Option<&'static str> {
+        None
+    }
+
+    /// Files that belong to it, in its folder.
+    fn companions(&self, _: &RunReport) -> Result<Vec<disk::File>> {
+        Ok(Vec::new())
+    }
 
     /// Whether the run has something to write in it.
     fn applies(&self, _: &RunReport) -> bool {
@@ -87,8 +108,10 @@ impl Picture {
 pub enum Group {
     /// Always.
     Always,
-    /// If named in `output.formats`.
+    /// If named in `output.formats`, or if that is absent.
     Formats,
+    /// Only if named in `output.formats`.
+    OnRequest,
     /// If named in `output.plots`.
     Plots,
 }
@@ -109,6 +132,48 @@ pub struct Kind {
 pub const KINDS: &[Kind] = &[
     Kind { name: "csv", group: Group::Formats, summary: csv::SUMMARY, formats: csv::formats },
     Kind {
+        name: "npz",
+        group: Group::Formats,
+        summary: "path.npz: the spins (image, site, xyz) and the columns of path.csv as NumPy arrays",
+        formats: || vec![Box::new(PathNpz)],
+    },
+    Kind {
+        name: "ovf",
+        group: Group::Formats,
+        summary: "path.ovf, saddle.ovf: spins as OVF 2.0 binary 8, a segment an image or saddle",
+        formats: || ovf(OvfData::Binary8),
+    },
+    Kind {
+        name: "ovf_binary4",
+        group: Group::OnRequest,
+        summary: "path_binary4.ovf, saddle_binary4.ovf: the same in single precision (if named)",
+        formats: || ovf(OvfData::Binary4),
+    },
+    Kind {
+        name: "ovf_text",
+        group: Group::OnRequest,
+        summary: "path_text.ovf, saddle_text.ovf: the same as text, with all digits (if named)",
+        formats: || ovf(OvfData::Text),
+    },
+    Kind {
+        name: "ovf_images",
+        group: Group::OnRequest,
+        summary: "ovf/image_000.ovf …: a file an image as text, for programs that read one segment (if named)",
+        formats: || vec![Box::new(OvfImages)],
+    },
+    Kind {
+        name: "spins_csv",
+        group: Group::OnRequest,
+        summary: "spins.csv: a row a site and image (if named)",
+        formats: || vec![Box::new(SpinsCsv)],
+    },
+    Kind {
+        name: "vtk",
+        group: Group::OnRequest,
+        summary: "path.pvd with vtk/image_000.vtp …: for ParaView (if named)",
+        formats: || vec![Box::new(Vtk)],
+    },
+    Kind {
         name: "svg",
         group: Group::Plots,
         summary: "energy_path.svg, spins.svg: the energy path and the map of the spins as vector graphics; with rates arrhenius.svg",
@@ -123,7 +188,7 @@ pub const KINDS: &[Kind] = &[
     Kind {
         name: "config",
         group: Group::Always,
-        summary: "config.json: the config as run",
+        summary: "config.json: the config as run; inputs/ with the files of spins that it names",
         formats: || vec![Box::new(ConfigCopy)],
     },
     Kind {
@@ -138,14 +203,24 @@ fn plots(picture: Picture) -> Vec<Box<dyn Format>> {
     vec![Box::new(EnergyPathPlot(picture)), Box::new(SpinsPlot(picture)), Box::new(ArrheniusPlot(picture))]
 }
 
-/// The files of a run that names these kinds, `summary.json` last.
-pub fn render_files(run: &RunReport, wanted: impl Fn(&Kind) -> bool) -> Result<Vec<disk::File>> {
-    let kinds = KINDS.iter().filter(|kind| kind.group == Group::Always || wanted(kind));
-    let formats = kinds.flat_map(|kind| (kind.formats)()).filter(|format| format.applies(run));
-    formats.map(|format| Ok(disk::File { name: format.file_name(), bytes: format.render(run)? })).collect()
+fn ovf(data: OvfData) -> Vec<Box<dyn Format>> {
+    vec![Box::new(PathOvf(data)), Box::new(SaddleOvf(data))]
 }
 
-/// Names of all files that a result can have.
+/// The files of a run that names these kinds.
+pub fn render_files(run: &RunReport, wanted: impl Fn(&Kind) -> bool) -> Result<Vec<disk::File>> {
+    let kinds = KINDS.iter().filter(|kind| kind.group == Group::Always || wanted(kind));
+    let mut files = Vec::new();
+    for format in kinds.flat_map(|kind| (kind.formats)()).filter(|format| format.applies(run)) {
+        files.push(disk::File { name: format.file_name(), bytes: format.render(run)? });
+        files.extend(format.companions(run)?);
+    }
+    Ok(files)
+}
+
+/// Names of all files that a result can have; a name that ends in `/` is a folder of them.
 pub fn known_files() -> Vec<String> {
-    KINDS.iter().flat_map(|kind| (kind.formats)()).map(|format| format.file_name()).collect()
+    let formats: Vec<Box<dyn Format>> = KINDS.iter().flat_map(|kind| (kind.formats)()).collect();
+    let folders = formats.iter().filter_map(|format| format.folder()).map(|folder| format!("{folder}/"));
+    formats.iter().map(|format| format.file_name()).chain(folders).collect()
 }

@@ -12,6 +12,7 @@ use super::{StateBuilder, StateContext};
 use crate::error::{Error, Result};
 use crate::geometry::{Arc, Direction, Vector, vector};
 use crate::registry::Described;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::f64::consts::FRAC_PI_2;
 
@@ -22,7 +23,7 @@ const OPPOSITE: f64 = 3.0;
 const ACROSS: f64 = 1e-6;
 
 /// `{"domain_wall": {"center": 39.5}}`.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DomainWall {
     /// In sites; 39.5 lies between sites 39 and 40.

@@ -3,12 +3,14 @@
 //! Every state may carry `"staggered": true`: site i is then multiplied by (−1)^i, for antiferromagnets. One file a state.
 
 mod domain_wall;
+mod file;
 mod random;
 mod spiral;
 mod uniform;
 mod vectors;
 
 pub use domain_wall::DomainWall;
+pub use file::File;
 pub use random::Random;
 pub use spiral::Spiral;
 pub use uniform::Uniform;
@@ -28,6 +30,7 @@ family! {
         Spiral(Spiral),
         Random(Random),
         Vectors(Vectors),
+        File(File),
     }
 }
 

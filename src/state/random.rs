@@ -5,11 +5,12 @@ use crate::error::Result;
 use crate::geometry::Vector;
 use crate::registry::Described;
 use rand::{RngExt, SeedableRng};
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::f64::consts::TAU;
 
 /// `{"random": {"seed": 1}}`.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Random {
     /// Seed of the ChaCha8 generator.

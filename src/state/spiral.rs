@@ -10,11 +10,12 @@ use crate::error::{Error, Result};
 use crate::geometry::{Direction, Vector, vector};
 use crate::registry::Described;
 use crate::units::Angle;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::f64::consts::TAU;
 
 /// `{"spiral": {"axis": [0, 1, 0], "period": 20}}`.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Spiral {
     /// Axis k of the turn.

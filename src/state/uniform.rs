@@ -4,10 +4,11 @@ use super::{StateBuilder, StateContext};
 use crate::error::Result;
 use crate::geometry::{Direction, Vector};
 use crate::registry::Described;
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// `{"uniform": {"direction": [0, 0, 1]}}`.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Uniform {
     /// Where the spins point.

@@ -4,8 +4,11 @@ use super::{StateBuilder, StateContext};
 use crate::error::{Error, Result};
 use crate::geometry::{Direction, Vector};
 use crate::registry::Described;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
+use serde_json::json;
+use std::borrow::Cow;
 
 /// `{"vectors": [[0, 0, 1], [0, 0, -1]]}`, or `{"vectors": {"spins": […], "staggered": true}}`.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,6 +38,28 @@ impl StateBuilder for Vectors {
 
     fn staggered(&self) -> bool {
         self.staggered
+    }
+}
+
+impl JsonSchema for Vectors {
+    fn schema_name() -> Cow<'static, str> {
+        "Vectors".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let list = json!({"type": "array", "items": generator.subschema_for::<Direction>()});
+        json_schema!({
+            "description": "one direction a site",
+            "oneOf": [
+                list,
+                {
+                    "type": "object",
+                    "properties": {"spins": list, "staggered": {"type": "boolean", "default": false}},
+                    "required": ["spins"],
+                    "additionalProperties": false,
+                },
+            ],
+        })
     }
 }
 

@@ -11,8 +11,10 @@ mod parse;
 use crate::error::{Error, Result};
 use crate::words::number;
 use parse::Wanted;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Deserialize, Deserializer};
 use serde::ser::{Serialize, Serializer};
+use std::borrow::Cow;
 use std::fmt;
 use std::str::FromStr;
 
@@ -29,8 +31,30 @@ pub const RYDBERG: f64 = 13605.693122990;
 /// Boltzmann constant in meV/K.
 pub const K_B: f64 = 8.617333262e-2;
 
+/// How quantities look: a number, then a unit.
+const QUANTITY: &str = r"^\s*[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?\s*[^\s0-9.+-].*$";
+
 /// The digits of the elementary charge: 1 meV is E_DIGITS · 1e-22 J.
 const E_DIGITS: f64 = 1.602176634;
+
+/// The schema of a quantity: a number with a unit, in a string.
+macro_rules! schema {
+    ($name:ident) => {
+        impl JsonSchema for $name {
+            fn schema_name() -> Cow<'static, str> {
+                stringify!($name).into()
+            }
+
+            fn json_schema(_: &mut SchemaGenerator) -> Schema {
+                json_schema!({
+                    "type": "string",
+                    "description": format!("a number with its unit: {}", $name::UNITS),
+                    "pattern": QUANTITY,
+                })
+            }
+        }
+    };
+}
 
 /// A newtype over one number, read from and written as a string with a unit.
 macro_rules! quantity {
@@ -81,6 +105,8 @@ macro_rules! quantity {
                 read(&parse::$wanted, d).map(|(value, _)| $name(value))
             }
         }
+
+        schema!($name);
     };
 }
 
@@ -194,6 +220,8 @@ macro_rules! sum {
                 read(&parse::$wanted, d).map($name::chosen)
             }
         }
+
+        schema!($name);
     };
 }
 

@@ -9,10 +9,11 @@ use crate::geometry::Direction;
 use crate::path::Path;
 use crate::registry::Described;
 use crate::spins::Spins;
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// `{"geodesic": {}}`.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Geodesic {
     /// Axis about which opposite spins turn.

@@ -4,6 +4,7 @@
 //! neighbours would come apart on the way and the exchange energy would explode.
 
 mod clock;
+mod file;
 mod geodesic;
 mod nlerp;
 mod noise;
@@ -13,6 +14,7 @@ mod sweep;
 mod waypoints;
 
 pub use clock::{NEARLY_OPPOSITE, Way, common_axis, ways};
+pub use file::PathFile;
 pub use geodesic::Geodesic;
 pub use nlerp::{Nlerp, component_sag};
 pub use noise::{NoiseSpec, add_noise};
@@ -37,6 +39,7 @@ family! {
         Rotation(Rotation),
         Nlerp(Nlerp),
         Waypoints(Waypoints),
+        File(PathFile),
     }
 }
 

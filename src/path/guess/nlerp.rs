@@ -12,11 +12,12 @@ use crate::geometry::{Direction, lerp, vector};
 use crate::path::Path;
 use crate::registry::Described;
 use crate::spins::Spins;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::f64::consts::FRAC_PI_2;
 
 /// `{"nlerp": {}}`.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Nlerp {
     /// Axis about which opposite spins turn.

@@ -13,6 +13,7 @@ use crate::path::Path;
 use crate::units::Angle;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::f64::consts::{PI, TAU};
 
@@ -20,7 +21,7 @@ use std::f64::consts::{PI, TAU};
 const MODES: usize = 5;
 
 /// `{"amplitude": "2 deg", "seed": 1}`.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NoiseSpec {
     /// Standard deviation of each mode's amplitude, in the middle of the path.

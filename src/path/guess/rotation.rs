@@ -17,11 +17,12 @@ use crate::linalg::eigen_symmetric;
 use crate::path::Path;
 use crate::registry::Described;
 use crate::spins::Spins;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::f64::consts::PI;
 
 /// `{"rotation": {"axis": [0, 0, 1]}}`.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Rotation {
     /// Axis of the turn; that of the best rotation if absent.

@@ -14,6 +14,7 @@ use crate::path::Path;
 use crate::registry::Described;
 use crate::spins::Spins;
 use rayon::prelude::*;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::fmt;
 
@@ -27,7 +28,7 @@ const EVEN: f64 = 0.01;
 const ROUNDS: usize = 20;
 
 /// Where a wall enters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Edge {
     /// At site 0.
@@ -52,7 +53,7 @@ impl fmt::Display for Edge {
 }
 
 /// `{"sweep": {"from": "left"}}`.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Sweep {
     /// Where the wall enters.

@@ -1,0 +1,82 @@
+//! The files that a config names as states or as a path: read once, and kept with the result.
+//!
+//! A config as run names them as `inputs/initial.npy` and so on, with their hashes: it runs by itself, and its own hash is that of
+//! the spins and not of the place where a file was.
+
+use super::Config;
+use crate::error::{Error, Result};
+use crate::files::Stored;
+use crate::output::INPUTS;
+use crate::output::disk::File;
+use crate::path::guess::GuessSpec;
+use crate::state::StateSpec;
+use serde_json::Value;
+use std::path::Path;
+
+/// What was read.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Inputs {
+    /// The files to keep.
+    pub(super) files: Vec<File>,
+    /// What the user should know of them.
+    pub(super) warnings: Vec<String>,
+    /// Where in the config each is named, as a JSON pointer, and its hash.
+    places: Vec<(String, String)>,
+}
+
+impl Inputs {
+    /// Reads all files of a config, looked for in `folder`.
+    pub(super) fn read(config: &mut Config, folder: &Path) -> Result<Inputs> {
+        let mut inputs = Inputs::default();
+        inputs.state(&mut config.initial, "initial", "/initial", "initial", folder)?;
+        inputs.state(&mut config.final_state, "final", "/final", "final", folder)?;
+        match &mut config.path.guess {
+            Some(GuessSpec::File(file)) => {
+                let here = |e: Error| e.within("path.guess.file");
+                let stored = file.load(folder).map_err(here)?.clone();
+                inputs.keep(&stored, &stored.content.images, false, "guess", "/path/guess/file".into());
+            }
+            Some(GuessSpec::Waypoints(waypoints)) => {
+                for (k, state) in waypoints.states.iter_mut().enumerate() {
+                    let place = format!("path.guess.waypoints.states[{k}]");
+                    let pointer = format!("/path/guess/waypoints/states/{k}");
+                    inputs.state(state, &place, &pointer, &format!("waypoint_{k}"), folder)?;
+                }
+            }
+            _ => {}
+        }
+        Ok(inputs)
+    }
+
+    fn state(&mut self, state: &mut StateSpec, place: &str, pointer: &str, name: &str, folder: &Path) -> Result<()> {
+        let StateSpec::File(file) = state else { return Ok(()) };
+        let here = |e: Error| e.within(&format!("{place}.file"));
+        let segment = file.segment;
+        let stored = file.load(folder).map_err(here)?.clone();
+        let image = stored.image(segment).map_err(here)?.to_vec();
+        self.keep(&stored, &[image], true, name, format!("{pointer}/file"));
+        Ok(())
+    }
+
+    fn keep(&mut self, stored: &Stored, images: &[Vec<[f64; 3]>], single: bool, name: &str, pointer: String) {
+        let (bytes, hash) = Stored::portable(images, single);
+        self.files.push(File { name: format!("{INPUTS}/{name}.npy"), bytes });
+        self.places.push((pointer, hash));
+        for warning in &stored.content.warnings {
+            if !self.warnings.contains(warning) {
+                self.warnings.push(warning.clone());
+            }
+        }
+    }
+
+    /// Names the kept files in a config as run.
+    pub(super) fn rename(&self, config: &mut Value) {
+        for ((pointer, hash), file) in self.places.iter().zip(&self.files) {
+            if let Some(spec) = config.pointer_mut(pointer).and_then(Value::as_object_mut) {
+                spec.remove("segment");
+                spec.insert("path".into(), file.name.as_str().into());
+                spec.insert("sha256".into(), hash.as_str().into());
+            }
+        }
+    }
+}

@@ -1,0 +1,193 @@
+//! The spins of a path as files that other programs read: npz, OVF, csv, VTK.
+
+use super::disk::File;
+use super::{Format, RunReport, csv};
+use crate::error::{Error, Result};
+use crate::files::{self, Array, Mesh, OvfData, Segment};
+use crate::geometry::{Direction, Vector, vector};
+use crate::lattice::Chain;
+
+/// `path.npz`: spins (image, site, xyz) and the columns of `path.csv`.
+#[derive(Clone, Copy, Debug)]
+pub struct PathNpz;
+
+/// `path.ovf` and its like: a segment an image.
+#[derive(Clone, Copy, Debug)]
+pub struct PathOvf(pub OvfData);
+
+/// `saddle.ovf` and its like: a segment a saddle, in path order.
+#[derive(Clone, Copy, Debug)]
+pub struct SaddleOvf(pub OvfData);
+
+/// `ovf/image_000.ovf` …: a file an image.
+#[derive(Clone, Copy, Debug)]
+pub struct OvfImages;
+
+/// `spins.csv`: a row a site and image.
+#[derive(Clone, Copy, Debug)]
+pub struct SpinsCsv;
+
+/// `path.pvd` with `vtk/image_000.vtp` …: for ParaView.
+#[derive(Clone, Copy, Debug)]
+pub struct Vtk;
+
+impl Format for PathNpz {
+    fn file_name(&self) -> String {
+        "path.npz".into()
+    }
+
+    fn render(&self, run: &RunReport) -> Result<Vec<u8>> {
+        let path = &run.outcome.path;
+        let (images, sites) = (path.images(), path.sites());
+        let numbers = (0..images).flat_map(|k| path.spins(k).vectors()).flatten().collect();
+        let mut arrays = vec![("spins".into(), Array { shape: vec![images, sites, 3], numbers })];
+        for (name, column) in csv::path_columns(run.outcome) {
+            if let Some(k) = column.iter().position(|x| !x.is_finite()) {
+                let message = format!("path.npz: {name}, image {k}: {} is not a finite number", column[k]);
+                return Err(Error::Numerical(message));
+            }
+            arrays.push((name, Array { shape: vec![column.len()], numbers: column.to_vec() }));
+        }
+        files::write_npz(&arrays)
+    }
+}
+
+impl Format for PathOvf {
+    fn file_name(&self) -> String {
+        format!("path{}.ovf", suffix(self.0))
+    }
+
+    fn render(&self, run: &RunReport) -> Result<Vec<u8>> {
+        let images = 0..run.outcome.path.images();
+        Ok(ovf(self.0, run, images.map(|k| (image_description(run, k), run.outcome.path.spins(k).vectors())).collect()))
+    }
+}
+
+impl Format for SaddleOvf {
+    fn file_name(&self) -> String {
+        format!("saddle{}.ovf", suffix(self.0))
+    }
+
+    fn applies(&self, run: &RunReport) -> bool {
+        !run.outcome.saddles.is_empty()
+    }
+
+    fn render(&self, run: &RunReport) -> Result<Vec<u8>> {
+        let count = run.outcome.saddles.len();
+        let saddles = run.outcome.saddles.iter().enumerate().map(|(k, s)| {
+            let (at, energy) = (s.reaction_coordinate_rad, s.above_initial_mev);
+            let words = format!("saddle {k} of {count}, reaction coordinate {at:?} rad, {energy:?} meV above initial");
+            (words, s.spins.vectors())
+        });
+        Ok(ovf(self.0, run, saddles.collect()))
+    }
+}
+
+impl Format for OvfImages {
+    fn file_name(&self) -> String {
+        numbered("ovf", 0, "ovf")
+    }
+
+    fn folder(&self) -> Option<&'static str> {
+        Some("ovf")
+    }
+
+    fn render(&self, run: &RunReport) -> Result<Vec<u8>> {
+        Ok(single(run, 0))
+    }
+
+    fn companions(&self, run: &RunReport) -> Result<Vec<File>> {
+        let images = 1..run.outcome.path.images();
+        Ok(images.map(|k| File { name: numbered("ovf", k, "ovf"), bytes: single(run, k) }).collect())
+    }
+}
+
+impl Format for SpinsCsv {
+    fn file_name(&self) -> String {
+        "spins.csv".into()
+    }
+
+    fn render(&self, run: &RunReport) -> Result<Vec<u8>> {
+        let path = &run.outcome.path;
+        let images: Vec<Vec<Vector>> = (0..path.images()).map(|k| path.spins(k).vectors()).collect();
+        Ok(files::write_csv(images.iter().map(Vec::as_slice)))
+    }
+}
+
+impl Format for Vtk {
+    fn file_name(&self) -> String {
+        "path.pvd".into()
+    }
+
+    fn folder(&self) -> Option<&'static str> {
+        Some("vtk")
+    }
+
+    fn render(&self, run: &RunReport) -> Result<Vec<u8>> {
+        let outcome = run.outcome;
+        let at = |k: usize| outcome.images.reaction_coordinate_rad.get(k).copied().unwrap_or(0.0);
+        let files = (0..outcome.path.images()).map(|k| (at(k), numbered("vtk", k, "vtp")));
+        Ok(files::write_pvd(&files.collect::<Vec<_>>()))
+    }
+
+    fn companions(&self, run: &RunReport) -> Result<Vec<File>> {
+        let path = &run.outcome.path;
+        let (positions, unit) = positions(run.chain, path.sites());
+        let closed = run.chain.periodic;
+        let image = |k: usize| files::write_vtp(&positions, closed, &path.spins(k).vectors(), unit);
+        Ok((0..path.images()).map(|k| File { name: numbered("vtk", k, "vtp"), bytes: image(k) }).collect())
+    }
+}
+
+fn suffix(data: OvfData) -> &'static str {
+    match data {
+        OvfData::Text => "_text",
+        OvfData::Binary4 => "_binary4",
+        OvfData::Binary8 => "",
+    }
+}
+
+fn numbered(folder: &str, k: usize, ending: &str) -> String {
+    format!("{folder}/image_{k:03}.{ending}")
+}
+
+fn ovf(data: OvfData, run: &RunReport, images: Vec<(String, Vec<Vector>)>) -> Vec<u8> {
+    let segments: Vec<Segment> =
+        images.iter().map(|(description, spins)| Segment { description, spins: spins.as_slice() }).collect();
+    files::write_ovf(data, &mesh(run.chain), &segments)
+}
+
+/// One image as a file of its own: text, which every reader of OVF reads, with all digits.
+fn single(run: &RunReport, k: usize) -> Vec<u8> {
+    ovf(OvfData::Text, run, vec![(image_description(run, k), run.outcome.path.spins(k).vectors())])
+}
+
+fn image_description(run: &RunReport, k: usize) -> String {
+    let table = &run.outcome.images;
+    let count = run.outcome.path.images();
+    match (table.reaction_coordinate_rad.get(k), table.energy_mev.get(k)) {
+        (Some(s), Some(e)) => format!("image {k} of {count}, reaction coordinate {s:?} rad, energy {e:?} meV"),
+        _ => format!("image {k} of {count}"),
+    }
+}
+
+/// Cells in m, or in sites where the chain has no length.
+fn mesh(chain: &Chain) -> Mesh {
+    match chain.spacing {
+        Some(a) => {
+            // OVF knows one size of cells: the largest, where they differ
+            let larger = |p: [f64; 2], q: [f64; 2]| [p[0].max(q[0]), p[1].max(q[1])];
+            let [width, thickness] =
+                (0..chain.sites).filter_map(|i| chain.section_nm(i)).reduce(larger).unwrap_or([a.0; 2]);
+            Mesh { step: [a.0, width, thickness].map(|nm| nm * 1e-9), unit: "m" }
+        }
+        None => Mesh { step: [1.0; 3], unit: "site" },
+    }
+}
+
+/// Where the sites are, the first one at the origin, and the unit of that.
+fn positions(chain: &Chain, sites: usize) -> (Vec<Vector>, &'static str) {
+    let along = chain.direction.unwrap_or(Direction::X).vector();
+    let (step, unit) = chain.spacing.map_or((1.0, "sites"), |a| (a.0, "nm"));
+    ((0..sites).map(|i| vector::scale(step * i as f64, along)).collect(), unit)
+}

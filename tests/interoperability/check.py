@@ -1,0 +1,201 @@
+"""Checks spinneb's files with the packages that others use: check.py SPINNEB README
+
+Both directions, number by number: what spinneb writes is read with numpy, vtk, discretisedfield and libovf, and what these write
+spinneb takes as initial states and paths. Last, the README's notebook example runs on a result.
+"""
+
+import importlib
+import json
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+SITES = 24
+SINGLE = float(np.finfo(np.float32).eps)
+
+
+def optional(name):
+    try:
+        return importlib.import_module(name)
+    except ImportError as e:
+        print(f"  not checked: {name} ({e})")
+        return None
+
+
+def config(**more):
+    up, down = ({"uniform": {"direction": [0, 0, z]}} for z in (1, -1))
+    terms = [{"exchange": {"J": ["10 meV"]}}, {"anisotropy": {"K": "0.5 meV", "axis": [0, 0, 1]}}]
+    chain = {"sites": SITES, "spacing": "0.5 nm", "cross_section": ["2 nm", "1 nm"]}
+    base = {"material": {"name": "toy", "energy": terms}, "lattice": {"chain": chain}, "initial": up, "final": down}
+    return base | {"output": {"formats": [], "plots": []}} | more
+
+
+def run(spinneb, folder, name, content, codes=(0,)):
+    (folder / f"{name}.json").write_text(json.dumps(content))
+    done = subprocess.run([spinneb, "run", f"{name}.json", "--quiet"], cwd=folder, capture_output=True, text=True)
+    assert done.returncode in codes, f"{name}: exit code {done.returncode}: {done.stderr}"
+    return folder / "results" / name
+
+
+def same(what, found, expected, tolerance=0.0):
+    found, expected = np.asarray(found, dtype=float), np.asarray(expected, dtype=float)
+    assert found.shape == expected.shape, f"{what}: shape {found.shape}, expected {expected.shape}"
+    error = float(np.max(np.abs(found - expected)))
+    assert error <= tolerance, f"{what}: off by {error}"
+    print(f"  {what}: {'exact' if tolerance == 0.0 else f'within {error:.1e}'}")
+
+
+def numpy_reads(result):
+    npz = np.load(result / "path.npz")
+    spins = npz["spins"]
+    assert spins.dtype == np.float64 and spins.ndim == 3 and np.allclose(np.linalg.norm(spins, axis=2), 1.0, atol=1e-15)
+    table = np.genfromtxt(result / "path.csv", delimiter=",", names=True)
+    for column in table.dtype.names[1:]:
+        same(f"numpy, path.npz against path.csv: {column}", npz[column], table[column])
+    rows = np.loadtxt(result / "spins.csv", delimiter=",", skiprows=2)
+    same("numpy, spins.csv", rows[:, 2:].reshape(spins.shape), spins)
+    return spins
+
+
+def vtk_reads(result, spins):
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+
+    listed = re.findall(r'file="([^"]+)"', (result / "path.pvd").read_text())
+    assert len(listed) == len(spins)
+    images = []
+    for name in listed:
+        reader = vtkXMLPolyDataReader()
+        reader.SetFileName(str(result / name))
+        reader.Update()
+        data = reader.GetOutput()
+        assert data.GetNumberOfPoints() == SITES and data.GetNumberOfLines() == 1 and data.GetNumberOfVerts() == SITES
+        images.append(vtk_to_numpy(data.GetPointData().GetVectors()))
+        positions = vtk_to_numpy(data.GetPoints().GetData())
+    same("vtk, spins", images, spins)
+    same("vtk, positions (nm)", positions[:, 0], 0.5 * np.arange(SITES))
+
+
+def discretisedfield_reads(df, result, spins):
+    names = sorted(f"ovf/{path.name}" for path in (result / "ovf").iterdir())
+    fields = [df.Field.from_file(str(result / name)) for name in names]
+    same("discretisedfield, ovf/image_….ovf", [f.array[:, 0, 0, :] for f in fields], spins)
+    same("discretisedfield, cell (m)", fields[0].mesh.cell, [0.5e-9, 2e-9, 1e-9], 1e-24)
+
+
+def libovf_reads(ovf, result, spins):
+    for file, tolerance in [("path.ovf", 0.0), ("path_text.ovf", 0.0), ("path_binary4.ovf", SINGLE)]:
+        found = np.zeros_like(spins)
+        with ovf.ovf_file(str(result / file)) as handle:
+            assert handle.found and handle.is_ovf and handle.n_segments == len(spins), file
+            for k in range(len(spins)):
+                segment = ovf.ovf_segment()
+                assert handle.read_segment_header(k, segment) == ovf.OK, handle.get_latest_message()
+                data = np.zeros((SITES, 3))
+                assert handle.read_segment_data(k, segment, data) == ovf.OK, handle.get_latest_message()
+                found[k] = data
+        same(f"libovf, {file}", found, spins, tolerance)
+
+
+class Reader:
+    """Lets spinneb read a file as the initial state, and compares what it kept of it."""
+
+    def __init__(self, spinneb, folder, spins):
+        self.spinneb, self.folder, self.spins, self.count = spinneb, folder, spins, 0
+
+    def state(self, what, file, segment, expected, tolerance=0.0):
+        self.count += 1
+        initial = {"file": {"path": file} | ({} if segment is None else {"segment": segment})}
+        content = config(initial=initial, relax_ends=False, neb={"max_evaluations": 1})
+        result = run(self.spinneb, self.folder, f"read_{self.count}", content, codes=(0, 3))
+        same(f"spinneb, {what}", np.load(result / "inputs/initial.npy"), expected, tolerance)
+
+    def path(self, what, file):
+        self.count += 1
+        content = config(path={"images": len(self.spins), "guess": {"file": {"path": file}}})
+        result = run(self.spinneb, self.folder, f"read_{self.count}", content)
+        same(f"spinneb, {what}", np.load(result / "inputs/guess.npy"), self.spins)
+
+
+def numpy_writes(reader, folder, spins):
+    image = spins[3]
+    np.save(folder / "a.npy", image)
+    reader.state("numpy.save", "a.npy", None, image)
+    np.save(folder / "b.npy", np.asfortranarray(spins).astype(">f4"))
+    reader.state("numpy.save, Fortran order, big-endian float32", "b.npy", 3, image, SINGLE)
+    np.savez(folder / "c.npz", energy=np.zeros(3), spins=spins)
+    reader.path("numpy.savez", "c.npz")
+    np.savez_compressed(folder / "d.npz", m=spins)
+    reader.state("numpy.savez_compressed", "d.npz", -6, image)
+    np.savetxt(folder / "e.txt", image, fmt="%.17g", header="mx my mz")
+    reader.state("numpy.savetxt", "e.txt", None, image, 4e-16)
+    np.savetxt(folder / "f.csv", image, delimiter=",", header="m_x,m_y,m_z", comments="")
+    reader.state("numpy.savetxt with commas", "f.csv", None, image, 4e-16)
+
+
+def discretisedfield_writes(df, reader, folder, spins):
+    mesh = df.Mesh(p1=(0, 0, 0), p2=(SITES * 1e-9, 1e-9, 1e-9), n=(SITES, 1, 1))
+    field = df.Field(mesh, nvdim=3, value=spins[3].reshape(SITES, 1, 1, 3))
+    for representation, tolerance in [("txt", 1e-15), ("bin4", SINGLE), ("bin8", 0.0)]:
+        field.to_file(str(folder / f"df_{representation}.omf"), representation=representation)
+        reader.state(f"discretisedfield, {representation}", f"df_{representation}.omf", None, spins[3], tolerance)
+    magnetisation = df.Field(mesh, nvdim=3, value=8e5 * field.array)
+    magnetisation.to_file(str(folder / "df_Ms.ovf"), representation="bin8")
+    reader.state("discretisedfield, A/m", "df_Ms.ovf", None, spins[3], 4e-16)
+
+
+def libovf_writes(ovf, reader, folder, spins):
+    # libovf prints 12 digits after the point
+    for name, tolerance in [("BIN8", 0.0), ("BIN4", SINGLE), ("TEXT", 1e-12), ("CSV", 1e-12)]:
+        file = folder / f"libovf_{name}.ovf"
+        kind = getattr(ovf, f"FILEFORMAT_{name}")
+        for k, image in enumerate(spins[:5]):
+            with ovf.ovf_file(str(file)) as handle:
+                segment = ovf.ovf_segment(n_cells=[SITES, 1, 1], valuedim=3)
+                write = handle.append_segment if k else handle.write_segment
+                assert write(segment, np.ascontiguousarray(image), fileformat=kind) == ovf.OK, handle.get_latest_message()
+        reader.state(f"libovf, {name}", file.name, 3, spins[3], tolerance)
+
+
+def notebook(readme, result):
+    blocks = re.findall(r"```python\n(.*?)```", readme.read_text(), flags=re.S)
+    assert len(blocks) == 1, "the README has one example in Python"
+    assert len(blocks[0].splitlines()) <= 15, "it has more than 15 lines"
+    written = set(result.iterdir())
+    code = blocks[0].replace("results/wall_nucleation", str(result))
+    assert str(result) in code, "it reads results/wall_nucleation"
+    subprocess.run([sys.executable, "-c", code], cwd=result, check=True)
+    [figure] = set(result.iterdir()) - written
+    assert figure.read_bytes().startswith(b"\x89PNG") and figure.stat().st_size > 5000
+    print(f"  README's example in Python: {figure.name}")
+
+
+def main():
+    spinneb, readme = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
+    df, ovf = optional("discretisedfield"), optional("ovf.ovf")
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        formats = ["csv", "npz", "ovf", "ovf_binary4", "ovf_text", "ovf_images", "spins_csv", "vtk"]
+        guess = {"images": 9, "guess": {"sweep": {"from": "left"}}}
+        result = run(spinneb, folder, "wall", config(path=guess, output={"formats": formats, "plots": []}))
+        spins = numpy_reads(result)
+        vtk_reads(result, spins)
+        if df:
+            discretisedfield_reads(df, result, spins)
+        if ovf:
+            libovf_reads(ovf, result, spins)
+        reader = Reader(spinneb, folder, spins)
+        numpy_writes(reader, folder, spins)
+        if df:
+            discretisedfield_writes(df, reader, folder, spins)
+        if ovf:
+            libovf_writes(ovf, reader, folder, spins)
+        notebook(readme, result)
+    print("interoperability: checked" + "".join(f", but not with {n}" for n, m in [("discretisedfield", df), ("libovf", ovf)] if not m))
+
+
+main()
