@@ -104,7 +104,8 @@ impl JsonSchema for MaterialChoice {
     }
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        let named = json!({"type": "string", "description": "a file, looked for beside the config, or a name of the library"});
+        let named =
+            json!({"type": "string", "description": "a file, looked for beside the config, or a name of the library"});
         json_schema!({"oneOf": [named, generator.subschema_for::<Material>()]})
     }
 }
