@@ -185,7 +185,11 @@ impl Corpus {
         let named = |e: spinneb::error::Error| {
             let said = e.to_string();
             // without a place there is no help
-            if said.contains(&folder) || said.starts_with("library material ") { Ok(false) } else { Err(format!("no file in {said:?}")) }
+            if said.contains(&folder) || said.starts_with("library material ") {
+                Ok(false)
+            } else {
+                Err(format!("no file in {said:?}"))
+            }
         };
         let text = match spinneb::config::text::decode(&file, text) {
             Ok(text) => text,

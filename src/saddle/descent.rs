@@ -1,10 +1,10 @@
 //! Down from a saddle to the minimum on one side.
 //!
-//! First along the valley, with everything across it relaxed, until the energy has plainly fallen or the Hessian has become
-//! positive: near a flat top the gradient is rounding error and no guide. Then down the gradient by implicit Euler steps,
+//! First along the valley, with everything across it relaxed, as long as it becomes steeper: near a flat top and on a plateau the
+//! gradient is rounding error and no guide, and its flow is slow. Then down the gradient by implicit Euler steps,
 //! (H + 1/Δt) v = −g, whose Δt grows as long as H + 1/Δt stays positive definite and the energy falls as foretold: the steepest
-//! descent with its stiff directions relaxed. Where the forces vanish in double precision but a direction is still negative, as
-//! on a long plateau, the descent goes on along that direction, and ends only where the inertia counts none.
+//! descent with its stiff directions relaxed. Where the forces vanish in double precision but a direction is still negative, the
+//! descent goes on along that direction, and ends only where the inertia counts none.
 
 use super::pinned::Pinned;
 use super::spectrum::Spectrum;
@@ -16,16 +16,24 @@ use crate::sphere::rotation_of;
 
 /// Largest rotation of a spin in one step (rad).
 const CAP: f64 = 0.3;
-/// A valley that has risen by more than this part of c leads nowhere.
-const RISEN: f64 = 1e-3;
+/// The first step along a valley, the longest one, and how fast they grow (rad, any spin).
+const FIRST: f64 = 0.05;
+const LONGEST: f64 = 0.4;
+const GROWTH: f64 = 1.4;
 /// Most steps along a valley at a time.
 const MARCH: usize = 600;
-/// Most Newton steps across a valley after each step along it.
+/// Most Newton steps across a valley after each step along it, which end when one is less than this part of that step.
 const CORRECTIONS: usize = 3;
+const ON_THE_WAY: f64 = 0.1;
+/// A valley whose slope is less than this part of the steepest has left its top behind.
+const LESS_STEEP: f64 = 0.8;
 /// Most steps down the gradient.
 const STEPS: usize = 20_000;
-/// How often a descent goes on from where the forces vanish.
-const ROUNDS: usize = 8;
+/// So many steps down the gradient shorter than this (rad, any spin) are a crawl.
+const CRAWL: usize = 4;
+const SHORT: f64 = 0.05;
+/// How often a descent goes on along a valley.
+const ROUNDS: usize = 24;
 
 /// Where a descent ended.
 #[derive(Debug)]
@@ -43,15 +51,23 @@ pub struct Descent {
 
 /// Descends from a saddle along ± its valley (a unit field of 3N numbers); c is the stiffness scale (meV).
 pub fn descend(h: &Hamiltonian, saddle: &State, valley: &[f64], c: f64) -> Descent {
-    let noise = 64.0 * f64::EPSILON * h.stiffness_mev();
     let mut trail = Trail::from(&saddle.m);
     let mut state = saddle.clone();
     let mut tau = valley.to_vec();
-    let mut enough = noise;
     let mut arrived = false;
+    let mut less_steep = LESS_STEEP;
     for _ in 0..ROUNDS {
-        state = march(h, state, &mut tau, c, enough, &mut trail);
-        (state, arrived) = fall(h, state, c, &mut trail);
+        state = march(h, state, &mut tau, c, less_steep, &mut trail);
+        let end;
+        (state, end) = fall(h, state, c, &mut trail);
+        if let Fall::Crawling(v) = end {
+            tau = v;
+            crate::field::project(&state.m, &mut tau);
+            less_steep = 0.0;
+            continue;
+        }
+        less_steep = LESS_STEEP;
+        arrived = matches!(end, Fall::Arrived);
         if Spectrum::count(h, &state).0 == 0 {
             break;
         }
@@ -63,62 +79,54 @@ pub fn descend(h: &Hamiltonian, saddle: &State, valley: &[f64], c: f64) -> Desce
             slab::scale(&mut on, -1.0);
         }
         tau = on;
-        enough *= 100.0;
     }
     Descent { fallen_mev: h.difference_mev(&saddle.m, &state.m), arrived, m: state.m, way: trail.into_points() }
 }
 
-/// Along the valley until the energy is `enough` below the start, or the Hessian positive; or the energy plainly above, which
-/// then is no saddle along this valley.
-fn march(h: &Hamiltonian, start: State, tau: &mut Vec<f64>, c: f64, enough: f64, trail: &mut Trail) -> State {
-    let floor = 8.0 * f64::EPSILON * start.hessian.norm1();
-    let top = start.m.clone();
+/// Along the valley as long as it falls, and its slope is more than a part of the steepest.
+fn march(h: &Hamiltonian, start: State, tau: &mut Vec<f64>, c: f64, part: f64, trail: &mut Trail) -> State {
+    let noise = 64.0 * f64::EPSILON * h.stiffness_mev();
     let mut state = start;
-    let mut step = 0.02;
+    let mut steepest = 0.0f64;
+    let mut step = FIRST;
     for _ in 0..MARCH {
         let mut along = tau.clone();
         slab::scale(&mut along, step / rotation_of(tau));
-        state = State::at(h, state.moved(&along));
-        crate::field::project(&state.m, tau);
-        let mut curvature = f64::NEG_INFINITY;
+        let mut next = State::at(h, state.moved(&along));
+        crate::field::project(&next.m, tau);
         for _ in 0..CORRECTIONS {
-            let Some(correction) = correct(h, &mut state, tau, c) else { break };
-            curvature = correction.curvature;
-            if correction.rotation < 1e-3 * step {
+            let Some(rotation) = correct(h, &mut next, tau, c) else { break };
+            if rotation < ON_THE_WAY * step {
                 break;
             }
         }
-        trail.pass(&state.m);
-        let fallen = h.difference_mev(&top, &state.m);
-        if fallen > enough || fallen < -RISEN * c || (curvature > floor && fallen >= 0.0) {
+        if h.difference_mev(&state.m, &next.m) < -noise {
             break;
         }
-        step = (1.3f64 * step).min(CAP);
+        state = next;
+        trail.pass(&state.m);
+        let t = state.basis.coordinates(tau);
+        let slope = -slab::dot(&state.slope, &t) / slab::norm(&t);
+        if slope < part * steepest {
+            break;
+        }
+        steepest = steepest.max(slope);
+        step = (GROWTH * step).min(LONGEST);
     }
     state
 }
 
-/// A Newton step across a valley.
-struct Correction {
-    /// Its size (rad, any spin).
-    rotation: f64,
-    /// Curvature along the valley before it (meV).
-    curvature: f64,
-}
-
-/// One Newton step across the valley, which bends away from any straight step along it, and the valley's direction there. None
-/// where the valley is lost: straight on, the descent will find the way.
-fn correct(h: &Hamiltonian, state: &mut State, tau: &mut Vec<f64>, c: f64) -> Option<Correction> {
+/// One Newton step across the valley, which bends away from any straight step along it, and the valley's direction there;
+/// its size (rad, any spin). None where the valley is lost: straight on, the descent will find the way.
+fn correct(h: &Hamiltonian, state: &mut State, tau: &mut Vec<f64>, c: f64) -> Option<f64> {
     let kappa = (h.stiffness_mev() / 3.0).max(c);
-    let shift = 1e-6 * c;
-    let p = Pinned::new(state, &state.basis.coordinates(tau), shift, &[], kappa);
+    let p = Pinned::new(state, &state.basis.coordinates(tau), 1e-6 * c, &[], kappa);
     let minus: Vec<f64> = state.slope.iter().map(|g| -g).collect();
     let (d, _) = p.solve(&minus, 0.0);
-    let (w, pull) = p.solve(&vec![0.0; d.len()], 1.0);
+    let (w, _) = p.solve(&vec![0.0; d.len()], 1.0);
     if p.complement_negatives > 0 || slab::dot(&w, &p.soft).abs() < 0.05 * slab::norm(&w) {
         return None;
     }
-    let curvature = -pull / slab::dot(&w, &w) - shift;
     let mut across = state.field(&d);
     let rotation = rotation_of(&across);
     if rotation > CAP {
@@ -127,19 +135,32 @@ fn correct(h: &Hamiltonian, state: &mut State, tau: &mut Vec<f64>, c: f64) -> Op
     *tau = state.field(&w);
     *state = State::at(h, state.moved(&across));
     crate::field::project(&state.m, tau);
-    Some(Correction { rotation, curvature })
+    Some(rotation)
+}
+
+/// How a fall ended.
+enum Fall {
+    /// Where the gradient vanishes.
+    Arrived,
+    /// On a slope where steps down the gradient are short and a valley is the quicker way; the direction of the last one.
+    Crawling(Vec<f64>),
+    /// Where no step lowers the energy.
+    Stuck,
 }
 
 /// Implicit Euler down the gradient, to a point where it vanishes.
-fn fall(h: &Hamiltonian, mut state: State, c: f64, trail: &mut Trail) -> (State, bool) {
+fn fall(h: &Hamiltonian, mut state: State, c: f64, trail: &mut Trail) -> (State, Fall) {
     let scale = h.stiffness_mev();
     let tolerance = 4e-15 * scale;
     let mut rate = c;
+    let mut short = 0;
+    let mut refusals: usize = 0;
     for _ in 0..STEPS {
         if state.max_torque_mev() <= tolerance {
-            return (state, true);
+            return (state, Fall::Arrived);
         }
-        let Some(next) = euler(h, &state, &mut rate, scale) else { return (state, false) };
+        let Some((next, v, refused)) = euler(h, &state, &mut rate, scale) else { return (state, Fall::Stuck) };
+        refusals = if refused { CRAWL } else { refusals.saturating_sub(1) };
         // plain Newton steps that gain nothing: the rest is rounding
         let settled = rate == 0.0
             && next.max_torque_mev() < 1e-9 * c
@@ -148,10 +169,14 @@ fn fall(h: &Hamiltonian, mut state: State, c: f64, trail: &mut Trail) -> (State,
         state = next;
         trail.pass(&state.m);
         if settled {
-            return (state, true);
+            return (state, Fall::Arrived);
+        }
+        short = if refusals > 0 && rotation_of(&v) < SHORT { short + 1 } else { 0 };
+        if short >= CRAWL {
+            return (state, Fall::Crawling(v));
         }
     }
-    (state, false)
+    (state, Fall::Stuck)
 }
 
 /// −g·v − ½ vᵀHv: how far the energy is to fall (meV); x are the coordinates of v.
@@ -161,9 +186,9 @@ fn predicted(state: &State, x: &[f64]) -> f64 {
     -slab::dot(&state.slope, x) - 0.5 * slab::dot(x, &hx)
 }
 
-/// One step. The rate 1/Δt rises until H + rate is positive definite and the energy falls as foretold, and falls again after a
+/// One step, its field, and whether a longer one was refused. The rate 1/Δt rises until H + rate is positive definite and the energy falls as foretold, and falls again after a
 /// step that succeeds at once.
-fn euler(h: &Hamiltonian, state: &State, rate: &mut f64, scale: f64) -> Option<State> {
+fn euler(h: &Hamiltonian, state: &State, rate: &mut f64, scale: f64) -> Option<(State, Vec<f64>, bool)> {
     let noise = 256.0 * f64::EPSILON * scale;
     let smallest = 1e-14 * scale;
     let mut refused = false;
@@ -188,7 +213,7 @@ fn euler(h: &Hamiltonian, state: &State, rate: &mut f64, scale: f64) -> Option<S
                 if !refused {
                     *rate = if *rate < 4.0 * smallest { 0.0 } else { *rate / 4.0 };
                 }
-                return Some(next);
+                return Some((next, v, refused));
             }
         }
         refused = true;
