@@ -14,6 +14,8 @@ use crate::spins::Spins;
 
 /// How many eigenvalues of a saddle are reported.
 const REPORTED: usize = 6;
+/// Of more sites the modes and the descents are not followed at the same time.
+const MANY: usize = 200_000;
 /// A valley with less than this (of its curvature) left over when the Hessian acts on it is a mode.
 const PURE: f64 = 0.1;
 /// Spins of two states of one minimum differ by less (rad).
@@ -146,11 +148,13 @@ impl Link {
             let valley: Vec<f64> = falls.iter().map(|v| direction * sign * v).collect();
             let d = descend(h, state, &valley, c);
             let relaxed = relax_to_minimum(h, &Spins::from_unit_components(&d.m), 1e-14 * h.stiffness_mev())?;
-            let way = d.way.iter().map(|m| Spins::from_unit_components(m)).collect();
+            let way = d.way.into_iter().map(|m| Spins::from_unit_components(&m)).collect();
             Ok((Minimum::examine(h, &relaxed.spins), d.fallen_mev, way))
         };
-        let (sides, spectrum) =
-            rayon::join(|| rayon::join(|| side(-1.0), || side(1.0)), || Spectrum::of(h, state, REPORTED));
+        let descents = || rayon::join(|| side(-1.0), || side(1.0));
+        let modes = || Spectrum::of(h, state, REPORTED);
+        // on long chains the modes take much memory, which is given back before the descents
+        let (spectrum, sides) = if h.sites() > MANY { (modes(), descents()) } else { rayon::join(modes, descents) };
         let ((before, f, back), (after, g, on)) = (sides.0?, sides.1?);
         Ok(Link { spectrum, before, after, fallen_mev: [f, g], ways: [back, on], found })
     }

@@ -7,7 +7,7 @@ const APART: f64 = 0.25;
 /// Numbers that all points of one trail may have together.
 const MOST_NUMBERS: usize = 24_000_000;
 /// Points that any trail may have.
-const FEWEST: usize = 24;
+const FEWEST: usize = 6;
 
 /// States on a way, a quarter radian or more apart; twice as far, and so on, when they become too many to store.
 #[derive(Debug)]
@@ -57,7 +57,7 @@ mod tests {
             [vec![s; sites], vec![0.0; sites], vec![c; sites]].concat()
         };
         let mut trail = Trail::from(&at(0.0));
-        for k in 1..=3 * 4 * FEWEST {
+        for k in 1..=12 * FEWEST {
             trail.pass(&at(0.3 * k as f64));
         }
         let points = trail.into_points();
