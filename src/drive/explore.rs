@@ -68,7 +68,7 @@ fn both_senses(
     if differ { vec![guess(axis), guess(other)] } else { vec![guess(axis)] }
 }
 
-/// Highest energy of a guess between its ends, above the initial state (meV); with 3 images that halfway.
+/// Highest energy of a guess between its ends (meV); with 3 images that halfway.
 fn highest_mev(
     problem: &Problem,
     a: &Spins,
@@ -78,8 +78,8 @@ fn highest_mev(
     images: usize,
 ) -> Option<f64> {
     let path = guess.member().path(a, b, images, context).ok()?;
-    let above = |k: usize| problem.hamiltonian.difference_mev(path.image(k), a.as_slice());
-    Some((1..images - 1).map(above).fold(f64::MIN, f64::max))
+    let energy = |k: usize| problem.hamiltonian.energy_mev(path.image(k));
+    Some((1..images - 1).map(energy).fold(f64::MIN, f64::max))
 }
 
 /// Axes (x, y, z and the symmetry axes, both senses of a half turn) about which a rigid turn brings a to b, all spins to a
@@ -118,11 +118,13 @@ pub fn turning_axis(problem: &Problem, a: &Spins, b: &Spins, context: &GuessCont
 fn best_axis(problem: &Problem, a: &Spins, b: &Spins, cost: impl Fn(Direction, usize) -> Option<f64>) -> Direction {
     let h = &problem.hamiltonian;
     let cartesian = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    let candidates = cartesian.iter().chain(h.symmetry_axes()).flat_map(|v| [*v, v.map(|c| -c)]);
+    let oblique = h.symmetry_axes().iter().filter(|v| v.iter().all(|c| c.abs() < 1.0));
+    let candidates = cartesian.iter().chain(oblique).flat_map(|v| [*v, v.map(|c| -c)]);
     let axes = candidates.filter_map(|axis| Direction::new(axis).ok());
     let halfway: Vec<(f64, Direction)> = axes.filter_map(|axis| Some((cost(axis, 3)?, axis))).collect();
     let Some((least, first)) = lowest(&halfway, h.stiffness_mev()) else { return Direction::X };
-    let near = least + ALIKE * least.abs() + 1e-9 * h.stiffness_mev();
+    let above = (least - h.energy_mev(a.as_slice())).abs();
+    let near = least + ALIKE * above + 1e-9 * h.stiffness_mev();
     let alike: Vec<Direction> = halfway.iter().filter(|(e, _)| *e <= near).map(|(_, axis)| *axis).collect();
     if alike.len() < 2 || !(holds_wall(a) || holds_wall(b)) {
         return first;
