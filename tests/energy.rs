@@ -42,6 +42,13 @@ fn moved(m: &[f64], v: &[f64], t: f64) -> Vec<f64> {
     out
 }
 
+fn gradient_and_product(h: &Hamiltonian, m: &[f64], v: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let (mut gradient, mut product) = (vec![0.0; m.len()], vec![0.0; m.len()]);
+    h.energy_gradient(m, &mut gradient);
+    h.hessian_product(m, &gradient, v, &mut product);
+    (gradient, product)
+}
+
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
@@ -127,10 +134,7 @@ fn the_banded_hessian_in_tangent_coordinates_is_the_hessian_product() {
             let m = random_spins(sites, 6);
             let mut v = random_tangent(&m, 7);
             h.hold_frozen(&mut v);
-            let mut g = vec![0.0; 3 * sites];
-            h.energy_gradient(&m, &mut g);
-            let mut expected = vec![0.0; 3 * sites];
-            h.hessian_product(&m, &g, &v, &mut expected);
+            let (g, expected) = gradient_and_product(&h, &m, &v);
             let basis = TangentBasis::at(&m);
             let matrix = assemble(&h, &m, &g, &basis);
             let mut y = vec![0.0; 2 * sites];
@@ -221,10 +225,7 @@ fn the_hessian_of_a_long_ranged_chain_is_its_product_dense_or_as_exponentials() 
             let m = random_spins(sites, 12);
             let mut v = random_tangent(&m, 13);
             h.hold_frozen(&mut v);
-            let mut g = vec![0.0; 3 * sites];
-            h.energy_gradient(&m, &mut g);
-            let mut expected = vec![0.0; 3 * sites];
-            h.hessian_product(&m, &g, &v, &mut expected);
+            let (g, expected) = gradient_and_product(&h, &m, &v);
             let basis = TangentBasis::at(&m);
             let mut found = vec![0.0; 3 * sites];
             let mut y = vec![0.0; 2 * sites];

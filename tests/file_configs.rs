@@ -35,6 +35,15 @@ fn base() -> Value {
     })
 }
 
+/// `base` from all up to all down.
+fn wall_from_the_left() -> Value {
+    let mut config = base();
+    config["initial"] = json!({"uniform": {"direction": [0, 0, 1]}});
+    config["final"] = json!({"uniform": {"direction": [0, 0, -1]}});
+    config["path"] = json!({"images": 9, "guess": {"sweep": {"from": "left"}}});
+    config
+}
+
 fn barrier(summary: &Value) -> f64 {
     summary["barrier_meV"]["forward"].as_f64().unwrap()
 }
@@ -43,10 +52,7 @@ fn barrier(summary: &Value) -> f64 {
 fn the_files_of_a_result_are_ends_and_paths_of_another_which_runs_by_itself() {
     let temporary = tempfile::tempdir().unwrap();
     let folder = temporary.path();
-    let mut first = base();
-    first["initial"] = json!({"uniform": {"direction": [0, 0, 1]}});
-    first["final"] = json!({"uniform": {"direction": [0, 0, -1]}});
-    first["path"] = json!({"images": 9, "guess": {"sweep": {"from": "left"}}});
+    let first = wall_from_the_left();
     write(folder, "first.json", &first);
     run(folder, &["first.json"]);
     let of_first = summary(folder, "first");
@@ -93,10 +99,7 @@ fn the_files_of_a_result_are_ends_and_paths_of_another_which_runs_by_itself() {
 fn files_of_an_older_result_do_not_stay_and_others_are_left_alone() {
     let temporary = tempfile::tempdir().unwrap();
     let folder = temporary.path();
-    let mut config = base();
-    config["initial"] = json!({"uniform": {"direction": [0, 0, 1]}});
-    config["final"] = json!({"uniform": {"direction": [0, 0, -1]}});
-    config["path"] = json!({"images": 9, "guess": {"sweep": {"from": "left"}}});
+    let config = wall_from_the_left();
     write(folder, "wall.json", &config);
     run(folder, &["wall.json"]);
     let result = folder.join("results/wall");

@@ -25,7 +25,12 @@ pub struct Candidate<'a> {
     pub followed_mev: Option<f64>,
 }
 
-impl Candidate<'_> {
+impl<'a> Candidate<'a> {
+    /// A band that started from `name`, with nothing known of it yet.
+    pub fn new(name: String, band: Band<'a>, stop: Stop) -> Candidate<'a> {
+        Candidate { name, band, stop, history: Vec::new(), found: None, escapes: Vec::new(), followed_mev: None }
+    }
+
     /// Highest image above the first (meV).
     pub fn top_mev(&self) -> f64 {
         self.band.energies_mev()[self.band.highest()] - self.band.energies_mev()[0]

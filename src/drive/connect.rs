@@ -180,25 +180,21 @@ fn new_saddle(
     let highest = tops.first().map_or(e[0].max(e[last]), |top| top.energy_mev);
     // a saddle far above the band leads elsewhere
     let most = highest + ABOVE * (highest - e[0].min(e[last]));
+    let from_tops = tops.iter().take(MOST_TOPS).map(|top| Found::at(h, top.clone(), c, hop));
+    let from_ends = [(0, 1), (last, last - 1)].into_iter().flat_map(|(end, next)| uphill(h, &band, end, next, c));
     let mut high: Vec<Found> = Vec::new();
-    let mut keep = |found: Found| {
+    let mut known_top = None;
+    for (k, found) in from_tops.chain(from_ends).enumerate() {
         if !is_new(&found) {
-            return None;
-        }
-        if found.refined.state.energy_mev <= most {
+            known_top = known_top.or((k == 0 && !tops.is_empty()).then_some(found));
+        } else if found.refined.state.energy_mev <= most {
             return Some(found);
+        } else {
+            high.push(found);
         }
-        high.push(found);
-        None
-    };
-    let low = tops
-        .iter()
-        .take(MOST_TOPS)
-        .find_map(|top| keep(Found::at(h, top.clone(), c, hop)))
-        .or_else(|| uphill(h, &band, 0, 1, c).into_iter().find_map(&mut keep))
-        .or_else(|| uphill(h, &band, last, last - 1, c).into_iter().find_map(&mut keep));
-    low.or_else(|| high.into_iter().min_by(|p, q| p.refined.state.energy_mev.total_cmp(&q.refined.state.energy_mev)))
-        .or_else(|| tops.first().map(|top| Found::at(h, top.clone(), c, hop)))
+    }
+    let lowest = high.into_iter().min_by(|p, q| p.refined.state.energy_mev.total_cmp(&q.refined.state.energy_mev));
+    lowest.or(known_top)
 }
 
 /// Saddles above the minimum at one end of a band, along its soft modes towards the next image.

@@ -2,7 +2,7 @@
 
 use crate::energy::{Hamiltonian, TangentBasis, assemble};
 use crate::error::{Error, Result};
-use crate::linalg::{Banded, lowest_modes, slab};
+use crate::linalg::{Banded, slab};
 use crate::path::largest_angle;
 use crate::saddle::{Spectrum, State, descend, polish};
 use crate::sphere::{move_points, rotation_of};
@@ -77,7 +77,10 @@ pub fn relax_to_minimum(h: &Hamiltonian, start: &Spins, tolerance_mev: f64) -> R
             ));
         }
         if p.torque() <= tolerance_mev || stalled >= 2 {
-            let Some(below) = way_down(h, &p).filter(|_| kicks < KICKS) else { break };
+            if kicks == KICKS {
+                break;
+            }
+            let Some(below) = way_down(h, &p) else { break };
             left_saddle = true;
             kicks += 1;
             p = below;
@@ -139,24 +142,19 @@ fn newton_step(h: &Hamiltonian, p: &Point, hessian: &Banded, basis: &TangentBasi
 /// From a stationary state with a negative direction: the minimum below it; nothing if it is a minimum itself.
 fn way_down(h: &Hamiltonian, p: &Point) -> Option<Point> {
     let state = State::at(h, p.m.clone());
-    if Spectrum::count(h, &state).0 == 0 {
+    if Spectrum::negatives(h, &state) == 0 {
         return None;
     }
-    let mode = lowest_modes(&state.hessian, 1, &state.zeros).into_iter().next()?;
+    let mode = state.lowest_mode()?;
     let descent = descend(h, &state, &state.field(&mode.vector), h.stiffness_mev());
     Some(Point::at(h, descent.m))
 }
 
 /// An end that stays as given.
 pub fn kept(h: &Hamiltonian, spins: &Spins) -> Relaxed {
-    let m = spins.as_slice();
-    let (mut g, mut f) = (vec![0.0; m.len()], vec![0.0; m.len()]);
-    h.energy_gradient(m, &mut g);
-    h.force(m, &g, &mut f);
-    let max_torque_mev = slab::max_abs(&f);
     Relaxed {
         spins: spins.clone(),
-        max_torque_mev,
+        max_torque_mev: Point::at(h, spins.as_slice().to_vec()).torque(),
         steps: 0,
         largest_rotation_rad: 0.0,
         left_saddle: false,

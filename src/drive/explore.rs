@@ -35,7 +35,7 @@ pub fn natural_guesses(
 ) -> Vec<(GuessSpec, Option<NoiseSpec>)> {
     let mut guesses = Vec::new();
     let geodesic = |axis| GuessSpec::Geodesic(Geodesic { axis: Some(axis) });
-    guesses.extend(both_senses(problem, a, b, context, &geodesic).into_iter().map(|g| (g, None)));
+    guesses.extend(both_senses(problem, a, b, context, &geodesic, None).into_iter().map(|g| (g, None)));
     for axis in rotation_axes(problem, a, b) {
         guesses.push((GuessSpec::Rotation(Rotation { axis: Some(axis) }), None));
     }
@@ -44,22 +44,25 @@ pub fn natural_guesses(
         for from in edges {
             let sweep = |axis| GuessSpec::Sweep(Sweep { from, width: None, axis: Some(axis) });
             let noise = NoiseSpec { amplitude: Angle(NOISE), seed: 5 };
-            guesses.extend(both_senses(problem, a, b, context, &sweep).into_iter().map(|g| (g, Some(noise))));
+            // the axis of a wall from the left is that of the context already
+            let axis = (from == Edge::Left).then_some(context.default_axis);
+            guesses.extend(both_senses(problem, a, b, context, &sweep, axis).into_iter().map(|g| (g, Some(noise))));
         }
     }
     guesses
 }
 
-/// A guess about its best axis, and about the same axis the other way round if its image halfway has another energy there.
+/// A guess about its best axis (`axis`, if that is known), and about the same axis the other way round if its image halfway has another energy there.
 fn both_senses(
     problem: &Problem,
     a: &Spins,
     b: &Spins,
     context: &GuessContext,
     guess: &dyn Fn(Direction) -> GuessSpec,
+    axis: Option<Direction>,
 ) -> Vec<GuessSpec> {
     let cost = |axis: Direction, images: usize| highest_mev(problem, a, b, context, &guess(axis), images);
-    let axis = best_axis(problem, a, b, cost);
+    let axis = axis.unwrap_or_else(|| best_axis(problem, a, b, cost));
     let other = axis.reversed();
     let differ = match (cost(axis, 3), cost(other, 3)) {
         (Some(e), Some(f)) => (e - f).abs() > DIFFERENT * problem.hamiltonian.stiffness_mev(),

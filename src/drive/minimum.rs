@@ -6,7 +6,7 @@ use crate::energy::Hamiltonian;
 use crate::error::Result;
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, rotate, vector};
-use crate::linalg::{lowest_modes, slab};
+use crate::linalg::slab;
 use crate::path::guess::best_turn;
 use crate::path::largest_angle;
 use crate::saddle::{Spectrum, State, descend};
@@ -115,7 +115,7 @@ fn falling(found: &Found) -> Vec<f64> {
         return valley.clone();
     }
     let floor = 1e3 * f64::EPSILON * state.hessian.norm1();
-    match lowest_modes(&state.hessian, 1, &state.zeros).into_iter().next() {
+    match state.lowest_mode() {
         Some(lowest) if lowest.value < -floor => state.field(&lowest.vector),
         _ => valley.clone(),
     }

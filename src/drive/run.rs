@@ -144,7 +144,8 @@ impl<'a, 'o> Run<'a, 'o> {
         }
         let mut candidates = match &self.problem.guess {
             Some(guess) => {
-                let mut c = self.start(guess, self.problem.noise.as_ref(), self.problem.smooth, usize::MAX)?;
+                let (noise, smoothing) = (self.problem.noise.as_ref(), self.problem.smooth);
+                let mut c = self.start(describe(guess, false), guess, noise, smoothing, usize::MAX)?;
                 self.conclude(&mut c);
                 vec![c]
             }
@@ -347,10 +348,8 @@ impl<'a, 'o> Run<'a, 'o> {
         if height(&band) > 1e-9 * h.stiffness_mev() {
             return Ok(None);
         }
-        let name = "rotation".to_string();
         let stop = Stop::Converged { rotation: 0.0, tolerance: self.problem.neb.tolerance };
-        let c =
-            Candidate { name, band, stop, history: Vec::new(), found: None, escapes: Vec::new(), followed_mev: None };
+        let c = Candidate::new("rotation".into(), band, stop);
         let doubt =
             "the two states are one minimum turned about a symmetry axis: between them there is no saddle to prove";
         let proof = Proof { ends, links: Vec::new(), doubts: vec![doubt.into()] };
@@ -367,9 +366,7 @@ impl<'a, 'o> Run<'a, 'o> {
                 guesses.iter().filter(|(other, _)| describe(other, false) == describe(guess, false)).count();
             let name = describe(guess, namesakes > 1);
             self.observer.stage(&format!("first path: {name}"));
-            let mut candidate = self.start(guess, noise.as_ref(), None, TRIAL)?;
-            candidate.name = name;
-            tried.push(candidate);
+            tried.push(self.start(name, guess, noise.as_ref(), None, TRIAL)?);
         }
         tried.sort_by(|p, q| p.top_mev().total_cmp(&q.top_mev()));
         let scale = self.scales.stiffness_mev;
@@ -456,6 +453,7 @@ impl<'a, 'o> Run<'a, 'o> {
     /// A first path, relaxed from few images to as many as asked for (automatic: as few as resolve it).
     fn start(
         &mut self,
+        name: String,
         guess: &GuessSpec,
         noise: Option<&NoiseSpec>,
         smoothing: Option<f64>,
@@ -478,15 +476,7 @@ impl<'a, 'o> Run<'a, 'o> {
             Images::Count(n) => image_levels(n, |n| make(n).is_ok_and(|p| p.largest_rotation() <= COARSEST))[0],
         };
         let band = Band::new(&self.problem.hamiltonian, make(coarsest)?);
-        let mut c = Candidate {
-            name: describe(guess, false),
-            band,
-            stop: Stop::NotFinite,
-            history: Vec::new(),
-            found: None,
-            escapes: Vec::new(),
-            followed_mev: None,
-        };
+        let mut c = Candidate::new(name, band, Stop::NotFinite);
         self.relax(&mut c, Goal::Loose, limit);
         Ok(c)
     }

@@ -2,7 +2,7 @@
 
 use crate::energy::Hamiltonian;
 use crate::field::Components;
-use crate::linalg::{eigenvalues_symmetric, lowest_modes, slab};
+use crate::linalg::{eigenvalues_symmetric, slab};
 use crate::saddle::State;
 
 /// Scales from which tolerances, shifts and image counts follow.
@@ -56,8 +56,7 @@ impl Scales {
 
 /// Lowest eigenvalue of the Riemannian Hessian (meV), rotations about symmetry axes apart.
 fn softest_mode(h: &Hamiltonian, m: &[f64]) -> f64 {
-    let state = State::at(h, m.to_vec());
-    lowest_modes(&state.hessian, 1, &state.zeros).first().map_or(0.0, |mode| mode.value)
+    State::at(h, m.to_vec()).lowest_mode().map_or(0.0, |mode| mode.value)
 }
 
 /// Median over sites of the gap between the two lowest on-site curvatures: 2K of an easy axis. Magnetostatics count as between

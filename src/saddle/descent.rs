@@ -11,7 +11,7 @@ use super::spectrum::Spectrum;
 use super::state::State;
 use super::trail::Trail;
 use crate::energy::Hamiltonian;
-use crate::linalg::{lowest_modes, slab};
+use crate::linalg::slab;
 use crate::sphere::rotation_of;
 
 /// Largest rotation of a spin in one step (rad).
@@ -68,12 +68,12 @@ pub fn descend(h: &Hamiltonian, saddle: &State, valley: &[f64], c: f64) -> Desce
         }
         less_steep = LESS_STEEP;
         arrived = matches!(end, Fall::Arrived);
-        if Spectrum::count(h, &state).0 == 0 {
+        if Spectrum::negatives(h, &state) == 0 {
             break;
         }
         arrived = false;
         crate::field::project(&state.m, &mut tau);
-        let Some(mode) = lowest_modes(&state.hessian, 1, &state.zeros).into_iter().next() else { break };
+        let Some(mode) = state.lowest_mode() else { break };
         let mut on = state.field(&mode.vector);
         if slab::dot(&on, &tau) < 0.0 {
             slab::scale(&mut on, -1.0);
@@ -121,8 +121,7 @@ fn march(h: &Hamiltonian, start: State, tau: &mut Vec<f64>, c: f64, part: f64, t
 fn correct(h: &Hamiltonian, state: &mut State, tau: &mut Vec<f64>, c: f64) -> Option<f64> {
     let kappa = (h.stiffness_mev() / 3.0).max(c);
     let p = Pinned::new(state, &state.basis.coordinates(tau), 1e-6 * c, &[], kappa);
-    let minus: Vec<f64> = state.slope.iter().map(|g| -g).collect();
-    let (d, _) = p.solve(&minus, 0.0);
+    let (d, _) = p.solve(&state.downhill(), 0.0);
     let (w, _) = p.solve(&vec![0.0; d.len()], 1.0);
     if p.complement_negatives > 0 || slab::dot(&w, &p.soft).abs() < 0.05 * slab::norm(&w) {
         return None;
@@ -179,15 +178,8 @@ fn fall(h: &Hamiltonian, mut state: State, c: f64, trail: &mut Trail) -> (State,
     (state, Fall::Stuck)
 }
 
-/// −g·v − ½ vᵀHv: how far the energy is to fall (meV); x are the coordinates of v.
-fn predicted(state: &State, x: &[f64]) -> f64 {
-    let mut hx = vec![0.0; x.len()];
-    state.hessian.multiply(x, &mut hx);
-    -slab::dot(&state.slope, x) - 0.5 * slab::dot(x, &hx)
-}
-
-/// One step, its field, and whether a longer one was refused. The rate 1/Δt rises until H + rate is positive definite and the energy falls as foretold, and falls again after a
-/// step that succeeds at once.
+/// One step, its field, and whether a longer one was refused. The rate 1/Δt rises until H + rate is positive definite and the
+/// energy falls as foretold, and falls again after a step that succeeds at once.
 fn euler(h: &Hamiltonian, state: &State, rate: &mut f64, scale: f64) -> Option<(State, Vec<f64>, bool)> {
     let noise = 256.0 * f64::EPSILON * scale;
     let smallest = 1e-14 * scale;
@@ -197,7 +189,7 @@ fn euler(h: &Hamiltonian, state: &State, rate: &mut f64, scale: f64) -> Option<(
         matrix.shift(*rate + smallest);
         let factors = matrix.factor();
         if factors.negatives() == 0 {
-            let mut x: Vec<f64> = state.slope.iter().map(|g| -g).collect();
+            let mut x = state.downhill();
             factors.solve(&mut x, 1);
             let mut v = state.field(&x);
             let rotation = rotation_of(&v);
@@ -206,7 +198,7 @@ fn euler(h: &Hamiltonian, state: &State, rate: &mut f64, scale: f64) -> Option<(
                 slab::scale(&mut x, CAP / rotation);
             }
             let next = State::at(h, state.moved(&v));
-            let (told, fallen) = (predicted(state, &x), h.difference_mev(&state.m, &next.m));
+            let (told, fallen) = (-state.predicted_mev(&x), h.difference_mev(&state.m, &next.m));
             // a fall that was not foretold leads over a maximum into another valley
             let foretold = told < 16.0 * noise || (0.25 * told..4.0 * told).contains(&fallen);
             if foretold && fallen >= -noise {

@@ -46,7 +46,7 @@ pub fn follow_modes(h: &Hamiltonian, m: &[f64], c: f64) -> Option<Refined> {
             }
             let (v, longest) = frame.step(&state, radius);
             let next = State::at(h, state.moved(&v));
-            let told = frame.predicted(&state, &v);
+            let told = state.predicted_mev(&state.basis.coordinates(&v));
             let noise = 256.0 * f64::EPSILON * (state.energy_mev.abs() + h.stiffness_mev());
             let ratio = h.difference_mev(&next.m, &state.m) / told;
             let known = told.abs() > noise;
@@ -94,7 +94,7 @@ impl Frame {
         soft.truncate(count);
         let others: Vec<Vec<f64>> = soft.iter().skip(1).map(|m| m.vector.clone()).collect();
         let p = Pinned::new(state, &soft.first()?.vector, 0.0, &others, kappa);
-        let minus: Vec<f64> = state.slope.iter().map(|g| -g).collect();
+        let minus = state.downhill();
         let (across, _) = p.solve(&minus, 0.0);
         let positive = slab::dot(&across, &minus) >= 0.0 && soft.last().is_none_or(|m| count < MODES || m.value > 0.0);
         positive.then_some(Frame { soft, across })
@@ -117,13 +117,5 @@ impl Frame {
             slab::add_scaled(&mut v, a, &u);
         }
         (v, longest)
-    }
-
-    /// g·v + ½ vᵀHv (meV).
-    fn predicted(&self, state: &State, v: &[f64]) -> f64 {
-        let x = state.basis.coordinates(v);
-        let mut hx = vec![0.0; x.len()];
-        state.hessian.multiply(&x, &mut hx);
-        slab::dot(&state.slope, &x) + 0.5 * slab::dot(&x, &hx)
     }
 }

@@ -36,7 +36,7 @@ fn newton(h: &Hamiltonian, state: &State) -> Option<State> {
     for z in &state.zeros {
         pin(&mut matrix, z, &mut used, h.stiffness_mev());
     }
-    let mut x: Vec<f64> = state.slope.iter().map(|g| -g).collect();
+    let mut x = state.downhill();
     remove(&mut x, &state.zeros);
     matrix.factor().solve(&mut x, 1);
     remove(&mut x, &state.zeros);

@@ -30,7 +30,8 @@ impl Spectrum {
     pub fn of(h: &Hamiltonian, state: &State, count: usize) -> Spectrum {
         let norm_mev = state.hessian.norm1();
         let floor_mev = floor_mev(h, norm_mev);
-        let (negative, flat) = Spectrum::count(h, state);
+        let negative = below(h, state, floor_mev);
+        let flat = below(h, state, -floor_mev).saturating_sub(negative);
         let frozen = (0..h.sites()).filter(|&i| h.is_frozen(i)).count();
         let free = state.hessian.order() - 2 * frozen - state.zeros.len().min(state.hessian.order() - 2 * frozen);
         let modes = lowest_modes(&state.hessian, count.min(free), &state.zeros);
@@ -38,20 +39,9 @@ impl Spectrum {
         Spectrum { negative, flat, zero: state.zeros.len(), floor_mev, norm_mev, lowest_mev }
     }
 
-    /// Negative and flat directions of a state, zero modes apart.
-    pub fn count(h: &Hamiltonian, state: &State) -> (usize, usize) {
-        let floor_mev = floor_mev(h, state.hessian.norm1());
-        let below = |shift: f64| {
-            let mut matrix = state.hessian.clone();
-            let mut used = Vec::new();
-            for z in &state.zeros {
-                pin(&mut matrix, z, &mut used, h.stiffness_mev());
-            }
-            matrix.shift(shift);
-            matrix.factor().negatives()
-        };
-        let negative = below(floor_mev);
-        (negative, below(-floor_mev).saturating_sub(negative))
+    /// Negative directions of a state, zero modes apart: one factorisation.
+    pub fn negatives(h: &Hamiltonian, state: &State) -> usize {
+        below(h, state, floor_mev(h, state.hessian.norm1()))
     }
 
     /// Zero modes and flat ones together, as results report them.
@@ -63,6 +53,17 @@ impl Spectrum {
     pub fn is_stationary(&self, torque_mev: f64) -> bool {
         torque_mev <= 1e-12 * self.norm_mev
     }
+}
+
+/// Eigenvalues of a state below −shift (meV), zero modes apart.
+fn below(h: &Hamiltonian, state: &State, shift: f64) -> usize {
+    let mut matrix = state.hessian.clone();
+    let mut used = Vec::new();
+    for z in &state.zeros {
+        pin(&mut matrix, z, &mut used, h.stiffness_mev());
+    }
+    matrix.shift(shift);
+    matrix.factor().negatives()
 }
 
 /// What an eigenvalue must exceed in size to have a sign (meV): the rounding error, or what a long-ranged Hessian leaves out.

@@ -1,7 +1,7 @@
 //! A configuration with its energy, gradient, tangent basis and Hessian.
 
 use crate::energy::{Hamiltonian, TangentBasis, assemble};
-use crate::linalg::{Banded, slab};
+use crate::linalg::{Banded, Mode, lowest_modes, slab};
 use crate::sphere::move_points;
 
 /// Everything a Newton step needs, at one configuration.
@@ -42,6 +42,23 @@ impl State {
     /// Largest component of the Riemannian gradient (meV).
     pub fn max_torque_mev(&self) -> f64 {
         slab::max_abs(&self.slope)
+    }
+
+    /// −g in tangent coordinates (meV).
+    pub fn downhill(&self) -> Vec<f64> {
+        self.slope.iter().map(|g| -g).collect()
+    }
+
+    /// g·x + ½ xᵀHx: by how much the energy is to rise along the tangent coordinates x (meV).
+    pub fn predicted_mev(&self, x: &[f64]) -> f64 {
+        let mut hx = vec![0.0; x.len()];
+        self.hessian.multiply(x, &mut hx);
+        slab::dot(&self.slope, x) + 0.5 * slab::dot(x, &hx)
+    }
+
+    /// The lowest mode, zero modes apart; none where there is no other direction.
+    pub fn lowest_mode(&self) -> Option<Mode> {
+        lowest_modes(&self.hessian, 1, &self.zeros).into_iter().next()
     }
 
     /// The vector field (3N) of tangent coordinates.
