@@ -136,6 +136,8 @@ pub struct Link {
     pub fallen_mev: [f64; 2],
     /// The descents: states on the way down to `before` and to `after`, without the two ends.
     pub ways: [Vec<Spins>; 2],
+    /// What lies on its two sides was given, not found by descents.
+    pub given: bool,
 }
 
 impl Link {
@@ -156,7 +158,19 @@ impl Link {
         // on long chains the modes take much memory, which is given back before the descents
         let (spectrum, sides) = if h.sites() > MANY { (modes(), descents()) } else { rayon::join(modes, descents) };
         let ((before, f, back), (after, g, on)) = (sides.0?, sides.1?);
-        Ok(Link { spectrum, before, after, fallen_mev: [f, g], ways: [back, on], found })
+        Ok(Link { spectrum, before, after, fallen_mev: [f, g], ways: [back, on], found, given: false })
+    }
+
+    /// A saddle whose spectrum alone tells that it is one, between ends that are kept as they are, minima or not. Nothing if its
+    /// descending direction is too flat for that.
+    pub fn between(h: &Hamiltonian, found: Found, [before, after]: [Minimum; 2]) -> Option<Link> {
+        let state = &found.refined.state;
+        let spectrum = Spectrum::of(h, state, REPORTED);
+        if spectrum.negative == 0 {
+            return None;
+        }
+        let fallen_mev = [&before, &after].map(|end| h.difference_mev(&state.m, end.spins.as_slice()));
+        Some(Link { spectrum, before, after, fallen_mev, ways: Default::default(), found, given: true })
     }
 
     /// Exchanges its two sides: which of them the path comes from is not always plain at the saddle itself.
@@ -175,6 +189,9 @@ impl Link {
         }
         if s.negative > 1 {
             return Some(format!("the saddle has {} negative modes", s.negative));
+        }
+        if self.given {
+            return None;
         }
         let rounding = 16.0 * f64::EPSILON * (state.energy_mev.abs() + h.stiffness_mev());
         if self.fallen_mev.iter().any(|f| *f <= rounding) {

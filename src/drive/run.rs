@@ -104,7 +104,10 @@ impl<'a, 'o> Run<'a, 'o> {
         };
         let ends = [end(&problem.initial, "initial")?, end(&problem.final_state, "final")?];
         if !problem.relax_ends {
-            warnings.push("the ends were not relaxed (relax_ends is false): they need not be minima".into());
+            warnings.push(
+                "the ends were not relaxed (relax_ends is false): they need not be minima, and a certificate speaks of the saddle alone"
+                    .into(),
+            );
         }
         let (a, b) = (ends[0].spins.as_slice(), ends[1].spins.as_slice());
         let scales = Scales::of_ends(h, a, b);
@@ -292,7 +295,11 @@ impl<'a, 'o> Run<'a, 'o> {
             let mut relaxation = self.relaxation(Vec::new(), true);
             sequence = follow(&mut relaxation, &c.band, ends[0].clone(), ends[1].clone(), highest.clone(), &context)?;
         } else {
-            sequence.links.push(Link::of(h, highest.clone(), scale)?);
+            let alone = match self.problem.rates {
+                None => Link::between(h, highest.clone(), ends.clone()),
+                Some(_) => None,
+            };
+            sequence.links.push(alone.map_or_else(|| Link::of(h, highest.clone(), scale), Ok)?);
         }
         let mut doubts: Vec<String> = sequence.links.iter().filter_map(|l| l.doubt(h)).collect();
         doubts.extend(sequence.gap);

@@ -1,15 +1,18 @@
-//! The lowest eigenvalues of a banded matrix: a shift from the inertia, then block Lanczos on the inverse.
+//! The lowest eigenvalues of a banded matrix: slice by slice, or by block Lanczos on the inverse.
 
+use super::slices::sliced;
 use super::{Banded, Ldl, eigen_symmetric, slab};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Vectors in a block: as many as modes are often degenerate.
-const BLOCK: usize = 4;
+/// Vectors in a block: as many as modes are often degenerate, and for the rare case in which that was too few.
+const BLOCKS: [usize; 2] = [2, 4];
 /// A vector with |A⁻¹v − θv| ≤ this part of θ is an eigenvector: its eigenvalue is right to the square of it.
 const RESIDUAL: f64 = 1e-6;
-/// Most blocks.
-const STEPS: usize = 40;
+/// Most vectors.
+const MOST: usize = 160;
+/// An eigenvalue as much lower as this part of the matrix's size is another.
+pub(super) const APART: f64 = 1e-10;
 
 /// An eigenvalue with its unit eigenvector.
 #[derive(Clone, Debug)]
@@ -23,9 +26,9 @@ pub struct Mode {
 /// The `count` lowest modes of `matrix` in the space orthogonal to `known` (orthonormal vectors, invariant under it),
 /// ascending. Fewer where the space is smaller. Deterministic.
 ///
-/// Block Lanczos on (A + s·1)⁻¹ with full orthogonalisation: blocks of a few vectors, so that degenerate modes are all
+/// [`sliced`]; where a factorisation is dear, since the matrix has a tail, block Lanczos on (A + s·1)⁻¹ with full orthogonalisation: blocks of a few vectors, so that degenerate modes are all
 /// found, until the wanted vectors are eigenvectors (Golub, Underwood, Mathematical Software III, 361 (1977),
-/// doi:10.1016/B978-0-12-587260-7.50018-2).
+/// doi:10.1016/B978-0-12-587260-7.50018-2). The inertia tells whether one was missed; then the blocks become larger.
 pub fn lowest_modes(matrix: &Banded, count: usize, known: &[Vec<f64>]) -> Vec<Mode> {
     soft_modes(matrix, count, known, f64::INFINITY)
 }
@@ -39,26 +42,45 @@ pub fn soft_modes(matrix: &Banded, count: usize, known: &[Vec<f64>], below: f64)
     if count == 0 {
         return Vec::new();
     }
+    let found = if matrix.tail.is_none() { sliced(matrix, count, known, below) } else { None };
+    found.unwrap_or_else(|| lanczos(matrix, count, known, below))
+}
+
+/// Some of the `count` lowest modes, at least one, by block Lanczos.
+fn lanczos(matrix: &Banded, count: usize, known: &[Vec<f64>], below: f64) -> Vec<Mode> {
+    let room = matrix.order() - known.len();
     let scale = matrix.norm1().max(1e-280);
     let shift = shift_below(matrix, scale);
     let mut shifted = matrix.clone();
     shifted.shift(shift);
-    let mut krylov = Krylov::new(shifted.factor(), known);
-    for step in 1..=STEPS {
-        let grown = krylov.grow(room);
-        let enough = krylov.basis.len() >= count + BLOCK && step % 2 == 0;
-        let least = 1.0 / (below + shift);
-        if let Some(vectors) = krylov.settled(count, least, !grown || step == STEPS, enough) {
-            return rayleigh_ritz(matrix, &vectors);
+    let mut factors = shifted.factor();
+    let mut modes = Vec::new();
+    for block in BLOCKS {
+        let mut krylov = Krylov::new(factors, known, block);
+        modes = rayleigh_ritz(matrix, &krylov.largest(room, count, 1.0 / (below + shift)));
+        if none_is_missed(matrix, &modes, known, scale) {
+            break;
         }
+        factors = krylov.factors;
     }
-    Vec::new()
+    modes
+}
+
+/// Whether no eigenvalue below the last of these modes was left out.
+fn none_is_missed(matrix: &Banded, modes: &[Mode], known: &[Vec<f64>], scale: f64) -> bool {
+    let Some(last) = modes.last().filter(|_| modes.len() > 1) else { return true };
+    let below = last.value - APART * scale;
+    let mut shifted = matrix.clone();
+    shifted.shift(-below);
+    let counted = rayleigh_ritz(matrix, known).iter().chain(modes).filter(|mode| mode.value < below).count();
+    shifted.factor().negatives() <= counted
 }
 
 /// The space that the inverse spans from a random block, and the inverse within it.
 struct Krylov<'a> {
     factors: Ldl,
     known: &'a [Vec<f64>],
+    block: usize,
     random: ChaCha8Rng,
     /// Orthonormal.
     basis: Vec<Vec<f64>>,
@@ -69,15 +91,31 @@ struct Krylov<'a> {
 }
 
 impl<'a> Krylov<'a> {
-    fn new(factors: Ldl, known: &'a [Vec<f64>]) -> Krylov<'a> {
+    fn new(factors: Ldl, known: &'a [Vec<f64>], block: usize) -> Krylov<'a> {
         let random = ChaCha8Rng::seed_from_u64(0x5eed);
-        Krylov { factors, known, random, basis: Vec::new(), images: Vec::new(), products: Vec::new() }
+        Krylov { factors, known, block, random, basis: Vec::new(), images: Vec::new(), products: Vec::new() }
+    }
+
+    /// The `count` eigenvectors to which the inverse is largest, orthonormal, but for the first only those to which it is more
+    /// than `least`; in a space of `room` dimensions.
+    fn largest(&mut self, room: usize, count: usize, least: f64) -> Vec<Vec<f64>> {
+        let mut look = count + 2 * self.block;
+        loop {
+            let last = !self.grow(room) || self.basis.len() >= MOST;
+            if last || self.basis.len() >= look {
+                if let Some(vectors) = self.settled(count, least, last) {
+                    return vectors;
+                }
+                // looking costs the cube of the size
+                look = look * 4 / 3;
+            }
+        }
     }
 
     /// One block more, of a space of `room` dimensions; whether there was room.
     fn grow(&mut self, room: usize) -> bool {
-        let (old, last) = (self.basis.len(), self.images.len().saturating_sub(BLOCK));
-        let wanted = BLOCK.min(room.saturating_sub(old));
+        let (old, last) = (self.basis.len(), self.images.len().saturating_sub(self.block));
+        let wanted = self.block.min(room.saturating_sub(old));
         for k in 0..wanted {
             let next = match self.images.get(last + k) {
                 Some(image) if old > 0 => image.clone(),
@@ -126,12 +164,9 @@ impl<'a> Krylov<'a> {
         (0..k * k).map(|e| self.products[(e / k).max(e % k)][(e / k).min(e % k)]).collect()
     }
 
-    /// The `count` vectors to which the inverse is largest, orthonormal, if `look` and they are eigenvectors, or at `last`; but
-    /// for the first only those to which it is more than `least`.
-    fn settled(&self, count: usize, least: f64, last: bool, look: bool) -> Option<Vec<Vec<f64>>> {
-        if !look && !last {
-            return None;
-        }
+    /// The `count` vectors to which the inverse is largest, orthonormal, if they are eigenvectors, or at `last`; but for the
+    /// first only those to which it is more than `least`.
+    fn settled(&self, count: usize, least: f64, last: bool) -> Option<Vec<Vec<f64>>> {
         let (values, weights) = eigen_symmetric(&self.projected(), self.basis.len());
         let mut vectors = Vec::with_capacity(count);
         for (theta, w) in values.iter().zip(&weights).rev().take(count) {
@@ -228,6 +263,12 @@ pub fn rayleigh_ritz(matrix: &Banded, space: &[Vec<f64>]) -> Vec<Mode> {
 mod tests {
     use super::*;
 
+    /// By slices and by Lanczos, with and without the other's help.
+    fn all_ways(matrix: &Banded, count: usize, known: &[Vec<f64>]) -> [Vec<Mode>; 3] {
+        let slices = sliced(matrix, count, known, f64::INFINITY).expect("slices converge");
+        [slices, lanczos(matrix, count, known, f64::INFINITY), lowest_modes(matrix, count, known)]
+    }
+
     #[test]
     fn the_modes_of_a_vibrating_string_are_found_with_and_without_a_known_one() {
         let n = 200;
@@ -240,12 +281,18 @@ mod tests {
         }
         a.shift(-0.01);
         let exact = |k: usize| 2.0 - 2.0 * libm::cos(k as f64 * std::f64::consts::PI / (n as f64 + 1.0)) - 0.01;
-        let modes = lowest_modes(&a, 6, &[]);
-        for (k, m) in modes.iter().enumerate() {
-            assert!((m.value - exact(k + 1)).abs() < 1e-10, "{k}: {} {}", m.value, exact(k + 1));
+        for modes in all_ways(&a, 6, &[]) {
+            assert_eq!(modes.len(), 6);
+            for (k, m) in modes.iter().enumerate() {
+                assert!((m.value - exact(k + 1)).abs() < 1e-10, "{k}: {} {}", m.value, exact(k + 1));
+            }
+            for rest in all_ways(&a, 2, &[modes[0].vector.clone()]) {
+                assert!((rest[0].value - exact(2)).abs() < 1e-10 && (rest[1].value - exact(3)).abs() < 1e-10);
+            }
         }
-        let rest = lowest_modes(&a, 2, &[modes[0].vector.clone()]);
-        assert!((rest[0].value - exact(2)).abs() < 1e-10);
+        let limit = 0.5 * (exact(3) + exact(4));
+        let below = |limit: f64| sliced(&a, 6, &[], limit).map(|modes| modes.len());
+        assert_eq!([below(limit), below(-1.0)], [Some(3), Some(1)]);
     }
 
     #[test]
@@ -258,12 +305,13 @@ mod tests {
                 a.add(i, i - copies, -1.0);
             }
         }
-        let modes = lowest_modes(&a, 6, &[]);
         let exact = |k: usize| 2.0 - 2.0 * libm::cos(k as f64 * std::f64::consts::PI / (rows as f64 + 1.0));
-        for (k, mode) in modes.iter().enumerate() {
-            assert!((mode.value - exact(1 + k / copies)).abs() < 1e-12, "{k}: {}", mode.value);
+        for modes in all_ways(&a, 6, &[]) {
+            for (k, mode) in modes.iter().enumerate() {
+                assert!((mode.value - exact(1 + k / copies)).abs() < 1e-12, "{k}: {}", mode.value);
+            }
+            assert_eq!(modes.len(), 6);
         }
-        assert_eq!(modes.len(), 6);
     }
 
     #[test]
@@ -289,9 +337,10 @@ mod tests {
             let full: Vec<f64> = (0..n * n).map(|e| a.get(e / n, e % n)).collect();
             let exact = crate::linalg::eigenvalues_symmetric(&full, n);
             for count in [1, 2, 6] {
-                let modes = lowest_modes(&a, count, &[]);
-                assert_eq!(modes.len(), count.min(n));
-                for (mode, value) in modes.iter().zip(&exact) {
+                let count = count.min(n);
+                let found = all_ways(&a, count, &[]);
+                assert!(found.iter().all(|modes| modes.len() == count));
+                for (mode, value) in found.iter().flat_map(|modes| modes.iter().zip(&exact)) {
                     assert!((mode.value - value).abs() < 1e-9, "n {n} count {count}: {} {value}", mode.value);
                     let mut rest = vec![0.0; n];
                     a.multiply(&mode.vector, &mut rest);

@@ -8,6 +8,7 @@ mod general;
 mod ldl;
 mod lowest;
 pub mod slab;
+mod slices;
 mod small;
 mod tail;
 mod tail_ldl;

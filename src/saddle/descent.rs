@@ -120,9 +120,9 @@ fn march(h: &Hamiltonian, start: State, tau: &mut Vec<f64>, c: f64, part: f64, t
 /// its size (rad, any spin). None where the valley is lost: straight on, the descent will find the way.
 fn correct(h: &Hamiltonian, state: &mut State, tau: &mut Vec<f64>, c: f64) -> Option<f64> {
     let kappa = (h.stiffness_mev() / 3.0).max(c);
-    let p = Pinned::new(state, &state.basis.coordinates(tau), 1e-6 * c, &[], kappa);
+    let p = Pinned::rough(state, &state.basis.coordinates(tau), 1e-6 * c, kappa);
     let (d, _) = p.solve(&state.downhill(), 0.0);
-    let (w, _) = p.solve(&vec![0.0; d.len()], 1.0);
+    let (w, _) = p.valley();
     if p.complement_negatives > 0 || slab::dot(&w, &p.soft).abs() < 0.05 * slab::norm(&w) {
         return None;
     }

@@ -18,6 +18,8 @@ use crate::linalg::{Banded, Ldl, slab};
 pub struct Pinned {
     matrix: Banded,
     factors: Ldl,
+    /// Solutions get a step of iterative refinement.
+    refined: bool,
     zeros: Vec<Vec<f64>>,
     /// The soft mode: unit vector, orthogonal to the zero modes.
     pub soft: Vec<f64>,
@@ -36,6 +38,15 @@ impl Pinned {
     /// Of H + shift·1 at a state, with the soft mode `t` (tangent coordinates, any length) and `frozen` further modes that are
     /// treated as zero modes; κ is the stiffness of the pins (meV).
     pub fn new(state: &State, t: &[f64], shift: f64, frozen: &[Vec<f64>], kappa: f64) -> Pinned {
+        Pinned::factorised(state, t, shift, frozen, kappa, true)
+    }
+
+    /// The same without further modes, whose solutions are less accurate and quicker: good enough for steps that are corrected.
+    pub fn rough(state: &State, t: &[f64], shift: f64, kappa: f64) -> Pinned {
+        Pinned::factorised(state, t, shift, &[], kappa, false)
+    }
+
+    fn factorised(state: &State, t: &[f64], shift: f64, frozen: &[Vec<f64>], kappa: f64, refined: bool) -> Pinned {
         let mut matrix = state.hessian.clone();
         matrix.shift(shift);
         let mut used = Vec::new();
@@ -59,7 +70,10 @@ impl Pinned {
         let mut minus_e = e;
         slab::scale(&mut minus_e, -1.0);
         let columns = [soft.clone(), minus_e];
-        let solved = [accurate(&matrix, &factors, &columns[0]), accurate(&matrix, &factors, &columns[1])];
+        let solved = match refined {
+            true => [accurate(&matrix, &factors, &columns[0]), accurate(&matrix, &factors, &columns[1])],
+            false => two(&factors, &columns),
+        };
         let mut schur = [[0.0; 2]; 2];
         for i in 0..2 {
             for j in 0..2 {
@@ -74,6 +88,7 @@ impl Pinned {
             index: negatives + usize::from(soft_pivot < 0.0),
             matrix,
             factors,
+            refined,
             zeros,
             soft,
             columns,
@@ -92,7 +107,21 @@ impl Pinned {
     pub fn solve(&self, b: &[f64], along: f64) -> (Vec<f64>, f64) {
         let mut b = b.to_vec();
         super::state::remove(&mut b, &self.zeros);
-        let mut x = accurate(&self.matrix, &self.factors, &b);
+        if self.refined {
+            b = accurate(&self.matrix, &self.factors, &b);
+        } else {
+            self.factors.solve(&mut b, 1);
+        }
+        self.bordered(b, along)
+    }
+
+    /// The valley's direction: solves [H t; tᵀ 0] (x, ν) = (0, 1).
+    pub fn valley(&self) -> (Vec<f64>, f64) {
+        self.bordered(vec![0.0; self.soft.len()], 1.0)
+    }
+
+    /// From H″⁻¹b to the solution with the last pin taken back and the component `along` the soft mode.
+    fn bordered(&self, mut x: Vec<f64>, along: f64) -> (Vec<f64>, f64) {
         let r = [along - slab::dot(&self.columns[0], &x), -slab::dot(&self.columns[1], &x)];
         let [[a, b], [c, d]] = self.schur;
         let determinant = a * d - b * c;
@@ -139,6 +168,13 @@ fn accurate(matrix: &Banded, factors: &Ldl, b: &[f64]) -> Vec<f64> {
     factors.solve(&mut r, 1);
     slab::add_scaled(&mut x, 1.0, &r);
     x
+}
+
+/// A⁻¹ of two columns at once.
+fn two(factors: &Ldl, columns: &[Vec<f64>; 2]) -> [Vec<f64>; 2] {
+    let (mut x, mut y) = (Vec::new(), Vec::new());
+    factors.solve_two(&columns[0], &columns[1], &mut Vec::new(), &mut x, &mut y);
+    [x, y]
 }
 
 /// Negative eigenvalues of a symmetric 2 × 2 matrix.

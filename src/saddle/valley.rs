@@ -221,7 +221,7 @@ impl Search<'_> {
         let g = self.state.slope.clone();
         let minus: Vec<f64> = g.iter().map(|x| -x).collect();
         let (d, nu) = p.solve(&minus, 0.0);
-        let (w, nl) = p.solve(&vec![0.0; g.len()], 1.0);
+        let (w, nl) = p.valley();
         let size = slab::norm(&w);
         let (slope, curvature) = (-nu, -nl - self.shift * size * size);
         let across = slab::max_abs(&d);
@@ -375,7 +375,7 @@ impl Search<'_> {
         let frozen: Vec<Vec<f64>> = self.frozen.iter().map(|f| self.state.basis.coordinates(f)).collect();
         let p = Pinned::new(&self.state, &t, 0.0, &frozen, self.kappa);
         self.factorisations += 1;
-        let (w, nl) = p.solve(&vec![0.0; t.len()], 1.0);
+        let (w, nl) = p.valley();
         Refined {
             verdict,
             valley: self.state.field(&p.soft),
