@@ -177,7 +177,7 @@ fn shown(k: usize, count: usize) -> bool {
 
 fn barriers(rows: &[Row]) -> LinePlot {
     let families = families(rows);
-    let mut plot = LinePlot::new("Field (T)", "Barrier (meV)").y_range(0.0, 11.0).x_range(0.0, 1.58);
+    let mut plot = LinePlot::new("Field (T)", "Barrier (meV)").y_range(0.0, 15.0).x_range(0.0, 1.58);
     for (n, family) in families.iter().enumerate() {
         let colour = sequential(n as f64 / (families.len() - 1).max(1) as f64);
         let k = family[0].k_mev;
@@ -197,7 +197,7 @@ fn barriers(rows: &[Row]) -> LinePlot {
 
 fn deviations(rows: &[Row]) -> LinePlot {
     let families = families(rows);
-    let title = "Relative deviation × (width/spacing)²";
+    let title = "Deviation × (width/spacing)²";
     let mut plot = LinePlot::new("Reduced field μB/2K", title).x_range(0.0, 0.9).y_range(-0.047, 0.0);
     for (n, family) in families.iter().enumerate() {
         let colour = sequential(n as f64 / (families.len() - 1).max(1) as f64);

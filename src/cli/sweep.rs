@@ -274,21 +274,22 @@ fn all(arguments: &Arguments, index: &SweepIndex, dir: &Path, before: &[PointSta
             writeln!(out, "{}", json_line(index, dir, k, state))?;
         }
     }
-    tell(index, &after, &failed);
+    tell(index, &after, &failed, arguments.quiet);
     let codes = failed.iter().map(|(.., code)| *code);
     let doubtful = after.iter().any(|state| state.found().is_none_or(|f| !f.is_proven()));
     Ok(stopped.unwrap_or_else(|| codes.fold(if doubtful { UNFINISHED } else { 0 }, worse)))
 }
 
 /// What has failed and what is not certified, each in a line.
-fn tell(index: &SweepIndex, after: &[PointState], failed: &[(usize, String, u8)]) {
+fn tell(index: &SweepIndex, after: &[PointState], failed: &[(usize, String, u8)], quiet: bool) {
     let mut lines: Vec<String> = Vec::new();
     for (point, words, _) in failed {
         lines.push(format!("error: point {point}, {}: {words}", index.points[*point].directory));
     }
-    for (k, state) in after.iter().enumerate() {
+    for (k, state) in after.iter().enumerate().filter(|_| !quiet) {
         if let Some(found) = state.found().filter(|f| !f.is_proven()) {
-            let reason = found.warnings.last().map_or(String::new(), |w| format!(": {w}"));
+            let reason = found.warnings.last().map(|w| w.strip_prefix("not certified: ").unwrap_or(w));
+            let reason = reason.map_or(String::new(), |w| format!(": {w}"));
             lines.push(format!("point {k}, {}: not certified{reason}", index.points[k].directory));
         }
     }

@@ -4,7 +4,7 @@
 
 use super::{Parameter, PointState, SweepIndex, word};
 use crate::error::Result;
-use crate::output::canvas::{Canvas, Colour, LinePlot, Marker, SERIES, Series, sequential};
+use crate::output::canvas::{BLACK, Canvas, Colour, LinePlot, Marker, SERIES, Scale, Series, sequential};
 use crate::words::number;
 use std::collections::BTreeSet;
 
@@ -12,6 +12,11 @@ use std::collections::BTreeSet;
 const WIDE: f64 = 1e3;
 /// Curves in the legend where there are too many for names of their own.
 const NAMED: usize = 5;
+
+/// A longer legend has room of its own above the curves.
+const CORNER: usize = 3;
+/// The part of the figure's height that a line of the legend takes.
+const LINE_PART: f64 = 0.075;
 
 /// A curve: its name and its points.
 struct Curve {
@@ -39,7 +44,7 @@ pub fn draw_sweep(index: &SweepIndex, states: &[PointState]) -> Result<Option<Ca
         plot = plot.log_x();
     }
     let heights: Vec<f64> = (0..states.len()).filter_map(height).collect();
-    let (low, high) = heights.iter().fold((f64::INFINITY, 0.0f64), |(l, h), e| (l.min(*e), h.max(*e)));
+    let (low, high) = heights.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), e| (l.min(*e), h.max(*e)));
     if low > 0.0 && high > WIDE * low {
         plot = plot.log_y();
     }
@@ -60,12 +65,18 @@ pub fn draw_sweep(index: &SweepIndex, states: &[PointState]) -> Result<Option<Ca
         }
         plot.series.push(series);
         plot.series.push(marks(sure, if curves.len() > SERIES.len() { Marker::Dot } else { Marker::Disc }));
-        let mut rings = marks(other, Marker::Ring);
-        if !doubtful && !rings.points.is_empty() {
-            doubtful = true;
-            rings = rings.label("not certified");
-        }
+        let rings = marks(other, Marker::Ring);
+        doubtful |= !rings.points.is_empty();
         plot.series.push(rings);
+    }
+    if doubtful {
+        plot.series.push(Series::markers(Vec::new(), Marker::Ring).colour(BLACK).label("not certified"));
+    }
+    let named = plot.series.iter().filter(|s| s.label.is_some()).count();
+    if named > CORNER && plot.y.scale == Scale::Linear {
+        let free = LINE_PART * named as f64;
+        let span = (high - low).max(1e-9 * high.abs());
+        plot = plot.y_range(low - 0.06 * span, high + span * free / (1.0 - free));
     }
     plot.draw().map(Some)
 }
