@@ -1,10 +1,14 @@
 //! The command line: what can be said, and the help about it.
 
 pub mod check;
+pub mod collect;
+mod jobs;
 pub mod list;
 pub mod rate;
+pub mod relax;
 pub mod run;
 pub mod start;
+pub mod sweep;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use spinneb::config::rates;
@@ -49,6 +53,12 @@ Exit codes:
 pub enum Command {
     /// Find the minimum-energy path of each config and write its results
     Run(Run),
+    /// Relax the states of configs: energy, torque, minimum or not, lowest modes, zero modes
+    Relax(relax::Relax),
+    /// Run a config at many values of its keys
+    Sweep(sweep::Arguments),
+    /// Put the results of a sweep into one table and one figure
+    Collect(collect::Collect),
     /// Validate configs and print what would run: sites, energy scales, wall width, images, memory
     Check(Check),
     /// List what a config can ask for, with a line about each
@@ -316,6 +326,12 @@ mod tests {
             "spinneb schema",
             "spinneb completions fish",
             "spinneb man run",
+            "spinneb relax a.json b.json --set a=1 --out d --force --modes 3 --json",
+            "spinneb sweep a.json --list --json",
+            "spinneb sweep a.json --index 3 --threads 2 --force",
+            "spinneb sweep a.json --jobs 4 --threads 2 --out d --quiet",
+            "spinneb collect results/a",
+            "spinneb collect a.json --out d --json",
         ] {
             assert!(Cli::try_parse_from(line.split(' ')).is_ok(), "{line}");
         }
@@ -336,6 +352,14 @@ mod tests {
             "spinneb list nothing",
             "spinneb run a.json --threads 0",
             "spinneb walk a.json",
+            "spinneb relax",
+            "spinneb relax a.json --force",
+            "spinneb sweep",
+            "spinneb sweep a.json --list --index 3",
+            "spinneb sweep a.json --index 3 --jobs 2",
+            "spinneb sweep a.json --index=-1",
+            "spinneb sweep a.json --jobs 0",
+            "spinneb collect",
             "spinneb rate results/a",
             "spinneb rate results/a --temperature 300",
             "spinneb rate results/a --temperature 300meV",

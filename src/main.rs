@@ -9,6 +9,9 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Run(arguments) => cli::run::run(&arguments),
+        Command::Relax(arguments) => cli::relax::relax(&arguments),
+        Command::Sweep(arguments) => cli::sweep::sweep(&arguments),
+        Command::Collect(arguments) => cli::collect::collect(&arguments),
         Command::Check(arguments) => cli::check::check(&arguments),
         Command::List(arguments) => cli::list::list(&arguments),
         Command::Rate(arguments) => cli::rate::rate(&arguments),

@@ -81,7 +81,8 @@ fn distinct(loaded: &[Loaded], directories: &[PathBuf]) -> u8 {
     code
 }
 
-fn run_one(arguments: &Run, loaded: &Loaded, directory: &Path) -> Result<u8> {
+/// Runs one config into its folder, or says that it is done.
+pub(super) fn run_one(arguments: &Run, loaded: &Loaded, directory: &Path) -> Result<u8> {
     let started = Instant::now();
     let say = |line: &str| {
         if !arguments.quiet {

@@ -21,6 +21,21 @@ const SAME: f64 = 1e-9;
 /// Frozen spins closer than this agree, such as the tails of two walls (rad).
 const AGREE: f64 = 1e-3;
 
+/// A chain with its energy and its states, as a config has them.
+#[derive(Debug)]
+pub struct States {
+    /// The chain.
+    pub chain: Chain,
+    /// Its energy.
+    pub hamiltonian: Hamiltonian,
+    /// Its scales, before any state is relaxed.
+    pub scales: Scales,
+    /// The initial state.
+    pub initial: Spins,
+    /// The final state, where it was wanted.
+    pub final_state: Option<Spins>,
+}
+
 impl Loaded {
     /// Where the spins are.
     pub fn chain(&self) -> &Chain {
@@ -30,6 +45,31 @@ impl Loaded {
 
     /// The problem that the config states; an error, with its place, where something cannot be.
     pub fn problem(&self) -> Result<Problem> {
+        let config = &self.config;
+        let here = |e: Error| self.text.locate(e);
+        let States { chain, hamiltonian, scales, initial, final_state } = self.states(true)?;
+        let final_state = final_state.unwrap_or_else(|| initial.clone());
+        if largest_angle(initial.as_slice(), final_state.as_slice()) < SAME {
+            let message = "the initial and the final state are identical: there is no path between them";
+            return Err(here(Error::invalid("final", message)));
+        }
+        let mut problem = Problem::new(chain, hamiltonian, initial, final_state);
+        problem.relax_ends = config.relax_ends;
+        problem.images = config.path.images.0;
+        problem.guess = config.path.guess.clone();
+        problem.noise = config.path.noise;
+        problem.smooth = config.path.smooth;
+        problem.refine = config.saddle.refine;
+        problem.certify = config.saddle.certify;
+        problem.neb = config.neb.settings();
+        problem.rates = self.rates(&problem.chain)?;
+        self.affordable(needed_bytes(&problem, &scales), Some(expected_images(&problem, &scales)))?;
+        guess(&problem, &scales).map_err(here)?;
+        Ok(problem)
+    }
+
+    /// The chain, its energy and its states, the final one if it is wanted, with the same checks.
+    pub fn states(&self, with_final: bool) -> Result<States> {
         let config = &self.config;
         let here = |e: Error| self.text.locate(e);
         let chain = self.chain();
@@ -42,32 +82,19 @@ impl Loaded {
         self.affordable(memory::hamiltonian_bytes(chain.sites, 1, self.specs().count()), None)?;
         let terms = self.terms(chain)?;
         let idle = idle_direction(&terms);
-        let chain = &chain.clone().with_vacancies_frozen(idle);
-        let hamiltonian = Hamiltonian::new(chain, terms).map_err(here)?;
+        let chain = chain.clone().with_vacancies_frozen(idle);
+        let hamiltonian = Hamiltonian::new(&chain, terms).map_err(here)?;
         let scales = Scales::of_terms(&hamiltonian);
-        let context = StateContext { chain, wall_width_sites: scales.wall_width_sites };
+        let context = StateContext { chain: &chain, wall_width_sites: scales.wall_width_sites };
         let state = |spec: &StateSpec, key: &str| -> Result<Spins> {
             spec.build(&context).map_err(|e| here(e.within(&format!("{key}.{}", spec.name()))))
         };
         let initial = state(&config.initial, "initial")?;
-        let final_state = frozen(chain, &initial, state(&config.final_state, "final")?).map_err(here)?;
-        if largest_angle(initial.as_slice(), final_state.as_slice()) < SAME {
-            let message = "the initial and the final state are identical: there is no path between them";
-            return Err(here(Error::invalid("final", message)));
-        }
-        let mut problem = Problem::new(chain.clone(), hamiltonian, initial, final_state);
-        problem.relax_ends = config.relax_ends;
-        problem.images = config.path.images.0;
-        problem.guess = config.path.guess.clone();
-        problem.noise = config.path.noise;
-        problem.smooth = config.path.smooth;
-        problem.refine = config.saddle.refine;
-        problem.certify = config.saddle.certify;
-        problem.neb = config.neb.settings();
-        problem.rates = self.rates(chain)?;
-        self.affordable(needed_bytes(&problem, &scales), Some(expected_images(&problem, &scales)))?;
-        guess(&problem, &scales).map_err(here)?;
-        Ok(problem)
+        let final_state = match with_final {
+            true => Some(frozen(&chain, &initial, state(&config.final_state, "final")?).map_err(here)?),
+            false => None,
+        };
+        Ok(States { chain, hamiltonian, scales, initial, final_state })
     }
 
     /// What rates are asked for, with the moments of the sites.

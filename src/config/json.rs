@@ -13,11 +13,12 @@ pub(super) enum Step {
     Index(usize),
 }
 
-/// A path as people write it: `energy[2].anisotropy.K`, `.` for the document.
+/// A path as people write it: `energy[2].anisotropy.K`, `.` for the document; a key that looks like a path in `["…"]`.
 pub(super) fn written(steps: &[Step]) -> String {
     let mut text = String::new();
     for step in steps {
         match step {
+            Step::Key(key) if key.contains(['.', '[']) => text.push_str(&format!("[{}]", quoted(key))),
             Step::Key(key) if text.is_empty() => text.push_str(key),
             Step::Key(key) => {
                 text.push('.');

@@ -62,6 +62,19 @@ pub fn load(path: &Path, sets: &[String]) -> Result<Loaded> {
     load_text(path, text)
 }
 
+/// Reads a config whose states alone are wanted; whether it has a `final` one, which it need not.
+pub fn load_states(path: &Path, sets: &[String]) -> Result<(Loaded, bool)> {
+    let file = path.display().to_string();
+    let mut text = apply_set(&file, &read(path)?, sets)?;
+    let value: Value = parse(&file, &text)?;
+    let given = !value.is_object() || value.get("final").is_some();
+    if !given {
+        // it stands at the end and moves nothing else
+        text = apply_set(&file, &text, &[r#"final={"uniform": {"direction": [0, 0, 1]}}"#.into()])?;
+    }
+    Ok((load_text(path, text)?, given))
+}
+
 /// A config's text as if it were read from `path`, and what it names.
 pub fn load_text(path: &Path, text: String) -> Result<Loaded> {
     let file = path.display().to_string();
@@ -86,7 +99,8 @@ pub fn load_text(path: &Path, text: String) -> Result<Loaded> {
     Ok(Loaded { text, config, name, material, material_text, as_run, sha256, inputs, warnings })
 }
 
-fn read(path: &Path) -> Result<String> {
+/// The text of a file, for messages named as it was given.
+pub(super) fn read(path: &Path) -> Result<String> {
     let bytes = bytes(path).map_err(|source| Error::Io { path: path.into(), source })?;
     decode(&path.display().to_string(), bytes)
 }

@@ -20,10 +20,11 @@ pub mod rates;
 mod schema;
 mod set;
 mod strict;
+pub mod sweep;
 pub mod text;
 
-pub use built::{expected_images, needed_bytes};
-pub use load::{Loaded, Text, load, load_text};
+pub use built::{States, expected_images, needed_bytes};
+pub use load::{Loaded, Text, load, load_states, load_text};
 pub use material::{Material, MaterialChoice, Reference};
 pub use material_scales::MaterialScales;
 pub use name::Name;

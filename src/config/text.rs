@@ -68,7 +68,8 @@ pub(super) fn tree(file: &str, text: &str) -> Result<Node> {
     scan(text).map_err(|fault| at(file, text, fault.at, &fault.steps, fault.message))
 }
 
-fn at(file: &str, text: &str, at: usize, steps: &[Step], message: String) -> Error {
+/// An error at a byte of a text.
+pub(super) fn at(file: &str, text: &str, at: usize, steps: &[Step], message: String) -> Error {
     let (line, column) = position(text, at);
     Error::Config { file: file.into(), line, column, place: written(steps), message }
 }

@@ -33,6 +33,33 @@ impl Found {
     /// Refines a top. A saddle that is also a maximum of a shallow mode (a wall halfway between two sites) is left along that
     /// mode by `hop` (rad), for the one beside it.
     pub fn at(h: &Hamiltonian, top: Top, c: f64, hop: f64) -> Found {
+        let mut found = Found::near(h, top, c, hop);
+        found.sharpen(h, c);
+        if found.refined.index > 1 {
+            // a mode within the rounding error has no sign to count
+            found.refined.index = Spectrum::negatives(h, &found.refined.state);
+        }
+        found
+    }
+
+    /// Follows the modes of a saddle that the valley's search left where sliding over the lattice still has a torque.
+    fn sharpen(&mut self, h: &Hamiltonian, c: f64) {
+        let rest = |r: &Refined| r.state.max_torque_mev() / (1e-12 * r.state.hessian.norm1());
+        if !self.is_stationary(c) || rest(&self.refined) <= 1.0 {
+            return;
+        }
+        for start in [self.refined.state.m.clone(), self.top.m.clone()] {
+            if let Some(refined) = follow_modes(h, &start, c).filter(|r| rest(r) <= 1.0) {
+                let found = Found { top: self.top.clone(), refined };
+                if found.is_stationary(c) {
+                    *self = found;
+                    return;
+                }
+            }
+        }
+    }
+
+    fn near(h: &Hamiltonian, top: Top, c: f64, hop: f64) -> Found {
         let refined = refine(h, &top.m, &top.tau, c);
         let mut found = Found { top, refined };
         if !found.is_stationary(c) {

@@ -37,11 +37,16 @@ pub struct Minimum {
 impl Minimum {
     /// A relaxed state, examined.
     pub fn examine(h: &Hamiltonian, spins: &Spins) -> Minimum {
+        Minimum::with_modes(h, spins, 0)
+    }
+
+    /// The same with so many of its lowest eigenvalues.
+    pub fn with_modes(h: &Hamiltonian, spins: &Spins, count: usize) -> Minimum {
         let state = State::at(h, spins.as_slice().to_vec());
         Minimum {
             energy_mev: h.energy_mev(&state.m),
             max_torque_mev: state.max_torque_mev(),
-            spectrum: Spectrum::of(h, &state, 0),
+            spectrum: Spectrum::of(h, &state, count),
             spins: spins.clone(),
         }
     }

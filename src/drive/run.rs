@@ -44,7 +44,7 @@ const ESCAPES: usize = 3;
 /// Maxima within this part of the path's height of the highest are refined.
 const WINDOW: f64 = 0.1;
 /// Force at a relaxed end, in parts of the largest stiffness.
-const END_TOLERANCE: f64 = 1e-14;
+pub(super) const END_TOLERANCE: f64 = 1e-14;
 
 /// Finds the minimum-energy path of a problem.
 pub fn run(problem: &Problem, observer: &mut dyn Observer) -> Result<Outcome> {

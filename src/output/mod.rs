@@ -12,15 +12,18 @@ mod energy_path_plot;
 mod font;
 mod rates_csv;
 mod rates_summary;
+mod relaxed;
 mod spin_files;
 mod spins_plot;
 mod summary;
+pub mod sweep;
 
 pub use arrhenius_plot::{ArrheniusPlot, draw_lifetimes};
 pub use config_copy::ConfigCopy;
 pub use csv::{HistoryCsv, PathCsv, ProfileCsv};
 pub use energy_path_plot::{EnergyPath, EnergyPathPlot, draw_energy_paths};
 pub use rates_csv::RatesCsv;
+pub use relaxed::{RelaxReport, StateReport, relaxed_file_names};
 pub use spin_files::{OvfImages, PathNpz, PathOvf, SaddleOvf, SpinsCsv, Vtk};
 pub use spins_plot::{SpinsPlot, draw_spins};
 pub use summary::Summary;

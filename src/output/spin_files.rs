@@ -172,7 +172,7 @@ fn image_description(run: &RunReport, k: usize) -> String {
 }
 
 /// Cells in m, or in sites where the chain has no length.
-fn mesh(chain: &Chain) -> Mesh {
+pub(super) fn mesh(chain: &Chain) -> Mesh {
     match chain.spacing {
         Some(a) => {
             // OVF knows one size of cells: the largest, where they differ
@@ -186,7 +186,7 @@ fn mesh(chain: &Chain) -> Mesh {
 }
 
 /// Where the sites are, the first one at the origin, and the unit of that.
-fn positions(chain: &Chain, sites: usize) -> (Vec<Vector>, &'static str) {
+pub(super) fn positions(chain: &Chain, sites: usize) -> (Vec<Vector>, &'static str) {
     let along = chain.direction.unwrap_or(Direction::X).vector();
     let (step, unit) = chain.spacing.map_or((1.0, "sites"), |a| (a.0, "nm"));
     ((0..sites).map(|i| vector::scale(step * i as f64, along)).collect(), unit)

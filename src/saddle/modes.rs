@@ -29,6 +29,14 @@ const RADIUS: f64 = 0.3;
 /// Farthest from the start (rad, any spin).
 const FARTHEST: f64 = 2.0;
 
+/// A torque below this part of the stiffness is small enough.
+const LOOSE: f64 = 1e-11;
+/// One below this is sought for, in so many steps more: where a saddle hardly minds sliding over the lattice, the torque of that
+/// is smaller still.
+const TIGHT: f64 = 1e-13;
+/// Most steps between the two.
+const LAST_STEPS: usize = 12;
+
 /// The saddle of index one that mode following reaches from `m`, if it reaches one nearby; c is the stiffness scale (meV).
 pub fn follow_modes(h: &Hamiltonian, m: &[f64], c: f64) -> Option<Refined> {
     let kappa = (h.stiffness_mev() / 3.0).max(c);
@@ -36,34 +44,28 @@ pub fn follow_modes(h: &Hamiltonian, m: &[f64], c: f64) -> Option<Refined> {
     let mut radius = RADIUS / 3.0;
     let mut steps = 0;
     let mut factorisations = 0;
-    while state.max_torque_mev() > 1e-11 * c.max(h.stiffness_mev()) {
-        let frame = Frame::at(&state, c, kappa)?;
+    let scale = c.max(h.stiffness_mev());
+    let mut settled: Option<State> = None;
+    let mut left = LAST_STEPS;
+    while state.max_torque_mev() > TIGHT * scale && left > 0 {
+        if state.max_torque_mev() <= LOOSE * scale || settled.is_some() {
+            left -= 1;
+            if settled.as_ref().is_none_or(|s| state.max_torque_mev() < s.max_torque_mev()) {
+                settled = Some(state.clone());
+            }
+        }
+        match Frame::at(&state, c, kappa).and_then(|frame| frame.advance(h, &state, &mut radius, &mut steps)) {
+            Some(next) => state = next,
+            None => break,
+        }
         factorisations += 1;
-        loop {
-            steps += 1;
-            if steps > STEPS || radius < 1e-7 {
-                return None;
-            }
-            let (v, longest) = frame.step(&state, radius);
-            let next = State::at(h, state.moved(&v));
-            let told = state.predicted_mev(&state.basis.coordinates(&v));
-            let noise = 256.0 * f64::EPSILON * (state.energy_mev.abs() + h.stiffness_mev());
-            let ratio = h.difference_mev(&next.m, &state.m) / told;
-            let known = told.abs() > noise;
-            if known && !(0.25..4.0).contains(&ratio) {
-                radius = 0.3 * longest.min(radius);
-                continue;
-            }
-            if !known || (0.7..1.4).contains(&ratio) {
-                radius = (2.0 * radius).min(RADIUS);
-            }
-            state = next;
+        if largest_angle(m, &state.m) > FARTHEST {
             break;
         }
-        if largest_angle(m, &state.m) > FARTHEST {
-            return None;
-        }
     }
+    let sharp = |s: &State| s.max_torque_mev() <= LOOSE * scale && largest_angle(m, &s.m) <= FARTHEST;
+    let better = |s: &State| settled.as_ref().is_none_or(|known| s.max_torque_mev() < known.max_torque_mev());
+    let state = if sharp(&state) && better(&state) { state } else { settled? };
     let state = polish(h, state);
     let lowest = lowest_modes(&state.hessian, 2, &state.zeros);
     let valley = lowest.first()?;
@@ -98,6 +100,30 @@ impl Frame {
         let (across, _) = p.solve(&minus, 0.0);
         let positive = slab::dot(&across, &minus) >= 0.0 && soft.last().is_none_or(|m| count < MODES || m.value > 0.0);
         positive.then_some(Frame { soft, across })
+    }
+
+    /// The next state, with a radius for the step after it; none where no step tells the energy well enough.
+    fn advance(&self, h: &Hamiltonian, state: &State, radius: &mut f64, steps: &mut usize) -> Option<State> {
+        loop {
+            *steps += 1;
+            if *steps > STEPS || *radius < 1e-7 {
+                return None;
+            }
+            let (v, longest) = self.step(state, *radius);
+            let next = State::at(h, state.moved(&v));
+            let told = state.predicted_mev(&state.basis.coordinates(&v));
+            let noise = 256.0 * f64::EPSILON * (state.energy_mev.abs() + h.stiffness_mev());
+            let ratio = h.difference_mev(&next.m, &state.m) / told;
+            let known = told.abs() > noise;
+            if known && !(0.25..4.0).contains(&ratio) {
+                *radius = 0.3 * longest.min(*radius);
+                continue;
+            }
+            if !known || (0.7..1.4).contains(&ratio) {
+                *radius = (2.0 * *radius).min(RADIUS);
+            }
+            return Some(next);
+        }
     }
 
     /// The step as a vector field, and its longest part along a soft mode (rad, any spin).

@@ -6,7 +6,10 @@
 //! A quantity is read from a string only, `"13 pJ/m"`. Powers of ten are applied in decimal and equal constants cancel,
 //! so `"10 meV"` is exactly 10 and what was written is what is computed with.
 
+mod any;
 mod parse;
+
+pub use any::AnyQuantity;
 
 use crate::error::{Error, Result};
 use crate::words::number;

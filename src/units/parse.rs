@@ -216,6 +216,48 @@ pub(super) static BOND_ENERGY: Wanted = Wanted {
     kinds: &[MEV, J_M2],
 };
 
+/// A quantity of whatever kind.
+static ANY: Wanted = Wanted {
+    name: "a quantity",
+    units: "units of energy, moment, field, stiffness, magnetisation, length, temperature, time or angle, with SI prefixes",
+    example: "0.5 meV",
+    kinds: &[],
+};
+
+/// The number of a quantity of any kind and its unit as written.
+pub(super) fn any(text: &str) -> Result<(f64, &str)> {
+    let wrong = |message| Error::invalid("", message);
+    let (number, unit) = split_any(text).map_err(wrong)?;
+    Ok((number.convert(&unit, &unit, text).map_err(wrong)?, number.unit.trim_end()))
+}
+
+/// The number of a quantity in the unit that another one is written in.
+pub(super) fn any_as(text: &str, other: &str) -> Result<f64> {
+    let wrong = |message| Error::invalid("", message);
+    let (number, unit) = split_any(text).map_err(wrong)?;
+    let (_, target) = split_any(other).map_err(wrong)?;
+    if unit.dimension != target.dimension {
+        let [is, wanted] = [&unit, &target].map(measure);
+        return Err(wrong(format!("{} is {is}, but {} is {wanted}", quoted(text), quoted(other))));
+    }
+    number.convert(&unit, &target, text).map_err(wrong)
+}
+
+fn split_any(text: &str) -> std::result::Result<(Number<'_>, Unit), String> {
+    let number = Number::split(text, &ANY)?;
+    if number.unit.is_empty() {
+        return Err(format!("{} has no unit", quoted(text)));
+    }
+    let unit = ANY.unit(number.unit, text)?;
+    Ok((number, unit))
+}
+
+/// What a unit measures, in words.
+fn measure(unit: &Unit) -> &'static str {
+    let measure = MEASURES.iter().find(|(dimension, _)| *dimension == unit.dimension);
+    measure.map_or("of a kind that is not used here", |(_, name)| name)
+}
+
 impl Wanted {
     /// The value in the unit of the kind that fits, and which kind that is.
     pub(super) fn parse(&self, text: &str) -> Result<(f64, usize)> {
@@ -248,9 +290,8 @@ impl Wanted {
     }
 
     fn wrong_dimension(&self, number: &Number, unit: &Unit, text: &str) -> String {
-        let measure = MEASURES.iter().find(|(dimension, _)| *dimension == unit.dimension);
-        let measure = measure.map_or("of a kind that is not used here", |(_, name)| name);
-        let mut message = format!("{} is {measure}, but {} is wanted here: {}", quoted(text), self.name, self.units);
+        let mut message =
+            format!("{} is {}, but {} is wanted here: {}", quoted(text), measure(unit), self.name, self.units);
         if unit.dimension == CURRENT_A && std::ptr::eq(self, &LENGTH) {
             message.push_str(" (A is the ampere)");
         }

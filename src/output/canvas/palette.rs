@@ -35,6 +35,13 @@ pub fn mix(a: Colour, b: Colour, t: f64) -> Colour {
     Colour(channel(a.0, b.0), channel(a.1, b.1), channel(a.2, b.2))
 }
 
+/// A map of [0, 1] for curves of a family: dark blue, purple, orange.
+pub fn sequential(t: f64) -> Colour {
+    const DARK: Colour = Colour(0x1a, 0x2a, 0x6c);
+    let t = t.clamp(0.0, 1.0);
+    if t < 0.5 { mix(DARK, PURPLE, 2.0 * t) } else { mix(PURPLE, ORANGE, 2.0 * t - 1.0) }
+}
+
 /// A diverging map of [−1, 1]: blue, white, red, of equal lightness on both sides.
 pub fn diverging(v: f64) -> Colour {
     let t = if v.is_finite() { v.clamp(-1.0, 1.0) } else { 0.0 };

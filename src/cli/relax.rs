@@ -1,0 +1,187 @@
+//! `relax`: the ends of a path by themselves, what they relax to and whether that is a minimum.
+
+use super::run::start_threads;
+use super::{UNFINISHED, note, report, worse};
+use anyhow::Result;
+use clap::Args;
+use spinneb::config::{Loaded, load_states};
+use spinneb::drive::{RelaxedState, relaxed_state};
+use spinneb::error::Error;
+use spinneb::output::{RelaxReport, disk, relaxed_file_names};
+use std::io::{self, ErrorKind, Write};
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+
+/// The arguments of `relax`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+A config of relax needs no \"final\" state, and the two may be the same. A state is named a minimum if no torque remains but for
+rounding and no direction leads down; zero modes are rotations about symmetry axes, flat ones lie below the rounding error.
+
+Examples:
+  spinneb relax wall.json
+  spinneb relax wall.json --set initial.domain_wall.center=30 --modes 12
+  spinneb relax wall.json --out relaxed      then in a config: \"initial\": {\"file\": {\"path\": \"relaxed/initial.ovf\"}}
+
+Exit codes: 0 every state is a minimum, 3 one is not, 2 the command line or a config is wrong")]
+pub struct Relax {
+    /// Configs whose states to relax
+    #[arg(required = true, value_name = "CONFIG")]
+    pub configs: Vec<PathBuf>,
+
+    /// Folder for relax.json and the states, in the config's output.formats; with several configs, each gets a folder of its
+    /// name in it [default: nothing is written]
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+
+    /// How many of the lowest eigenvalues are computed
+    #[arg(long, default_value_t = 6, value_name = "COUNT")]
+    pub modes: usize,
+
+    /// Number of threads; results do not depend on it [default: all cores]
+    #[arg(short, long, value_name = "N")]
+    pub threads: Option<NonZeroUsize>,
+
+    /// Change a value of the config first, as in `run`; may be given several times
+    #[arg(long, value_name = "KEY.PATH=JSON")]
+    pub set: Vec<String>,
+
+    /// Replace files that are in the folder
+    #[arg(long, requires = "out")]
+    pub force: bool,
+
+    /// No progress and no messages, only errors
+    #[arg(short, long)]
+    pub quiet: bool,
+
+    /// Print one line of JSON for each state on stdout instead of the report
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Relaxes the states of all configs, one after the other.
+pub fn relax(arguments: &Relax) -> Result<u8> {
+    start_threads(arguments.threads)?;
+    let mut code = 0;
+    for config in &arguments.configs {
+        code = worse(code, relax_one(arguments, config).unwrap_or_else(|error| report(&error)));
+    }
+    Ok(code)
+}
+
+fn relax_one(arguments: &Relax, config: &Path) -> Result<u8> {
+    let say = |line: &str| {
+        if !arguments.quiet {
+            note(line)
+        }
+    };
+    let (loaded, with_final) = load_states(config, &arguments.set)?;
+    let states = loaded.states(with_final)?;
+    let (name, formats) = (&loaded.name, &loaded.config.output.formats);
+    let given = [("initial", Some(&states.initial)), ("final", states.final_state.as_ref())];
+    let given: Vec<_> = given.into_iter().filter_map(|(which, spins)| Some((which, spins?))).collect();
+    let directory = directory(arguments, &loaded);
+    if let Some(dir) = &directory {
+        let which: Vec<&str> = given.iter().map(|(which, _)| *which).collect();
+        free(dir, &relaxed_file_names(&which, formats), arguments.force)?;
+    }
+    loaded.warnings.iter().for_each(|warning| say(&format!("{name}: warning: {warning}")));
+    let h = &states.hamiltonian;
+    let mut relaxed = Vec::new();
+    for (which, spins) in given {
+        say(&format!("{name}: relaxing the {which} state"));
+        let state = relaxed_state(h, spins, arguments.modes, which)?;
+        state.warnings.iter().for_each(|warning| say(&format!("{name}: warning: {warning}")));
+        relaxed.push((which, state));
+    }
+    let same_minimum = match &relaxed[..] {
+        [(_, a), (_, b)] => Some(a.minimum.is_same(h, &b.minimum)),
+        _ => None,
+    };
+    let found = RelaxReport {
+        name,
+        version: env!("CARGO_PKG_VERSION"),
+        chain: &states.chain,
+        hamiltonian: h,
+        states: &relaxed,
+        same_minimum,
+        formats,
+    };
+    if let Some(dir) = &directory {
+        for file in found.files()? {
+            disk::write_file(&dir.join(&file.name), &file.bytes)?;
+        }
+        say(&format!("{name}: the states are in {}", dir.display()));
+    }
+    print(arguments, &found, directory.is_some())?;
+    Ok(if relaxed.iter().all(|(_, state)| state.is_proven()) { 0 } else { UNFINISHED })
+}
+
+/// Where the files of a config go, if anywhere.
+fn directory(arguments: &Relax, loaded: &Loaded) -> Option<PathBuf> {
+    let out = arguments.out.as_ref()?;
+    Some(if arguments.configs.len() == 1 { out.clone() } else { out.join(&loaded.name) })
+}
+
+/// Nothing that is there may be replaced unless that is wished.
+fn free(dir: &Path, names: &[String], force: bool) -> Result<()> {
+    match names.iter().map(|name| dir.join(name)).find(|path| path.exists()) {
+        Some(path) if !force => {
+            let words = "exists already; use --force to replace it, or another folder with --out";
+            Err(Error::Io { path, source: io::Error::new(ErrorKind::AlreadyExists, words) }.into())
+        }
+        _ => Ok(()),
+    }
+}
+
+fn print(arguments: &Relax, found: &RelaxReport, written: bool) -> Result<()> {
+    let mut out = io::stdout().lock();
+    if arguments.json {
+        for state in found.states(written) {
+            writeln!(out, "{}", serde_json::to_string(&state)?)?;
+        }
+    } else {
+        writeln!(out, "{}", found.name)?;
+        found.states.iter().try_for_each(|(which, state)| print_state(&mut out, found, which, state))?;
+        if found.same_minimum == Some(true) {
+            writeln!(out, "  both states relax to the same minimum")?;
+        }
+    }
+    Ok(out.flush()?)
+}
+
+fn print_state(out: &mut impl Write, found: &RelaxReport, which: &str, state: &RelaxedState) -> io::Result<()> {
+    let (relaxed, minimum) = (&state.relaxed, &state.minimum);
+    let s = &minimum.spectrum;
+    let kind = match (state.is_proven(), s.flat) {
+        (true, 0) => "a minimum".into(),
+        (true, _) => format!("a minimum, flat to {:.1e} meV", s.floor_mev),
+        (false, _) if s.negative > 0 => format!("no minimum: {} directions lead down (Morse index)", s.negative),
+        _ => "not proven to be a minimum: a torque remains".into(),
+    };
+    writeln!(out, "  {which}: {kind}")?;
+    let mut row = |key: &str, value: String| writeln!(out, "    {key:<12}{value}");
+    row("energy", format!("{:.9} meV", minimum.energy_mev))?;
+    for (term, energy) in found.hamiltonian.energies_mev(relaxed.spins.as_slice()) {
+        row("", format!("{energy:.9} meV {term}"))?;
+    }
+    row("torque", format!("{:.1e} meV at most", minimum.max_torque_mev))?;
+    let turned = relaxed.largest_rotation_rad.to_degrees();
+    row(
+        "as given",
+        format!(
+            "{:.9} meV, torque {:.1e} meV; then a spin turned by up to {turned:.3} degrees in {} steps",
+            state.given_mev, state.given_torque_mev, relaxed.steps
+        ),
+    )?;
+    let zero = if s.zero > 0 { " (rotations about symmetry axes)" } else { "" };
+    row(
+        "modes",
+        format!("{} negative, {} zero{zero}, {} flat (below {:.1e} meV)", s.negative, s.zero, s.flat, s.floor_mev),
+    )?;
+    if !s.lowest_mev.is_empty() {
+        let lowest: Vec<String> = s.lowest_mev.iter().map(|e| format!("{e:.6}")).collect();
+        row("lowest", format!("{} meV, zero modes apart", lowest.join(", ")))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,300 @@
+//! `sweep`: a config at many values, the points one by one or several at a time.
+//!
+//! Each point of a local sweep is a process of its own: what happens to one, be it killed for its memory, does not touch the others.
+
+use super::collect::{self, json_line, states};
+use super::jobs::{Ended, run_all};
+use super::run::{run_one, start_threads};
+use super::{Run, UNFINISHED, USAGE, note, report, worse};
+use anyhow::{Context, Result};
+use clap::Args;
+use rayon::prelude::*;
+use spinneb::config::sweep::Sweep;
+use spinneb::error::Error;
+use spinneb::output::sweep::{IndexedPoint, PointState, SweepIndex, look};
+use std::io::{self, Write};
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::thread::available_parallelism;
+
+/// Most errors, and most points, that are told one by one.
+const TOLD: usize = 20;
+
+/// The arguments of `sweep`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+A sweep's file names a config and the values of its keys (paths as in `run --set`), a list or a range with both ends:
+
+  {\"config\": \"ring.json\",
+   \"set\": {\"output.plots\": []},
+   \"grid\": {\"energy[0].anisotropy.K\": [\"0.1 meV\", \"0.2 meV\"],
+            \"energy[1].zeeman.B[2]\": {\"from\": \"-0.1 T\", \"to\": \"-0.8 T\", \"points\": 8, \"scale\": \"linear\"}}}
+
+\"grid\" takes every value with every other, the last key changing fastest; \"zip\" takes the first values together, then the
+second ones. \"set\" changes the config of all points. Each point has a folder of its own, named after its values. Points that
+are done are not run again, and a point that fails does not stop the others.
+
+Examples:
+  spinneb sweep field.json                      all points, as many at a time as there are cores
+  spinneb sweep field.json --list               index, values, folder and state of each point
+  spinneb sweep field.json --index 17           one point: with a Slurm array, --index $SLURM_ARRAY_TASK_ID
+  spinneb collect field.json                    barriers.csv and barriers.svg, .png of what is there")]
+pub struct Arguments {
+    /// The sweep's file
+    #[arg(value_name = "SWEEP")]
+    pub file: PathBuf,
+
+    /// Folder for the results, a folder a point in it [default: results/<name of the sweep>]
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+
+    /// Print the points: index, values, folder, and whether they are done
+    #[arg(short, long, conflicts_with_all = ["count", "index", "jobs", "threads", "force"])]
+    pub list: bool,
+
+    /// Print the number of points
+    #[arg(long, conflicts_with_all = ["index", "jobs", "threads", "force", "json"])]
+    pub count: bool,
+
+    /// Run this point alone, counted from 0
+    #[arg(short, long, value_name = "INDEX", conflicts_with = "jobs")]
+    pub index: Option<usize>,
+
+    /// How many points run at a time [default: all cores over --threads]
+    #[arg(short, long, value_name = "N")]
+    pub jobs: Option<NonZeroUsize>,
+
+    /// Number of threads of a point; results do not depend on it [default: 1, and all cores with --index]
+    #[arg(short, long, value_name = "N")]
+    pub threads: Option<NonZeroUsize>,
+
+    /// Run all points anew and replace what is in their folders
+    #[arg(long)]
+    pub force: bool,
+
+    /// No progress and no messages, only errors
+    #[arg(short, long)]
+    pub quiet: bool,
+
+    /// Print one line of JSON for each point on stdout
+    #[arg(long)]
+    pub json: bool,
+}
+
+impl Arguments {
+    fn say(&self, line: &str) {
+        if !self.quiet {
+            note(line)
+        }
+    }
+}
+
+/// Runs a sweep, or the part that is asked for.
+pub fn sweep(arguments: &Arguments) -> Result<u8> {
+    let sweep = Sweep::load(&arguments.file)?;
+    let dir = folder(arguments.out.as_deref(), &sweep);
+    if arguments.count {
+        writeln!(io::stdout(), "{}", sweep.len())?;
+        return Ok(0);
+    }
+    if let Some(point) = arguments.index {
+        return one(arguments, &sweep, &dir, point);
+    }
+    let Some(index) = checked(&sweep, !arguments.list)? else { return Ok(USAGE) };
+    if arguments.list {
+        return list(arguments, &index, &dir);
+    }
+    let before = states(&dir, &index);
+    if !arguments.force && occupied(&dir, &index, &before) {
+        return Ok(USAGE);
+    }
+    all(arguments, &index, &dir, &before)
+}
+
+/// Where the results of a sweep go.
+pub(super) fn folder(out: Option<&Path>, sweep: &Sweep) -> PathBuf {
+    out.map_or_else(|| Path::new("results").join(&sweep.name), Path::to_path_buf)
+}
+
+/// What the sweep consists of, with all points checked; nothing if one of them is wrong, which is said. The physics of each is
+/// built too where it is about to run.
+pub(super) fn checked(sweep: &Sweep, build: bool) -> Result<Option<SweepIndex>> {
+    let hash = |point: usize| -> spinneb::error::Result<String> {
+        let loaded = sweep.load_point(point)?;
+        if build {
+            sweep.problem(point, &loaded)?;
+        }
+        Ok(loaded.sha256)
+    };
+    let found: Vec<_> = (0..sweep.len()).into_par_iter().map(hash).collect();
+    let mut hashes = Vec::new();
+    let mut errors: Vec<Error> = Vec::new();
+    for one in found {
+        match one {
+            Ok(hash) => hashes.push(hash),
+            // points that share a value share what is wrong with it
+            Err(error) if errors.iter().any(|e| e.to_string() == error.to_string()) => {}
+            Err(error) => errors.push(error),
+        }
+    }
+    let more = errors.len().saturating_sub(TOLD);
+    let any = !errors.is_empty();
+    errors.into_iter().take(TOLD).for_each(|error| _ = report(&error.into()));
+    if more > 0 {
+        note(&format!("error: and {more} more"));
+    }
+    Ok((!any).then(|| sweep.index(hashes)))
+}
+
+/// One point, as `run` runs a config.
+fn one(arguments: &Arguments, sweep: &Sweep, dir: &Path, point: usize) -> Result<u8> {
+    start_threads(arguments.threads)?;
+    if point >= sweep.len() {
+        let last = sweep.len() - 1;
+        note(&format!("error: there is no point {point}: {} has the points 0 to {last}", arguments.file.display()));
+        return Ok(USAGE);
+    }
+    let loaded = sweep.load_point(point)?;
+    sweep.problem(point, &loaded)?;
+    let known = |index: &SweepIndex| {
+        let same = |p: &IndexedPoint| *p == sweep.indexed(point, loaded.sha256.clone());
+        index.points.len() == sweep.len() && index.points.get(point).is_some_and(same)
+    };
+    if !SweepIndex::read(dir)?.is_some_and(|index| known(&index)) {
+        // what is wrong with other points is theirs to say
+        let hash = |k: usize| sweep.load_point(k).map(|loaded| loaded.sha256).unwrap_or_default();
+        sweep.index((0..sweep.len()).into_par_iter().map(hash).collect()).write(dir)?;
+    }
+    let run = Run {
+        configs: vec![sweep.config.clone()],
+        out: None,
+        threads: arguments.threads,
+        set: Vec::new(),
+        force: arguments.force,
+        quiet: arguments.quiet,
+        json: arguments.json,
+        resume: !arguments.force,
+    };
+    run_one(&run, &loaded, &dir.join(sweep.directory(point)))
+}
+
+/// A line a point.
+fn list(arguments: &Arguments, index: &SweepIndex, dir: &Path) -> Result<u8> {
+    let states = states(dir, index);
+    let mut out = io::stdout().lock();
+    if arguments.json {
+        for (k, state) in states.iter().enumerate() {
+            writeln!(out, "{}", json_line(index, dir, k, state))?;
+        }
+        return Ok(0);
+    }
+    let head = ["index".to_string()].into_iter().chain(index.keys.iter().map(|k| k.label.clone()));
+    let mut rows: Vec<Vec<String>> = vec![head.chain(["state", "directory"].map(String::from)).collect()];
+    for (k, (point, state)) in index.points.iter().zip(&states).enumerate() {
+        let values = point.values.iter().map(|v| v.as_str().map_or_else(|| v.to_string(), String::from));
+        let place = dir.join(&point.directory).display().to_string();
+        rows.push([k.to_string()].into_iter().chain(values).chain([state.word().into(), place]).collect());
+    }
+    let width = |c: usize| rows.iter().map(|row| row[c].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..rows[0].len()).map(width).collect();
+    for row in &rows {
+        let cells: Vec<String> = row.iter().zip(&widths).map(|(cell, w)| format!("{cell:w$}")).collect();
+        writeln!(out, "{}", cells.join("  ").trim_end())?;
+    }
+    out.flush()?;
+    Ok(0)
+}
+
+/// Whether folders hold results of other configs or versions, which is said.
+fn occupied(dir: &Path, index: &SweepIndex, before: &[PointState]) -> bool {
+    let other = |state: &PointState| match state {
+        PointState::Other => true,
+        PointState::Found(found) => found.version != env!("CARGO_PKG_VERSION"),
+        PointState::Missing => false,
+    };
+    let taken: Vec<usize> = (0..before.len()).filter(|k| other(&before[*k])).collect();
+    if let Some(first) = taken.first() {
+        let place = dir.join(&index.points[*first].directory);
+        note(&format!(
+            "error: {} of {} points have a folder with a result of another config or version, the first {}; use --force \
+             to replace them, or another folder with --out",
+            taken.len(),
+            before.len(),
+            place.display()
+        ));
+    }
+    !taken.is_empty()
+}
+
+/// All points that are not done, several at a time.
+fn all(arguments: &Arguments, index: &SweepIndex, dir: &Path, before: &[PointState]) -> Result<u8> {
+    index.write(dir)?;
+    let todo: Vec<usize> = (0..before.len()).filter(|k| arguments.force || before[*k].found().is_none()).collect();
+    let threads = arguments.threads.map_or(1, NonZeroUsize::get);
+    let cores = available_parallelism().map_or(1, NonZeroUsize::get);
+    let jobs = arguments.jobs.map_or((cores / threads).max(1), NonZeroUsize::get);
+    let (name, total) = (&index.name, todo.len());
+    if total < before.len() {
+        arguments.say(&format!("{name}: {} of {} points are done already", before.len() - total, before.len()));
+    }
+    let program = std::env::current_exe().context("the program does not know where it is")?;
+    let start = |point: usize| {
+        let mut command = Command::new(&program);
+        command.arg("sweep").arg(&arguments.file).arg("--out").arg(dir);
+        command.args(["--index", &point.to_string(), "--threads", &threads.to_string(), "--quiet"]);
+        if arguments.force {
+            command.arg("--force");
+        }
+        command.stdin(Stdio::null()).stdout(Stdio::null()).output()
+    };
+    let mut failed: Vec<(usize, String, u8)> = Vec::new();
+    let mut count = 0;
+    let stopped = run_all(&todo, jobs, start, |point, ended: &Ended| {
+        count += 1;
+        let state = look(dir, index, point).unwrap_or(PointState::Missing);
+        let said = match (&state, ended.failure()) {
+            (PointState::Found(found), None) => collect::words(found),
+            (_, failure) => {
+                let (words, code) = failure.unwrap_or(("no result was written".into(), 1));
+                failed.push((point, words.clone(), code));
+                format!("failed: {words}")
+            }
+        };
+        arguments.say(&format!("{name}: {count} of {total}: {}: {said}", index.points[point].directory));
+    });
+    failed.sort();
+    let after = states(dir, index);
+    if stopped.is_none() {
+        collect::write(index, dir, &after, arguments.quiet)?;
+    }
+    if arguments.json {
+        let mut out = io::stdout().lock();
+        for (k, state) in after.iter().enumerate() {
+            writeln!(out, "{}", json_line(index, dir, k, state))?;
+        }
+    }
+    tell(index, &after, &failed, arguments.quiet);
+    let codes = failed.iter().map(|(.., code)| *code);
+    let doubtful = after.iter().any(|state| state.found().is_none_or(|f| !f.is_proven()));
+    Ok(stopped.unwrap_or_else(|| codes.fold(if doubtful { UNFINISHED } else { 0 }, worse)))
+}
+
+/// What has failed and what is not certified, each in a line.
+fn tell(index: &SweepIndex, after: &[PointState], failed: &[(usize, String, u8)], quiet: bool) {
+    let mut lines: Vec<String> = Vec::new();
+    for (point, words, _) in failed {
+        lines.push(format!("error: point {point}, {}: {words}", index.points[*point].directory));
+    }
+    for (k, state) in after.iter().enumerate().filter(|_| !quiet) {
+        if let Some(found) = state.found().filter(|f| !f.is_proven()) {
+            let reason = found.warnings.last().map(|w| w.strip_prefix("not certified: ").unwrap_or(w));
+            let reason = reason.map_or(String::new(), |w| format!(": {w}"));
+            lines.push(format!("point {k}, {}: not certified{reason}", index.points[k].directory));
+        }
+    }
+    lines.iter().take(TOLD).for_each(|line| note(line));
+    if lines.len() > TOLD {
+        note(&format!("and {} more; `spinneb sweep --list` shows all", lines.len() - TOLD));
+    }
+}

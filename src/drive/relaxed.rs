@@ -1,0 +1,53 @@
+//! A state relaxed by itself, with what it was before and what kind of state it is now.
+
+use super::ends::{Relaxed, judge_end, kept, relax_to_minimum};
+use super::minimum::Minimum;
+use super::run::END_TOLERANCE;
+use crate::energy::Hamiltonian;
+use crate::error::Result;
+use crate::spins::Spins;
+
+/// A state before and after it was relaxed.
+#[derive(Clone, Debug)]
+pub struct RelaxedState {
+    /// Energy as given (meV).
+    pub given_mev: f64,
+    /// Largest component of the force as given (meV).
+    pub given_torque_mev: f64,
+    /// How it relaxed.
+    pub relaxed: Relaxed,
+    /// What it is now, with its lowest eigenvalues.
+    pub minimum: Minimum,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+impl RelaxedState {
+    /// Converged, and proven to be a minimum, perhaps a flat one.
+    pub fn is_proven(&self) -> bool {
+        self.relaxed.converged && self.minimum.is_proven()
+    }
+}
+
+/// Relaxes a state as a run relaxes its ends; `modes` of its eigenvalues are computed, and `which` names it in warnings.
+pub fn relaxed_state(h: &Hamiltonian, spins: &Spins, modes: usize, which: &str) -> Result<RelaxedState> {
+    let relaxed = relax_to_minimum(h, spins, END_TOLERANCE * h.stiffness_mev())?;
+    let minimum = Minimum::with_modes(h, &relaxed.spins, modes);
+    let mut warnings = judge_end(&relaxed, which);
+    let s = &minimum.spectrum;
+    if s.negative > 0 {
+        warnings.push(format!("the {which} state is no minimum: {} directions lead down from it", s.negative));
+    }
+    if s.flat > 0 {
+        let modes = if s.flat == 1 { "mode is".into() } else { format!("{} modes are", s.flat) };
+        warnings
+            .push(format!("the {which} state is flat to {:.1e} meV: {modes} below the rounding error", s.floor_mev));
+    }
+    Ok(RelaxedState {
+        given_mev: h.energy_mev(spins.as_slice()),
+        given_torque_mev: kept(h, spins).max_torque_mev,
+        minimum,
+        relaxed,
+        warnings,
+    })
+}

@@ -1,0 +1,200 @@
+//! Relaxed states: `relax.json`, and the spins as files that a config's `file` states read.
+
+use super::disk::File;
+use super::spin_files::{mesh, positions};
+use super::summary::Number;
+use crate::drive::RelaxedState;
+use crate::energy::Hamiltonian;
+use crate::error::{Error, Result};
+use crate::files::{self, Array, OvfData, Segment};
+use crate::geometry::Vector;
+use crate::lattice::Chain;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// The file with the numbers.
+const NUMBERS: &str = "relax.json";
+
+/// The states of a config, relaxed.
+#[derive(Clone, Copy, Debug)]
+pub struct RelaxReport<'a> {
+    /// Name of the config.
+    pub name: &'a str,
+    /// Version of the program.
+    pub version: &'a str,
+    /// The chain.
+    pub chain: &'a Chain,
+    /// Its energy.
+    pub hamiltonian: &'a Hamiltonian,
+    /// The states with their names, `initial` and perhaps `final`.
+    pub states: &'a [(&'static str, RelaxedState)],
+    /// Both states relaxed to the same minimum; nothing if there is but one.
+    pub same_minimum: Option<bool>,
+    /// Kinds of files, as in a config's `output.formats`.
+    pub formats: &'a [String],
+}
+
+/// What is told of a state. Energies and eigenvalues in meV.
+#[derive(Serialize)]
+#[allow(non_snake_case)]
+pub struct StateReport<'a> {
+    name: &'a str,
+    state: &'a str,
+    minimum: bool,
+    converged: bool,
+    energy_meV: Number,
+    energies_meV: BTreeMap<&'static str, Number>,
+    max_torque_meV: Number,
+    negative_modes: usize,
+    zero_modes: usize,
+    flat_modes: usize,
+    noise_floor_meV: Number,
+    lowest_eigenvalues_meV: Vec<Number>,
+    mean_spin: [Number; 3],
+    energy_as_given_meV: Number,
+    max_torque_as_given_meV: Number,
+    largest_rotation_rad: Number,
+    left_saddle: bool,
+    steps: usize,
+    warnings: &'a [String],
+    files: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct Document<'a> {
+    name: &'a str,
+    version: &'a str,
+    same_minimum: Option<bool>,
+    states: Vec<StateReport<'a>>,
+}
+
+impl<'a> RelaxReport<'a> {
+    /// What is told of each state; its files are named if they are written.
+    pub fn states(&self, written: bool) -> Vec<StateReport<'a>> {
+        self.states.iter().map(|(which, state)| self.state(which, state, written)).collect()
+    }
+
+    fn state(&self, which: &'a str, state: &'a RelaxedState, written: bool) -> StateReport<'a> {
+        let (minimum, relaxed) = (&state.minimum, &state.relaxed);
+        let energies = self.hamiltonian.energies_mev(relaxed.spins.as_slice());
+        StateReport {
+            name: self.name,
+            state: which,
+            minimum: minimum.is_proven(),
+            converged: relaxed.converged,
+            energy_meV: Number(minimum.energy_mev),
+            energies_meV: energies.into_iter().map(|(term, e)| (term, Number(e))).collect(),
+            max_torque_meV: Number(minimum.max_torque_mev),
+            negative_modes: minimum.spectrum.negative,
+            zero_modes: minimum.spectrum.zero,
+            flat_modes: minimum.spectrum.flat,
+            noise_floor_meV: Number(minimum.spectrum.floor_mev),
+            lowest_eigenvalues_meV: minimum.spectrum.lowest_mev.iter().copied().map(Number).collect(),
+            mean_spin: mean(&relaxed.spins.vectors()).map(Number),
+            energy_as_given_meV: Number(state.given_mev),
+            max_torque_as_given_meV: Number(state.given_torque_mev),
+            largest_rotation_rad: Number(relaxed.largest_rotation_rad),
+            left_saddle: relaxed.left_saddle,
+            steps: relaxed.steps,
+            warnings: &state.warnings,
+            files: if written { spin_files(which, self.formats) } else { Vec::new() },
+        }
+    }
+
+    /// All files: the states, and `relax.json` last.
+    pub fn files(&self) -> Result<Vec<File>> {
+        let mut files = Vec::new();
+        for (which, state) in self.states {
+            for format in FORMATS.iter().filter(|f| f.is_in(self.formats)) {
+                let bytes = (format.render)(self, which, &state.relaxed.spins.vectors())?;
+                files.push(File { name: format.file(which), bytes });
+            }
+        }
+        let document = Document {
+            name: self.name,
+            version: self.version,
+            same_minimum: self.same_minimum,
+            states: self.states(true),
+        };
+        let text = serde_json::to_string_pretty(&document);
+        let text = text.map_err(|e| Error::Numerical(format!("{NUMBERS}: {e}")))?;
+        files.push(File { name: NUMBERS.into(), bytes: (text + "\n").into_bytes() });
+        Ok(files)
+    }
+}
+
+/// Names of all files that are written for these states in these formats.
+pub fn relaxed_file_names(states: &[&str], formats: &[String]) -> Vec<String> {
+    let spins = states.iter().flat_map(|which| spin_files(which, formats));
+    spins.chain([NUMBERS.to_string()]).collect()
+}
+
+/// A way to write a state.
+struct StateFormat {
+    /// Its names in `output.formats`.
+    names: &'static [&'static str],
+    suffix: &'static str,
+    ending: &'static str,
+    render: fn(&RelaxReport, &str, &[Vector]) -> Result<Vec<u8>>,
+}
+
+impl StateFormat {
+    fn is_in(&self, formats: &[String]) -> bool {
+        formats.iter().any(|f| self.names.contains(&f.as_str()))
+    }
+
+    fn file(&self, which: &str) -> String {
+        format!("{which}{}.{}", self.suffix, self.ending)
+    }
+}
+
+/// All ways to write a state.
+static FORMATS: &[StateFormat] = &[
+    StateFormat { names: &["npz"], suffix: "", ending: "npz", render: npz },
+    StateFormat { names: &["ovf"], suffix: "", ending: "ovf", render: |r, w, m| Ok(ovf(OvfData::Binary8, r, w, m)) },
+    StateFormat {
+        names: &["ovf_binary4"],
+        suffix: "_binary4",
+        ending: "ovf",
+        render: |r, w, m| Ok(ovf(OvfData::Binary4, r, w, m)),
+    },
+    StateFormat {
+        names: &["ovf_text", "ovf_images"],
+        suffix: "_text",
+        ending: "ovf",
+        render: |r, w, m| Ok(ovf(OvfData::Text, r, w, m)),
+    },
+    StateFormat {
+        names: &["csv", "spins_csv"],
+        suffix: "",
+        ending: "csv",
+        render: |_, _, m| Ok(files::write_csv([m].into_iter())),
+    },
+    StateFormat { names: &["vtk"], suffix: "", ending: "vtp", render: vtp },
+];
+
+fn spin_files(which: &str, formats: &[String]) -> Vec<String> {
+    FORMATS.iter().filter(|f| f.is_in(formats)).map(|f| f.file(which)).collect()
+}
+
+fn npz(_: &RelaxReport, _: &str, spins: &[Vector]) -> Result<Vec<u8>> {
+    let numbers = spins.iter().flatten().copied().collect();
+    files::write_npz(&[("spins".into(), Array { shape: vec![spins.len(), 3], numbers })])
+}
+
+fn ovf(data: OvfData, report: &RelaxReport, which: &str, spins: &[Vector]) -> Vec<u8> {
+    let energy = report.states.iter().find(|(name, _)| *name == which).map(|(_, s)| s.minimum.energy_mev);
+    let energy = energy.map_or(String::new(), |e| format!(", energy {e:?} meV"));
+    let description = format!("{}: relaxed {which} state{energy}", report.name);
+    files::write_ovf(data, &mesh(report.chain), &[Segment { description: &description, spins }])
+}
+
+fn vtp(report: &RelaxReport, _: &str, spins: &[Vector]) -> Result<Vec<u8>> {
+    let (positions, unit) = positions(report.chain, spins.len());
+    Ok(files::write_vtp(&positions, report.chain.periodic, spins, unit))
+}
+
+fn mean(spins: &[Vector]) -> Vector {
+    let n = spins.len().max(1) as f64;
+    [0, 1, 2].map(|c| spins.iter().map(|v| v[c]).sum::<f64>() / n)
+}
