@@ -12,6 +12,7 @@ mod energy_path_plot;
 mod font;
 mod rates_csv;
 mod rates_summary;
+mod report;
 mod spin_files;
 mod spins_plot;
 mod summary;
@@ -21,6 +22,7 @@ pub use config_copy::ConfigCopy;
 pub use csv::{HistoryCsv, PathCsv, ProfileCsv};
 pub use energy_path_plot::{EnergyPath, EnergyPathPlot, draw_energy_paths};
 pub use rates_csv::RatesCsv;
+pub use report::ReportPage;
 pub use spin_files::{OvfImages, PathNpz, PathOvf, SaddleOvf, SpinsCsv, Vtk};
 pub use spins_plot::{SpinsPlot, draw_spins};
 pub use summary::Summary;
@@ -142,6 +144,12 @@ pub const KINDS: &[Kind] = &[
         group: Group::Formats,
         summary: "path.ovf, saddle.ovf: spins as OVF 2.0 binary 8, a segment an image or saddle",
         formats: || ovf(OvfData::Binary8),
+    },
+    Kind {
+        name: "html",
+        group: Group::Formats,
+        summary: "report.html: all of it in one page for a browser, with the spins in 3D along the path; needs no network",
+        formats: || vec![Box::new(ReportPage)],
     },
     Kind {
         name: "ovf_binary4",
