@@ -143,18 +143,20 @@ class Browser:
         """Left, top, width, height of an element in the window."""
         return self.run(f"(() => {{ const b = document.querySelector({json.dumps(selector)}).getBoundingClientRect(); return [b.left, b.top, b.width, b.height]; }})()")
 
-    def picture(self, selector=None, whole=False, keep=None):
-        """What is on the screen, of an element, the window or the whole page, as an Image; kept as a file where asked for."""
-        more = {}
-        if selector:
-            left, top, width, height = self.box(selector)
-            x, y = self.run("[scrollX, scrollY]")
-            more = {"clip": {"x": left + x, "y": top + y, "width": width, "height": height, "scale": 1}}
-        data = base64.b64decode(self.call("Page.captureScreenshot", format="png", captureBeyondViewport=whole, **more)["data"])
+    def picture(self, selector=None, keep=None):
+        """What is on the screen, of an element or the whole window, at two fifths of its size; kept in full as a file where asked for."""
+        left, top, width, height = self.box(selector or "html")
+        x, y = self.run("[scrollX, scrollY]")
+        if not selector:
+            left, top, (width, height) = 0, 0, self.run("[innerWidth, innerHeight]")
+        area = {"x": left + x, "y": top + y, "width": width, "height": height}
         if keep:
             with open(keep, "wb") as file:
-                file.write(data)
-        return Image(data)
+                file.write(self.capture({**area, "scale": 1}))
+        return Image(self.capture({**area, "scale": 0.4}))
+
+    def capture(self, clip):
+        return base64.b64decode(self.call("Page.captureScreenshot", format="png", clip=clip)["data"])
 
 
 class Image:

@@ -20,7 +20,7 @@ function byDirection(x, y, z, out, at) {
   const hue = Math.atan2(y, x) + 0.4363;
   const lightness = z > 0 ? 0.67 + 0.29 * z ** 1.5 : 0.67 - 0.38 * (-z) ** 1.5;
   const chroma = 0.14 * across ** 0.8;
-  const tint = z > 0 ? 0.045 * z ** 4 : -0.07 * z ** 4;
+  const tint = z > 0 ? 0.03 * z ** 4 : -0.07 * z ** 4;
   oklab(lightness, chroma * Math.cos(hue), chroma * Math.sin(hue) + tint, out, at);
 }
 

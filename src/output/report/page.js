@@ -173,7 +173,7 @@ function alternates({ sites, spins }) {
 /** Where the run is from, and what of it is not shown. */
 function introduce() {
   const { spacing_nm: spacing, periodic, frozen, vacant, sites, images } = data;
-  const parts = [data.material.name, `${periodic ? "ring" : "chain"} of ${plural(sites, "site")}${spacing ? `, ${number(spacing, 4)} nm apart` : ""}`];
+  const parts = [data.material.name, `${periodic ? "ring" : "chain"} of ${plural(sites, "site")}${spacing && sites > 1 ? `, ${number(spacing, 4)} nm apart` : ""}`];
   if (frozen.length) parts.push(`${frozen.length} frozen`);
   if (vacant.length) parts.push(`${vacant.length} vacant`);
   $("subject").textContent = [...parts, `spinneb ${data.summary.version}`].filter(Boolean).join(" · ");

@@ -90,7 +90,8 @@ class Path {
     this.energy = column(data.energy_above_initial_meV);
     this.torque = column(data.max_perpendicular_torque_meV);
     this.terms = data.terms.map(term => ({ name: term.name, energy: column(term.above_initial_meV) }));
-    this.length = this.at.length ? this.at[this.at.length - 1] : 0;
+    const length = this.at.length ? this.at[this.at.length - 1] : 0;
+    this.length = length > 1e-9 ? length : 0;
     this.stops = stops(data.summary, this.length);
     this.curve = curve(column(data.profile.reaction_coordinate_rad), column(data.profile.energy_above_initial_meV), this);
   }

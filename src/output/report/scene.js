@@ -62,9 +62,21 @@ class Scene {
     const { places, rows, closed, arrow } = LAYOUTS[kind](n, aspect);
     this.places = Array.from({ length: n }, (_, k) => places(k));
     this.rows = rows;
+    // room for the numbers before the rows
+    this.seen = kind === "rows" ? [...this.places, ...rows.map(row => add(this.places[row[0]], [-2, 0, 0]))] : this.places;
     this.closed = closed && n > 2;
-    this.usual = arrow;
+    this.usual = this.alongChain() ? Math.min(arrow, 1.3) : arrow;
     this.resize();
+  }
+
+  /** Whether many spins lie along the chain at one of the path's ends: longer arrows would run into each other. */
+  alongChain() {
+    const { path, axes, live, lab } = this;
+    return [0, path.length].some(s => {
+      path.spinsAt(s, lab);
+      const sum = live.reduce((sum, k) => sum + dot(axes[0], lab.subarray(3 * k, 3 * k + 3)) ** 2, 0);
+      return sum > 0.3 * live.length;
+    });
   }
 
   /** The arrows' measures, after a change of their length. */
@@ -87,28 +99,37 @@ class Scene {
     return { right: [ca, sa, 0], up: [-se * sa, se * ca, ce], eye: [sa * ce, -ca * ce, se] };
   }
 
-  /** How far the eye must be to see everything from the direction of these angles. */
+  /** Puts the eye and the middle of the picture so that everything is just seen from these angles. */
   fit(aspect, angles) {
     const before = this.turn;
     this.turn = angles;
-    const { right, up, eye } = this.basis();
+    const axes = this.basis();
     this.turn = before;
     const reach = 0.5 * this.arrow.length + 0.3;
-    const tan = Scene.TAN * 0.93;
-    let distance = 1;
-    for (const place of this.places) {
-      const near = dot(place, eye) + 0.5 * reach;
-      distance = Math.max(distance, near + (Math.abs(dot(place, right)) + reach) / (tan * aspect));
-      distance = Math.max(distance, near + (Math.abs(dot(place, up)) + reach) / tan);
+    const radius = reach + Math.max(...this.seen.map(place => Math.hypot(...place)));
+    const nearest = 1.5 * reach + Math.max(...this.seen.map(place => dot(place, axes.eye)));
+    let [target, distance] = [[0, 0, 0], (3 * radius) / Scene.TAN];
+    for (let round = 0; round < 8; round++) {
+      const camera = { ...axes, target, distance, width: 2 * aspect, height: 2, scale: 1 / Scene.TAN };
+      let [left, right, top, bottom] = [Infinity, -Infinity, Infinity, -Infinity];
+      for (const place of this.seen) {
+        const [x, y, , scale] = project(camera, place), room = reach * scale;
+        [left, right] = [Math.min(left, x - room), Math.max(right, x + room)];
+        [top, bottom] = [Math.min(top, y - room), Math.max(bottom, y + room)];
+      }
+      const perPixel = distance * Scene.TAN;
+      target = add(target, axes.right, ((left + right) / 2 - aspect) * perPixel);
+      target = add(target, axes.up, (1 - (top + bottom) / 2) * perPixel);
+      distance = Math.max(nearest, distance * Math.max((right - left) / (1.95 * aspect), (bottom - top) / 1.85));
     }
-    this.distance = distance;
+    Object.assign(this, { center: target, distance });
   }
 
   /** Everything that a picture needs to project points. */
   camera(width, height) {
     const { right, up, eye } = this.basis();
     const distance = this.distance / this.zoom;
-    const target = add(add([0, 0, 0], right, this.shift[0]), up, this.shift[1]);
+    const target = add(add(this.center, right, this.shift[0]), up, this.shift[1]);
     return { right, up, eye, target, distance, width, height, scale: height / (2 * Scene.TAN) };
   }
 

@@ -24,7 +24,7 @@ function answer(summary) {
   verdict.classList.toggle("no", !(certified && converged));
   const words = make("details", {}, make("summary", {}, "What this means"), make("p", {}, certified ? MEANING.yes : MEANING.no));
   verdict.append(words);
-  $("answer").append(barrier("Barrier forward, from the initial state", "forward"), barrier("Barrier backward, from the final state", "backward"), verdict);
+  $("answer").append(barrier("Barrier forward (initial → final)", "forward"), barrier("Barrier backward (final → initial)", "backward"), verdict);
 }
 
 /** A table from a list of headings and rows of cells; a cell is text or an element. */
@@ -66,9 +66,9 @@ function stationary(path, go) {
     const { image, negative_modes, zero_modes, lowest_eigenvalues_meV: modes, max_torque_meV } = stop.state;
     const at = image ?? (stop.s > 0 ? path.data.images - 1 : 0);
     return [stop.name, number(stop.energy, 8), number(stop.s, 6), String(at), count(negative_modes), count(zero_modes),
-      (modes ?? []).slice(0, 4).map(e => number(e, 4)).join("  ") || "–", number(max_torque_meV, 2), button];
+      (modes ?? []).slice(0, 4).map(e => number(e, 4)).join(", ") || "–", number(max_torque_meV, 2), button];
   };
-  const headings = ["State", "E − E_initial (meV)", "At (rad)", "Image", "Descending modes", "Zero modes", "Lowest eigenvalues (meV)", "Torque left (meV)", ""];
+  const headings = ["State", "Above initial (meV)", "At (rad)", "Image", "Descending modes", "Zero modes", "Lowest eigenvalues (meV)", "Torque left (meV)", ""];
   const caption = "In path order. A minimum has no descending mode, a saddle of first order exactly one.";
   section("Minima and saddles", table(caption, headings, path.stops.map(row)));
 }
@@ -113,7 +113,7 @@ function rejected(summary) {
 function energies(path) {
   const rows = path.images.map((image, k) => [String(image), number(path.at[k], 6), number(path.energy[k], 6),
     ...path.terms.map(term => number(term.energy[k], 6)), number(path.torque[k], 2)]);
-  const headings = ["Image", "Reaction coordinate (rad)", "E − E_initial (meV)", ...path.terms.map(term => `${term.name} (meV)`), "Torque across the path (meV)"];
+  const headings = ["Image", "Reaction coordinate (rad)", "Above initial (meV)", ...path.terms.map(term => `${term.name} (meV)`), "Torque across the path (meV)"];
   const caption = "Energies above those of the initial state";
   section("The profile as a table", make("details", {}, make("summary", {}, plural(rows.length, "image")), table(caption, headings, rows)));
 }

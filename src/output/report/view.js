@@ -6,10 +6,10 @@ class View {
     this.scene = new Scene(path);
     this.canvas = $("view");
     this.onPlay = onPlay;
-    this.s = 0;
+    Object.assign(this, { s: 0, scrolled: -1e9 });
     this.start(Glass.on(this.canvas));
     this.measure();
-    const wide = this.width / path.sites.length >= 5;
+    const wide = this.width / path.sites.length >= (this.scene.alongChain() ? 18 : 5);
     this.arrange(path.data.periodic ? "ring" : wide ? "line" : "rows");
     new ResizeObserver(() => this.measure()).observe($("frame"));
     this.listen();
@@ -76,6 +76,7 @@ class View {
   }
 
   turnBy(right, up) {
+    $("hint").hidden = true;
     this.turning = null;
     const [a, e] = this.scene.turn;
     this.scene.turn = [a + right, clamp(e + up, -90, 90)];
@@ -84,6 +85,7 @@ class View {
   }
 
   zoomBy(factor) {
+    $("hint").hidden = true;
     this.scene.zoom = clamp(this.scene.zoom * factor, 0.4, 60);
     this.refresh();
   }
@@ -211,7 +213,8 @@ class View {
       c.moveTo(...reach(from));
       c.lineTo(...reach(1.22));
       c.stroke();
-      c.fillText(name, ...reach(1.36));
+      const [ex, ey] = reach(1.22), out = Math.max(Math.hypot(x, y), 1e-9);
+      c.fillText(name, ex + (0.2 * radius * x) / out, ey + (0.2 * radius * y) / out);
     });
     c.globalAlpha = 1;
   }
@@ -228,12 +231,13 @@ class View {
     c.fillRect(0, 0, whole.width, whole.height);
     c.drawImage(this.canvas, 0, 0);
     c.drawImage($("labels"), 0, 0);
-    c.drawImage($("sphere"), 6 * this.ratio, whole.height - $("sphere").height - 6 * this.ratio);
+    c.drawImage($("sphere"), whole.width - $("sphere").width - 6 * this.ratio, 6 * this.ratio);
     return whole;
   }
 
   listen() {
     this.steer();
+    addEventListener("scroll", () => (this.scrolled = performance.now()), { passive: true });
     $("zoom-in").onclick = () => this.zoomBy(1.25);
     $("zoom-out").onclick = () => this.zoomBy(0.8);
     for (const button of document.querySelectorAll("[data-view]")) button.onclick = () => this.look(button.dataset.view);
@@ -272,6 +276,8 @@ class View {
     canvas.addEventListener("contextmenu", event => event.preventDefault());
     canvas.addEventListener("dblclick", () => this.look("tilted"));
     canvas.addEventListener("wheel", event => {
+      // a page that is being scrolled goes on
+      if (performance.now() - this.scrolled < 250) return;
       event.preventDefault();
       this.zoomBy(Math.exp(-clamp(event.deltaY * (event.deltaMode ? 30 : 1), -200, 200) * 0.0016));
     }, { passive: false });

@@ -23,7 +23,7 @@ uniform float outline; uniform vec3 ink;
 out vec4 result;
 void main() {
   vec3 n = normalize(facing);
-  float light = 0.66 + 0.36 * max(0.0, dot(n, vec3(-0.40, 0.58, 0.71)));
+  float light = 0.72 + 0.31 * max(0.0, dot(n, vec3(-0.40, 0.58, 0.71)));
   float glint = 0.16 * pow(max(0.0, dot(n, vec3(-0.22, 0.32, 0.92))), 24.0);
   result = outline > 0.0 ? vec4(ink, 1.0) : vec4(paint * light + glint, 1.0);
 }`;
