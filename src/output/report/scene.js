@@ -63,7 +63,7 @@ class Scene {
     this.places = Array.from({ length: n }, (_, k) => places(k));
     this.rows = rows;
     // room for the numbers before the rows
-    this.seen = kind === "rows" ? [...this.places, ...rows.map(row => add(this.places[row[0]], [-2, 0, 0]))] : this.places;
+    this.seen = kind === "rows" ? [...this.places, ...rows.map(row => add(this.places[row[0]], [-3, 0, 0]))] : this.places;
     this.closed = closed && n > 2;
     this.usual = this.alongChain() ? Math.min(arrow, 1.3) : arrow;
     this.resize();

@@ -134,10 +134,14 @@ class View {
     const { rows, path, places, arrow, kind } = this.scene;
     const ends = kind === "line" ? [0, places.length - 1] : kind === "ring" ? [0] : rows.length < 25 ? rows.map(row => row[0]) : [0];
     c.globalAlpha = 0.75;
+    c.textAlign = kind === "rows" ? "right" : "center";
+    let above = -Infinity;
     for (const k of new Set(ends)) {
-      const beside = kind === "rows" ? add(places[k], [-1.4, 0, 0]) : add(places[k], [0, 0, -0.5 * arrow.length]);
+      const beside = kind === "rows" ? add(places[k], [-1.2, 0, 0]) : add(places[k], [0, 0, -0.5 * arrow.length]);
       const [x, y, depth] = project(camera, beside);
-      if (depth > 0) c.fillText(String(path.sites[k]), x, kind === "rows" ? y + 4 : y + 16);
+      if (depth <= 0 || (kind === "rows" && Math.abs(y - above) < 13)) continue;
+      c.fillText(String(path.sites[k]), x, kind === "rows" ? y + 4 : y + 16);
+      above = y;
     }
     c.globalAlpha = 1;
     if (this.pointed !== undefined) this.tell(c, camera, this.pointed);
@@ -174,7 +178,7 @@ class View {
     this.keyed = mark;
     canvas.width = canvas.height = n;
     const c = canvas.getContext("2d"), image = c.createImageData(n, n), rgb = [0, 0, 0];
-    const { axes, scheme } = this.scene, radius = 0.34 * n;
+    const { axes, scheme } = this.scene, radius = 0.31 * n;
     const toLab = v => [0, 1, 2].map(i => v[0] * axes[0][i] + v[1] * axes[1][i] + v[2] * axes[2][i]);
     const [right, up, eye] = [camera.right, camera.up, camera.eye].map(toLab);
     for (let row = 0, at = 0; row < n; row++) {
