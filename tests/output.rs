@@ -9,8 +9,8 @@ use spinneb::geometry::Direction;
 use spinneb::lattice::Chain;
 use spinneb::output::disk::{self, Destination, File};
 use spinneb::output::{
-    EnergyPath, EnergyPathPlot, Format, HistoryCsv, KINDS, PathCsv, Picture, ProfileCsv, RunReport, SpinsPlot, Summary,
-    draw_energy_paths, known_files, render_files,
+    EnergyPath, EnergyPathPlot, Format, HistoryCsv, KINDS, PathCsv, Picture, ProfileCsv, ReportPage, RunReport,
+    SpinsPlot, Summary, draw_energy_paths, known_files, render_files,
 };
 use spinneb::path::Path;
 use spinneb::spins::Spins;
@@ -437,6 +437,77 @@ fn text_in_an_svg_is_escaped() {
     let svg = draw_energy_paths(&[path("a<b"), path("c&d")]).unwrap().svg().unwrap();
     let svg = String::from_utf8(svg).unwrap();
     assert!(svg.contains("a&lt;b") && svg.contains("c&amp;d"));
+}
+
+/// The data in a page, and the page without them.
+fn page(o: &Outcome, config_text: &str) -> (serde_json::Value, String) {
+    let bytes = ReportPage.render(&RunReport { config_text, ..report(o) }).unwrap();
+    let page = String::from_utf8(bytes).unwrap();
+    let (before, rest) = page.split_once("id=\"data\">").unwrap();
+    let (data, after) = rest.split_once("</script>").unwrap();
+    (serde_json::from_str(data).unwrap(), format!("{before}{after}"))
+}
+
+#[test]
+fn a_page_is_made_of_every_outcome_and_stays_small() {
+    for (name, o) in figures() {
+        let (data, rest) = page(&o, "{}");
+        let bytes = ReportPage.render(&report(&o)).unwrap();
+        keep(&format!("{name}_report.html"), &bytes);
+        assert!(rest.len() < 100_000, "{name}: {} bytes without data", rest.len());
+        assert!(bytes.len() < 300_000, "{name}: {} bytes", bytes.len());
+        assert_eq!((&data["sites"], &data["images"]), (&o.path.sites().into(), &o.path.images().into()), "{name}");
+        let shown = |key: &str| data[key].as_array().unwrap().len();
+        assert!(shown("sites_shown") == o.path.sites().min(1000) && shown("images_shown") == o.path.images(), "{name}");
+        assert_eq!(data["terms"].as_array().unwrap().len(), o.images.terms_mev.len(), "{name}");
+    }
+}
+
+#[test]
+fn words_of_a_run_come_back_from_its_page_and_are_no_markup_in_it() {
+    let words = "</script><script>alert(1)</script> <!-- & ' \" \u{2028} {{data}} http://example.org";
+    let mut o = tiny();
+    o.warnings = vec![words.into()];
+    o.rejected_paths[0].guess = words.into();
+    o.images.terms_mev[1].0 = words.into();
+    let config = serde_json::json!({"material": {"name": words, "source": words}}).to_string();
+    let (data, rest) = page(&o, &config);
+    for found in [
+        &data["summary"]["warnings"][0],
+        &data["summary"]["rejected_paths"][0]["guess"],
+        &data["terms"][1]["name"],
+        &data["material"]["name"],
+        &data["material"]["source"],
+    ] {
+        assert_eq!(found, words);
+    }
+    assert_eq!(data["config"], config);
+    assert!(!rest.contains("alert(1)") && !rest.contains("{{") && !rest.contains("http:") && !rest.contains("https:"));
+    assert_eq!(rest.matches("<script").count(), 2);
+    let named = ReportPage.render(&RunReport { name: "a<b>&\"c", ..report(&o) }).unwrap();
+    assert!(String::from_utf8(named).unwrap().contains("<title>a&lt;b&gt;&amp;&quot;c</title>"));
+}
+
+#[test]
+fn a_page_does_not_depend_on_time_and_threads() {
+    let mut o = tiny();
+    let first = ReportPage.render(&report(&o)).unwrap();
+    (o.work.seconds, o.work.threads) = (1234.5, 64);
+    assert_eq!(ReportPage.render(&report(&o)).unwrap(), first);
+    let (data, _) = page(&o, "{}");
+    assert_eq!(data["summary"]["work"], serde_json::json!({"iterations": 10, "force_evaluations": 200}));
+}
+
+#[test]
+fn a_long_config_is_named_but_not_repeated_and_a_number_that_is_not_finite_is_an_error() {
+    let mut o = tiny();
+    let long = serde_json::json!({"material": {"name": "long"}, "comment": "x".repeat(100_000)}).to_string();
+    let (data, rest) = page(&o, &long);
+    assert_eq!((&data["config"], &data["material"]["name"]), (&serde_json::Value::Null, &"long".into()));
+    assert!(rest.contains("config.json"));
+    o.images.above_initial_mev[2] = f64::INFINITY;
+    let error = ReportPage.render(&report(&o)).unwrap_err().to_string();
+    assert_eq!(error, "report.html: energy_above_initial_meV, row 3: inf is not a finite number");
 }
 
 fn file(name: &str, content: &str) -> File {

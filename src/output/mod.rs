@@ -13,6 +13,7 @@ mod font;
 mod rates_csv;
 mod rates_summary;
 mod relaxed;
+mod report;
 mod spin_files;
 mod spins_plot;
 mod summary;
@@ -24,6 +25,7 @@ pub use csv::{HistoryCsv, PathCsv, ProfileCsv};
 pub use energy_path_plot::{EnergyPath, EnergyPathPlot, draw_energy_paths};
 pub use rates_csv::RatesCsv;
 pub use relaxed::{RelaxReport, StateReport, relaxed_file_names};
+pub use report::ReportPage;
 pub use spin_files::{OvfImages, PathNpz, PathOvf, SaddleOvf, SpinsCsv, Vtk};
 pub use spins_plot::{SpinsPlot, draw_spins};
 pub use summary::Summary;
@@ -145,6 +147,12 @@ pub const KINDS: &[Kind] = &[
         group: Group::Formats,
         summary: "path.ovf, saddle.ovf: spins as OVF 2.0 binary 8, a segment an image or saddle",
         formats: || ovf(OvfData::Binary8),
+    },
+    Kind {
+        name: "html",
+        group: Group::Formats,
+        summary: "report.html: all of it in one page for a browser, with the spins in 3D along the path; needs no network",
+        formats: || vec![Box::new(ReportPage)],
     },
     Kind {
         name: "ovf_binary4",

@@ -29,6 +29,7 @@ pub use line_plot::{AxisLabel, LinePlot, Marker, Series};
 pub use number::{decimal, power_of_ten, significant};
 pub use obstacles::Obstacles;
 pub use palette::*;
+pub(super) use render_plot::base64;
 pub use shapes::{Align, Canvas, Point, Text};
 
 /// Points in a millimetre.

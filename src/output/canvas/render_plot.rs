@@ -266,7 +266,7 @@ fn image_element(raster: &Raster) -> Result<String> {
 }
 
 /// RFC 4648.
-fn base64(bytes: &[u8]) -> String {
+pub(in crate::output) fn base64(bytes: &[u8]) -> String {
     const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
     for chunk in bytes.chunks(3) {

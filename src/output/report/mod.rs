@@ -1,0 +1,282 @@
+//! `report.html`: the result as one page that needs nothing but a browser: summary, energy profile, map and the spins in 3D along
+//! the path.
+//!
+//! Style, scripts and data are in the page itself, and its policy (Content-Security-Policy) forbids everything else: no network, no
+//! script but the one whose SHA-256 it names. Data are JSON in which `<`, `>` and `&` are escaped, and the scripts put words from the
+//! run into the page as text only, so that nothing in a config becomes markup. A long path is [thinned](shown) and the page says so.
+//! Time and threads are left out: the page of a config is always the same, byte for byte.
+
+mod pack;
+mod shown;
+
+use super::canvas::base64;
+use super::{Format, RunReport, Summary};
+use crate::drive::Outcome;
+use crate::error::{Error, Result};
+use pack::{column, packed};
+use serde::Serialize;
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+use shown::{Shown, evenly};
+
+const PAGE: &str = include_str!("page.html");
+const STYLE: &str = include_str!("page.css");
+/// One module; the order is that of use.
+const SCRIPT: &str = concat!(
+    include_str!("base.js"),
+    include_str!("path.js"),
+    include_str!("colour.js"),
+    include_str!("scene.js"),
+    include_str!("webgl.js"),
+    include_str!("flat.js"),
+    include_str!("view.js"),
+    include_str!("chart.js"),
+    include_str!("summary.js"),
+    include_str!("page.js"),
+);
+/// A longer config is not repeated in the page (bytes).
+const LONGEST_CONFIG: usize = 40_000;
+/// Most points of the interpolated curve.
+const CURVE: usize = 2000;
+
+/// `report.html`.
+#[derive(Clone, Copy, Debug)]
+pub struct ReportPage;
+
+impl Format for ReportPage {
+    fn file_name(&self) -> String {
+        "report.html".into()
+    }
+
+    fn render(&self, run: &RunReport) -> Result<Vec<u8>> {
+        let json = serde_json::to_string(&data(run)?).map_err(|e| Error::Numerical(format!("report.html: {e}")))?;
+        let policy = format!(
+            "default-src 'none'; img-src data: blob:; style-src {}; script-src {}; base-uri 'none'; form-action 'none'",
+            hash(STYLE),
+            hash(SCRIPT)
+        );
+        let content = |name: &str| match name {
+            "policy" => Some(policy.clone()),
+            "title" => Some(markup(run.name)),
+            "style" => Some(STYLE.into()),
+            "data" => Some(inert(&json)),
+            "script" => Some(SCRIPT.into()),
+            _ => None,
+        };
+        filled(PAGE, content).map(String::into_bytes)
+    }
+}
+
+/// What the scripts read; the names of numbers have their units.
+#[derive(Serialize)]
+#[allow(non_snake_case)]
+struct Data {
+    summary: Value,
+    config: Option<String>,
+    material: Material,
+    sites: usize,
+    images: usize,
+    periodic: bool,
+    spacing_nm: Option<f64>,
+    direction: [f64; 3],
+    vacant: Vec<usize>,
+    frozen: Vec<usize>,
+    sites_shown: Vec<usize>,
+    images_shown: Vec<usize>,
+    reaction_coordinate_rad: String,
+    energy_above_initial_meV: String,
+    max_perpendicular_torque_meV: String,
+    terms: Vec<Term>,
+    profile: Curve,
+    profile_points: usize,
+    spins: Spins,
+}
+
+#[derive(Serialize)]
+struct Material {
+    name: Option<String>,
+    source: Option<String>,
+}
+
+#[derive(Serialize)]
+#[allow(non_snake_case)]
+struct Term {
+    name: String,
+    above_initial_meV: String,
+}
+
+#[derive(Serialize)]
+#[allow(non_snake_case)]
+struct Curve {
+    reaction_coordinate_rad: String,
+    energy_above_initial_meV: String,
+}
+
+#[derive(Serialize)]
+struct Spins {
+    scale: f64,
+    packed: String,
+}
+
+fn data(run: &RunReport) -> Result<Data> {
+    let (outcome, chain) = (run.outcome, run.chain);
+    let (t, path) = (&outcome.images, &outcome.path);
+    let shown = Shown::of(outcome);
+    let of = |name: &str, values: &[f64]| column(name, shown.images.iter().filter_map(|k| values.get(*k).copied()));
+    let terms = t.terms_mev.iter().map(|(name, energy)| {
+        let start = energy.first().copied().unwrap_or(0.0);
+        let above: Vec<f64> = energy.iter().map(|e| e - start).collect();
+        Ok(Term { name: name.clone(), above_initial_meV: of(name, &above)? })
+    });
+    let vacant = chain.is_vacant()?;
+    let frozen = chain.frozen.iter().map(|f| f.sites.indices(chain.sites, "site")).collect::<Result<Vec<_>>>()?;
+    Ok(Data {
+        summary: summary(run)?,
+        config: (run.config_text.len() <= LONGEST_CONFIG).then(|| run.config_text.into()),
+        material: material(run.config_text),
+        sites: path.sites(),
+        images: path.images(),
+        periodic: chain.periodic,
+        spacing_nm: chain.spacing.map(|a| a.0),
+        direction: chain.direction.map_or([1.0, 0.0, 0.0], |d| d.vector()),
+        vacant: shown.sites.iter().copied().filter(|i| vacant.get(*i) == Some(&true)).collect(),
+        frozen: shown.among(frozen.into_iter().flatten()),
+        reaction_coordinate_rad: of("reaction_coordinate_rad", &t.reaction_coordinate_rad)?,
+        energy_above_initial_meV: of("energy_above_initial_meV", &t.above_initial_mev)?,
+        max_perpendicular_torque_meV: of("max_perpendicular_torque_meV", &t.max_perpendicular_torque_mev)?,
+        terms: terms.collect::<Result<_>>()?,
+        profile: curve(outcome)?,
+        profile_points: outcome.profile.len(),
+        spins: Spins { scale: pack::SCALE, packed: packed(path, &shown.images, &shown.sites)? },
+        sites_shown: shown.sites,
+        images_shown: shown.images,
+    })
+}
+
+/// Keys of an entry of `rates` that the page shows: of a row of many saddles the others would be most of its size.
+const RATE_KEYS: [&str; 8] = [
+    "saddle",
+    "direction",
+    "barrier_meV",
+    "htst_prefactor_Hz",
+    "langer_prefactor_Hz",
+    "equivalent_saddles",
+    "refused",
+    "warnings",
+];
+
+/// `summary.json` but for what depends on the machine, what the page does not show, and warnings that repeat an earlier saddle's.
+fn summary(run: &RunReport) -> Result<Value> {
+    let mut summary: Value =
+        serde_json::from_slice(&Summary.render(run)?).map_err(|e| Error::Numerical(format!("report.html: {e}")))?;
+    if let Some(work) = summary.get_mut("work").and_then(Value::as_object_mut) {
+        work.retain(|key, _| key != "seconds" && key != "threads");
+    }
+    let mut said: Vec<Value> = Vec::new();
+    for rate in summary.get_mut("rates").and_then(Value::as_array_mut).into_iter().flatten() {
+        let Some(rate) = rate.as_object_mut() else { continue };
+        rate.retain(|key, _| RATE_KEYS.contains(&key.as_str()));
+        let warnings = rate.get("warnings").cloned().unwrap_or_default();
+        match said.iter().position(|w| *w == warnings) {
+            Some(earlier) => {
+                rate.insert("warnings".into(), Value::Array(Vec::new()));
+                rate.insert("warnings_as".into(), earlier.into());
+            }
+            None => said.push(warnings),
+        }
+    }
+    Ok(summary)
+}
+
+/// Name and source of the material, as the config has them.
+fn material(config: &str) -> Material {
+    let config: Value = serde_json::from_str(config).unwrap_or_default();
+    let text = |key: &str| config.get("material")?.get(key)?.as_str().map(String::from);
+    Material { name: text("name"), source: text("source") }
+}
+
+fn curve(outcome: &Outcome) -> Result<Curve> {
+    let kept: Vec<_> = evenly(outcome.profile.len(), CURVE).into_iter().map(|k| outcome.profile[k]).collect();
+    Ok(Curve {
+        reaction_coordinate_rad: column("profile", kept.iter().map(|p| p.reaction_coordinate_rad))?,
+        energy_above_initial_meV: column("profile", kept.iter().map(|p| p.above_initial_mev))?,
+    })
+}
+
+/// The source expression of a policy that allows exactly this text.
+fn hash(text: &str) -> String {
+    format!("'sha256-{}'", base64(&Sha256::digest(text.as_bytes())))
+}
+
+/// Text as it stands between tags.
+fn markup(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+/// JSON that cannot end the element it stands in, nor a line of a script. Outside strings JSON has none of these characters.
+fn inert(json: &str) -> String {
+    let escape = |text: String, c: char| text.replace(c, &format!("\\u{:04x}", u32::from(c)));
+    ['<', '>', '&', '\u{2028}', '\u{2029}'].into_iter().fold(json.into(), escape)
+}
+
+/// The template with `{{name}}` replaced by its content, which is not looked at again.
+fn filled(template: &str, content: impl Fn(&str) -> Option<String>) -> Result<String> {
+    let mut parts = template.split("{{");
+    let mut page = parts.next().unwrap_or_default().to_string();
+    for part in parts {
+        let known = part.split_once("}}").and_then(|(name, rest)| Some((content(name)?, rest)));
+        let (text, rest) = known.ok_or_else(|| Error::Numerical("report.html: a place without content".into()))?;
+        page += &text;
+        page += rest;
+    }
+    Ok(page)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_template_asks_for_nothing_from_elsewhere() {
+        for text in [PAGE, STYLE, SCRIPT] {
+            for load in [
+                "http:",
+                "https:",
+                "\"//",
+                "'//",
+                "(//",
+                "@import",
+                "url(",
+                "import(",
+                "fetch(",
+                "XMLHttp",
+                "WebSocket",
+            ] {
+                assert!(!text.contains(load), "{load}");
+            }
+        }
+        assert!(!SCRIPT.contains("innerHTML") && !SCRIPT.contains("</script") && !SCRIPT.contains("eval("));
+        assert!(!STYLE.contains("</style"));
+    }
+
+    #[test]
+    fn page_style_and_script_are_below_a_third_of_300_kb() {
+        assert!(PAGE.len() + STYLE.len() + SCRIPT.len() < 100_000);
+    }
+
+    #[test]
+    fn json_is_inert_and_means_the_same() {
+        let words = "</script><!-- & \u{2028}\u{2029} \\ \" 'µ' {{data}}";
+        let json = serde_json::to_string(words).unwrap();
+        let safe = inert(&json);
+        assert!(!safe.contains(['<', '>', '&', '\u{2028}', '\u{2029}']));
+        assert_eq!(serde_json::from_str::<String>(&safe).unwrap(), words);
+    }
+
+    #[test]
+    fn content_is_not_looked_at_again_and_an_unknown_place_is_an_error() {
+        let content = |name: &str| (name == "a").then(|| "{{a}}".to_string());
+        assert_eq!(filled("x{{a}}y{{a}}", content).unwrap(), "x{{a}}y{{a}}");
+        assert!(filled("{{b}}", content).is_err());
+    }
+}
