@@ -22,6 +22,8 @@ type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
 /// Files that are too large to keep, or that others hold already.
 const LEFT_OUT: [&str; 2] = ["rates.csv", "profile.csv"];
+/// A summary of more bytes than this is kept without most of its white space.
+const LONG: usize = 100_000;
 /// The figure of the README, which is kept as pixels too.
 const SHOWN: (&str, &str) = ("wall_nucleation", "energy_path.png");
 
@@ -71,12 +73,27 @@ fn files(loaded: &Loaded, outcome: &Outcome, dir: &Path) -> Result<Vec<File>> {
     let shown = |file: &File| (loaded.name.as_str(), file.name.as_str()) == SHOWN;
     files.retain(|file| shown(file) || !file.name.ends_with(".png") && !LEFT_OUT.contains(&file.name.as_str()));
     for file in files.iter_mut().filter(|file| file.name == disk::MARK) {
+        if file.bytes.len() > LONG {
+            file.bytes = dense(&file.bytes);
+        }
         let old = fs::read(dir.join(disk::MARK)).unwrap_or_default();
         if timeless(&old).is_some_and(|old| Some(old) == timeless(&file.bytes)) {
             file.bytes = old;
         }
     }
     Ok(files)
+}
+
+/// JSON with the lines deeper than two levels joined.
+fn dense(json: &[u8]) -> Vec<u8> {
+    let mut text = String::new();
+    for line in String::from_utf8_lossy(json).split('\n') {
+        let inner = line.trim_start_matches(' ');
+        let joined = line.len() - inner.len() > 4;
+        text.push_str(if joined || text.is_empty() { "" } else { "\n" });
+        text.push_str(if joined { inner } else { line });
+    }
+    text.into_bytes()
 }
 
 /// A summary without what depends on time and machine.

@@ -90,7 +90,8 @@ fn the_slow_ones_are_of_todays_configs_and_have_the_barriers_of_the_readme() {
         // the tables beside it are of the same run
         let rows = text(&gallery(name).join("path.csv")).lines().count() - 1;
         assert_eq!(summary["path"]["images"], rows, "{name}: {ANEW}");
-        let highest = summary["saddles"].as_array().unwrap().iter().map(|s| s["energy_above_initial_meV"].as_f64().unwrap());
+        let highest =
+            summary["saddles"].as_array().unwrap().iter().map(|s| s["energy_above_initial_meV"].as_f64().unwrap());
         assert!((highest.fold(f64::MIN, f64::max) - forward).abs() < 1e-9, "{name}");
     }
 }
@@ -119,5 +120,5 @@ fn the_gallery_is_small() {
         let entries = fs::read_dir(folder).unwrap().map(|e| e.unwrap());
         entries.map(|e| if e.path().is_dir() { size(&e.path()) } else { e.metadata().unwrap().len() }).sum()
     }
-    assert!(size(&gallery("")) < 3_000_000, "{} bytes", size(&gallery("")));
+    assert!(size(&gallery("")) < 3_500_000, "{} bytes", size(&gallery("")));
 }

@@ -10,8 +10,8 @@ use spinneb::lattice::Chain;
 use spinneb::output::canvas::{Look, Style};
 use spinneb::output::disk::{self, Destination, File};
 use spinneb::output::{
-    EnergyPath, EnergyPathPlot, Format, HistoryCsv, KINDS, PLOTS, PathCsv, Picture, PlotFile, ProfileCsv, RunReport, Summary,
-    draw_energy_paths, known_files, render_files,
+    EnergyPath, EnergyPathPlot, Format, HistoryCsv, KINDS, PLOTS, PathCsv, Picture, PlotFile, ProfileCsv, RunReport,
+    Summary, draw_energy_paths, known_files, render_files,
 };
 use spinneb::path::Path;
 use spinneb::spins::Spins;
@@ -384,7 +384,9 @@ fn figures_of_all_outcomes_are_drawn() {
         for picture in [Picture::Svg, Picture::Png] {
             for plot in PLOTS.iter().copied() {
                 let format = PlotFile { plot, picture };
-                if !format.applies(&report(&o)) || o.images.above_initial_mev.is_empty() && plot.name() == "magnetisation" {
+                if !format.applies(&report(&o))
+                    || o.images.above_initial_mev.is_empty() && plot.name() == "magnetisation"
+                {
                     continue;
                 }
                 let bytes = format.render(&RunReport { look, ..report(&o) }).unwrap();

