@@ -4,6 +4,7 @@ pub mod check;
 pub mod collect;
 mod jobs;
 pub mod list;
+pub mod plot;
 pub mod rate;
 pub mod relax;
 pub mod run;
@@ -13,6 +14,8 @@ pub mod sweep;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use spinneb::config::rates;
 use spinneb::error::Error;
+use spinneb::output::Picture;
+use spinneb::output::canvas::Style;
 use spinneb::rates::Theory;
 use spinneb::units::Temperature;
 use std::io::{self, ErrorKind, Write};
@@ -40,6 +43,7 @@ Examples:
   spinneb run configs/wall.json         find the path; results in results/wall/
   spinneb list terms                    what can be written in a config
   spinneb rate results/wall --temperature 300K     how long the states live
+  spinneb plot results/a results/b      the energy paths of two results in one figure
 
 Exit codes:
   0    converged and certified
@@ -65,6 +69,8 @@ pub enum Command {
     List(List),
     /// Rates and lifetimes over the saddles of results that are there already
     Rate(Rate),
+    /// Draw the figures of results that are there already, or several energy paths over each other
+    Plot(Plot),
     /// Write a starter config with explanations, and the schema beside it
     Init(Init),
     /// Print the JSON Schema of a config, for editors that complete and check it
@@ -242,6 +248,51 @@ fn plain_number(text: &str) -> Result<f64, String> {
     text.parse().map_err(|_| format!("found {text:?}, expected a number"))
 }
 
+/// The arguments of `plot`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Nothing is run: the figures are drawn from the files of the results. Those of one result go where it is, unless --out names
+another folder; several results make energy_paths.svg and .png in the current folder, or what --out names.
+A file that is no figure of the same results is left as it is.
+
+Examples:
+  spinneb plot results/wall
+  spinneb plot results/wall --style dark --width 120 --out talk
+  spinneb plot results/weak results/strong --labels \"K = 0.2 meV,K = 0.5 meV\" --out comparison.svg")]
+pub struct Plot {
+    /// Folders with finished results
+    #[arg(required = true, value_name = "RESULT_DIR")]
+    pub results: Vec<PathBuf>,
+
+    /// Names in the legend, one for each result [default: the names of the results]
+    #[arg(long, value_name = "A,B", value_delimiter = ',')]
+    pub labels: Vec<String>,
+
+    /// Folder for the figures; with several results it may be the name of one, ending in .svg or .png
+    #[arg(short, long, value_name = "PATH")]
+    pub out: Option<PathBuf>,
+
+    /// paper, slides (text and lines 1.7 times larger) or dark [default: as the result's config says, else paper]
+    #[arg(long, value_name = "STYLE", value_parser = plot::style)]
+    pub style: Option<Style>,
+
+    /// Width of the figures in mm; text keeps its size [default: as the result's config says, else 85, for slides 144.5]
+    #[arg(long, value_name = "MM", value_parser = plot::width_mm)]
+    pub width: Option<f64>,
+
+    /// svg or png [default: both]
+    #[arg(long, value_name = "FORMAT", value_delimiter = ',', value_parser = plot::picture)]
+    pub format: Vec<Picture>,
+
+    /// Replace files of the figures' names whatever they are
+    #[arg(long)]
+    pub force: bool,
+
+    /// No messages, only errors
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
 /// The arguments of `list`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -317,6 +368,7 @@ mod tests {
         assert!(run.force && run.quiet && run.json && !run.resume);
         for line in [
             "spinneb rate results/a b -T 300K -T 4K --damping 0.2 --theory htst --json",
+            "spinneb plot results/a results/b --labels a,b --style dark --width 120 --format svg --out c.svg --force -q",
             "spinneb check a.json --set a=1",
             "spinneb list",
             "spinneb list terms",
@@ -364,6 +416,10 @@ mod tests {
             "spinneb rate results/a --temperature 300",
             "spinneb rate results/a --temperature 300meV",
             "spinneb rate results/a -T 3K --theory kramers",
+            "spinneb plot",
+            "spinneb plot results/a --style bright",
+            "spinneb plot results/a --width 85nm",
+            "spinneb plot results/a --format pdf",
             "spinneb rate results/a -T 3K --damping=-1",
         ] {
             assert_eq!(Cli::try_parse_from(line.split(' ')).unwrap_err().exit_code(), 2, "{line}");

@@ -15,6 +15,7 @@ fn main() -> ExitCode {
         Command::Check(arguments) => cli::check::check(&arguments),
         Command::List(arguments) => cli::list::list(&arguments),
         Command::Rate(arguments) => cli::rate::rate(&arguments),
+        Command::Plot(arguments) => cli::plot::plot(&arguments),
         Command::Init(arguments) => cli::start::init(&arguments),
         Command::Schema => cli::start::print_schema(),
         Command::Completions(arguments) => cli::start::completions(&arguments),

@@ -48,6 +48,11 @@ impl Spins {
         Spins { m: Array2::from_shape_fn((3, n), |(c, i)| xyz[c * n + i]) }
     }
 
+    /// From one vector a site that is of unit length already.
+    pub(crate) fn from_unit_vectors(vectors: &[Vector]) -> Spins {
+        Spins { m: Array2::from_shape_fn((3, vectors.len()), |(c, i)| vectors[i][c]) }
+    }
+
     /// Number of sites.
     pub fn sites(&self) -> usize {
         self.m.ncols()

@@ -7,10 +7,11 @@ use spinneb::drive::{
 use spinneb::error::{Error, Result};
 use spinneb::geometry::Direction;
 use spinneb::lattice::Chain;
+use spinneb::output::canvas::{Look, Style};
 use spinneb::output::disk::{self, Destination, File};
 use spinneb::output::{
-    EnergyPath, EnergyPathPlot, Format, HistoryCsv, KINDS, PathCsv, Picture, ProfileCsv, ReportPage, RunReport,
-    SpinsPlot, Summary, draw_energy_paths, known_files, render_files,
+    EnergyPath, EnergyPathPlot, Format, HistoryCsv, KINDS, PLOTS, PathCsv, Picture, PlotFile, ProfileCsv, ReportPage,
+    RunReport, Summary, draw_energy_paths, known_files, render_files,
 };
 use spinneb::path::Path;
 use spinneb::spins::Spins;
@@ -151,8 +152,8 @@ fn tiny() -> Outcome {
 
 fn report(outcome: &Outcome) -> RunReport<'_> {
     static CHAIN: LazyLock<Chain> = LazyLock::new(|| Chain::open(1));
-    let (inputs, chain) = (&[], &*CHAIN);
-    RunReport { name: "tiny", version: "0.1.0", config_sha256: "abc", config_text: "{}", inputs, chain, outcome }
+    let (inputs, chain, look) = (&[], &*CHAIN, Look::default());
+    RunReport { name: "tiny", version: "0.1.0", config_sha256: "abc", config_text: "{}", inputs, chain, look, outcome }
 }
 
 fn text(format: &dyn Format, outcome: &Outcome) -> String {
@@ -284,7 +285,7 @@ fn a_number_that_is_not_finite_is_an_error_with_its_place() {
     let message = |format: &dyn Format| format.render(&report(&o)).unwrap_err().to_string();
     assert_eq!(message(&Summary), "summary.json: saddles[0].lowest_eigenvalues_meV[0]: NaN is not a finite number");
     assert_eq!(message(&PathCsv), "path.csv: energy_meV, row 3: inf is not a finite number");
-    assert!(message(&EnergyPathPlot(Picture::Svg)).contains("not finite"));
+    assert!(message(&PlotFile { plot: &EnergyPathPlot, picture: Picture::Svg }).contains("not finite"));
 }
 
 #[test]
@@ -372,14 +373,27 @@ fn size_of_png(bytes: &[u8]) -> (u32, u32) {
 
 #[test]
 fn figures_of_all_outcomes_are_drawn() {
-    for (name, o) in figures() {
+    for (k, (name, mut o)) in figures().into_iter().enumerate() {
+        if o.images.above_initial_mev.len() != o.path.images() {
+            // a table of fewer images has spins of as many
+            o.path = Path::new(&vec![o.path.spins(0); o.images.above_initial_mev.len().max(1)]);
+        }
+        // every style in turn
+        let style = Style::ALL[k % Style::ALL.len()];
+        let look = Look::new(style, None).unwrap();
         for picture in [Picture::Svg, Picture::Png] {
-            let formats: [&dyn Format; 2] = [&EnergyPathPlot(picture), &SpinsPlot(picture)];
-            for (format, size) in formats.into_iter().zip([(1004, 709), (1004, 1087)]) {
-                let bytes = format.render(&report(&o)).unwrap();
+            for plot in PLOTS.iter().copied() {
+                let format = PlotFile { plot, picture };
+                if !format.applies(&report(&o))
+                    || o.images.above_initial_mev.is_empty() && plot.name() == "magnetisation"
+                {
+                    continue;
+                }
+                let bytes = format.render(&RunReport { look, ..report(&o) }).unwrap();
                 keep(&format!("{name}_{}", format.file_name()), &bytes);
+                let wide = (look.width_mm() / 25.4 * 300.0).round() as u32;
                 match picture {
-                    Picture::Png => assert_eq!(size_of_png(&bytes), size, "{name}"),
+                    Picture::Png => assert_eq!(size_of_png(&bytes).0, wide, "{name}"),
                     Picture::Svg => {
                         let svg = String::from_utf8(bytes).unwrap();
                         assert!(svg.starts_with("<svg xmlns=") && svg.trim_end().ends_with("</svg>"), "{name}");
@@ -405,11 +419,11 @@ fn several_paths_are_overlaid_with_a_legend() {
         .filter(|(name, _)| chosen.contains(name))
         .map(|(name, o)| EnergyPath::from_outcome(name, o))
         .collect();
-    let canvas = draw_energy_paths(&paths).unwrap();
+    let canvas = draw_energy_paths(&paths, &Look::default()).unwrap();
     keep("overlay.png", &canvas.png().unwrap());
     let svg = String::from_utf8(canvas.svg().unwrap()).unwrap();
     assert!(chosen.iter().all(|name| svg.contains(&format!("{name}: "))));
-    assert!(draw_energy_paths(&[]).unwrap().svg().is_ok());
+    assert!(draw_energy_paths(&[], &Look::default()).unwrap().svg().is_ok());
 }
 
 #[test]
@@ -434,7 +448,7 @@ fn a_logarithmic_plot_leaves_out_what_has_no_logarithm() {
 fn text_in_an_svg_is_escaped() {
     let path =
         |name: &str| EnergyPath { name: name.into(), images: vec![(0.0, 0.0), (1.0, 1.0)], ..Default::default() };
-    let svg = draw_energy_paths(&[path("a<b"), path("c&d")]).unwrap().svg().unwrap();
+    let svg = draw_energy_paths(&[path("a<b"), path("c&d")], &Look::default()).unwrap().svg().unwrap();
     let svg = String::from_utf8(svg).unwrap();
     assert!(svg.contains("a&lt;b") && svg.contains("c&amp;d"));
 }
@@ -544,7 +558,8 @@ fn a_result_is_written_found_again_refused_and_replaced() {
     assert_eq!(files.last().unwrap().name, "summary.json");
     disk::write_result(&dir, &files, &known_files()).unwrap();
     std::fs::write(dir.join("notes.txt"), "mine").unwrap();
-    assert_eq!(names(&dir), ["config.json", "history.csv", "notes.txt", "path.csv", "profile.csv", "summary.json"]);
+    let tables = ["config.json", "energy_terms.csv", "history.csv", "magnetisation.csv"];
+    assert_eq!(names(&dir), [&tables[..], &["notes.txt", "path.csv", "profile.csv", "summary.json"]].concat());
 
     match disk::prepare(&dir, "0.1.0", "abc", false).unwrap() {
         Destination::Finished(stored) => assert_eq!(stored.exit_code(), 3),

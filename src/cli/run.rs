@@ -133,6 +133,7 @@ pub(super) fn write(loaded: &Loaded, outcome: &Outcome, directory: &Path) -> spi
         config_text: &loaded.as_run,
         inputs: &loaded.inputs,
         chain: loaded.chain(),
+        look: loaded.look()?,
         outcome,
     };
     let output = &loaded.config.output;

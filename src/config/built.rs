@@ -8,6 +8,7 @@ use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, Vector, angle};
 use crate::lattice::{Chain, Lattice};
 use crate::linalg::slab;
+use crate::output::canvas::Look;
 use crate::path::guess::GuessContext;
 use crate::path::largest_angle;
 use crate::rates::RateSettings;
@@ -43,6 +44,11 @@ impl Loaded {
         chain
     }
 
+    /// How figures look.
+    pub fn look(&self) -> Result<Look> {
+        self.config.output.look().map_err(|e| self.text.locate(e.within("output")))
+    }
+
     /// The problem that the config states; an error, with its place, where something cannot be.
     pub fn problem(&self) -> Result<Problem> {
         let config = &self.config;
@@ -73,6 +79,7 @@ impl Loaded {
         let config = &self.config;
         let here = |e: Error| self.text.locate(e);
         let chain = self.chain();
+        self.look()?;
         chain.validate().map_err(|e| here(e.within("lattice.chain")))?;
         not_both(chain).map_err(|e| here(e.within("lattice.chain")))?;
         self.material.fits(chain.sites).map_err(|e| match &self.material_text {

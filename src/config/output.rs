@@ -1,14 +1,16 @@
 //! What a run writes.
 
 use super::schema::names_schema;
+use crate::output::canvas::{Look, Style};
 use crate::output::{Group, KINDS};
+use crate::units::Length;
 use crate::words::{nearest, quoted};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer};
 
-/// `"output": {"formats": ["csv"], "plots": ["svg", "png"]}`; the usual kinds if absent.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+/// `"output": {"formats": ["csv"], "plots": ["svg", "png"], "style": "dark", "width": "85 mm"}`; the usual kinds if absent.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct OutputConfig {
     /// Kinds of data files.
@@ -19,12 +21,26 @@ pub struct OutputConfig {
     #[serde(deserialize_with = "plots")]
     #[schemars(schema_with = "plot_names")]
     pub plots: Vec<String>,
+    /// How figures look.
+    pub style: Style,
+    /// How wide figures are; what suits the style if absent: 85 mm, or 144.5 mm for slides.
+    pub width: Option<Length>,
 }
+
+impl OutputConfig {
+    /// Style and width of figures; an error where they do not fit each other.
+    pub fn look(&self) -> crate::error::Result<Look> {
+        Look::new(self.style, self.width.map(|w| w.0 / NM_PER_MM))
+    }
+}
+
+/// Lengths inside are in nm.
+const NM_PER_MM: f64 = 1e6;
 
 impl Default for OutputConfig {
     fn default() -> Self {
         let all = |group| names(group).map(String::from).collect();
-        OutputConfig { formats: all(Group::Formats), plots: all(Group::Plots) }
+        OutputConfig { formats: all(Group::Formats), plots: all(Group::Plots), style: Style::default(), width: None }
     }
 }
 

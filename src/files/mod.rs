@@ -16,7 +16,7 @@ mod vtk;
 pub use collector::{Collector, Images};
 pub use csv::write_csv;
 pub use npy::{Array, write_npy};
-pub use npz::write_npz;
+pub use npz::{read_npz_columns, write_npz};
 pub use ovf::{Mesh, OvfData, Segment, write_ovf};
 pub use stored::{LARGEST_FILE, Stored, open};
 pub use vtk::{write_pvd, write_vtp};

@@ -141,6 +141,18 @@ impl Header {
         self.shape.iter().try_fold(self.kind.size(), |n, length| n.checked_mul(*length))
     }
 
+    /// Whether the array has one axis.
+    pub(super) fn is_column(&self) -> bool {
+        self.shape.len() == 1
+    }
+
+    /// The numbers of an array of one axis; nothing where there are more or fewer than it says.
+    pub(super) fn column(&self, numbers: &[u8]) -> Option<Vec<f64>> {
+        let whole = self.bytes() == Some(numbers.len());
+        let value = |bytes: &[u8]| self.kind.value(bytes, self.big_endian);
+        whole.then(|| numbers.chunks_exact(self.kind.size()).map(value).collect())
+    }
+
     /// Images and sites, if spins can have this shape.
     pub(super) fn layout(&self) -> std::result::Result<(usize, usize), String> {
         let shown = self.shape.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");

@@ -39,11 +39,39 @@ pub fn write_npz(arrays: &[(String, Array)]) -> Result<Vec<u8>> {
     archive.finish().map(Cursor::into_inner).map_err(|e| wrong(&e))
 }
 
+/// The arrays of one axis in an npz file, in its order: the columns of a table.
+pub fn read_npz_columns(file: &str, bytes: &[u8]) -> Result<Vec<(String, Vec<f64>)>> {
+    let about = Collector::new(file);
+    let mut archive = opened(bytes, &about)?;
+    let mut columns = Vec::new();
+    for index in 0..archive.len() {
+        let mut entry = archive.by_index(index).map_err(|e| about.wrong(format!("entry {index}: {e}")))?;
+        let name = entry.name().map(|n| n.into_owned()).unwrap_or_default();
+        let Some(name) = name.strip_suffix(".npy") else { continue };
+        let array = format!("array {}: ", quoted(name));
+        let header = Header::read(&mut entry, &about, &array)?;
+        if !header.is_column() {
+            continue;
+        }
+        let mut unpacked = Vec::new();
+        let wanted = header.bytes().filter(|n| *n as u64 <= entry.size()).unwrap_or(0) as u64;
+        let read = entry.by_ref().take(wanted + 1).read_to_end(&mut unpacked);
+        read.map_err(|e| about.wrong(format!("{array}cannot be unpacked: {e}")))?;
+        let numbers = header.column(&unpacked);
+        columns.push((name.to_string(), numbers.ok_or_else(|| about.wrong(format!("{array}the file is damaged")))?));
+    }
+    Ok(columns)
+}
+
+fn opened<'a>(bytes: &'a [u8], images: &Collector) -> Result<Archive<'a>> {
+    ZipArchive::new(Cursor::new(bytes))
+        .map_err(|e| images.wrong(format!("the archive cannot be opened: {e}; is it cut short?")))
+}
+
 type Archive<'a> = ZipArchive<Cursor<&'a [u8]>>;
 
 fn read(bytes: &[u8], images: &mut Collector) -> Result<()> {
-    let mut archive = ZipArchive::new(Cursor::new(bytes))
-        .map_err(|e| images.wrong(format!("the archive cannot be opened: {e}; is it cut short?")))?;
+    let mut archive = opened(bytes, images)?;
     let (index, name) = chosen(&mut archive, images)?;
     let array = format!("array {}: ", quoted(&name));
     let packed = |e: &dyn std::fmt::Display| images.wrong(format!("{array}cannot be unpacked: {e}"));

@@ -1,4 +1,5 @@
-//! Tables: `path.csv` (a row an image), `profile.csv` (the interpolated energy path), `history.csv` (a row an iteration).
+//! Tables: `path.csv` (a row an image), `profile.csv` (the interpolated energy path), `history.csv` (a row an iteration), and the
+//! numbers of figures that none of these has.
 //!
 //! Separated by commas; numbers in the shortest form that reads back to the same value.
 
@@ -8,12 +9,14 @@ use crate::error::{Error, Result};
 use std::fmt::Write;
 
 /// What `csv` writes.
-pub(super) const SUMMARY: &str =
-    "path.csv, profile.csv, history.csv: energies by image, interpolated, and by iteration; with rates rates.csv";
+pub(super) const SUMMARY: &str = "path.csv, profile.csv, history.csv: energies by image, interpolated, and by iteration; energy_terms.csv, magnetisation.csv: \
+     what their figures show; with rates rates.csv";
 
 /// All tables.
 pub(super) fn formats() -> Vec<Box<dyn Format>> {
-    vec![Box::new(PathCsv), Box::new(ProfileCsv), Box::new(HistoryCsv), Box::new(super::RatesCsv)]
+    let own: [Box<dyn Format>; 4] =
+        [Box::new(PathCsv), Box::new(ProfileCsv), Box::new(HistoryCsv), Box::new(super::RatesCsv)];
+    own.into_iter().chain(super::PlotTable::all().map(|table| Box::new(table) as Box<dyn Format>)).collect()
 }
 
 /// `path.csv`.
@@ -36,9 +39,9 @@ impl Format for PathCsv {
     fn render(&self, run: &RunReport) -> Result<Vec<u8>> {
         let t = &run.outcome.images;
         let mut table = Table::new("path.csv");
-        table.add("image", whole(0..t.energy_mev.len()));
+        table.whole("image", 0..t.energy_mev.len());
         for (name, column) in path_columns(run.outcome) {
-            table.add(&name, real(column));
+            table.real(&name, column.iter().copied());
         }
         table.render()
     }
@@ -53,9 +56,9 @@ impl Format for ProfileCsv {
         let profile = &run.outcome.profile;
         let start = start_energy(run.outcome);
         let mut table = Table::new("profile.csv");
-        table.add("reaction_coordinate_rad", profile.iter().map(|p| Cell::Real(p.reaction_coordinate_rad)).collect());
-        table.add("energy_meV", profile.iter().map(|p| Cell::Real(start + p.above_initial_mev)).collect());
-        table.add("energy_above_initial_meV", profile.iter().map(|p| Cell::Real(p.above_initial_mev)).collect());
+        table.real("reaction_coordinate_rad", profile.iter().map(|p| p.reaction_coordinate_rad));
+        table.real("energy_meV", profile.iter().map(|p| start + p.above_initial_mev));
+        table.real("energy_above_initial_meV", profile.iter().map(|p| p.above_initial_mev));
         table.render()
     }
 }
@@ -68,15 +71,12 @@ impl Format for HistoryCsv {
     fn render(&self, run: &RunReport) -> Result<Vec<u8>> {
         let rows = &run.outcome.history;
         let mut table = Table::new("history.csv");
-        table.add("iteration", whole(rows.iter().map(|r| r.iteration)));
-        table.add("images", whole(rows.iter().map(|r| r.images)));
-        let mut column = |name, value: fn(&crate::drive::HistoryRow) -> f64| {
-            table.add(name, rows.iter().map(|r| Cell::Real(value(r))).collect());
-        };
-        column("max_perpendicular_torque_meV", |r| r.max_perpendicular_torque_mev);
-        column("largest_predicted_rotation_rad", |r| r.largest_predicted_rotation_rad);
-        column("highest_image_above_initial_meV", |r| r.highest_image_mev);
-        column("length_rad", |r| r.length_rad);
+        table.whole("iteration", rows.iter().map(|r| r.iteration));
+        table.whole("images", rows.iter().map(|r| r.images));
+        table.real("max_perpendicular_torque_meV", rows.iter().map(|r| r.max_perpendicular_torque_mev));
+        table.real("largest_predicted_rotation_rad", rows.iter().map(|r| r.largest_predicted_rotation_rad));
+        table.real("highest_image_above_initial_meV", rows.iter().map(|r| r.highest_image_mev));
+        table.real("length_rad", rows.iter().map(|r| r.length_rad));
         table.render()
     }
 }
@@ -98,7 +98,7 @@ fn start_energy(outcome: &Outcome) -> f64 {
 }
 
 /// A term's name without what would break a header.
-fn column_name(term: &str) -> String {
+pub(super) fn column_name(term: &str) -> String {
     term.chars().map(|c| if c.is_whitespace() || matches!(c, ',' | '"') { '_' } else { c }).collect()
 }
 
@@ -107,14 +107,6 @@ pub(super) enum Cell {
     Real(f64),
     Word(String),
     Missing,
-}
-
-fn whole(values: impl IntoIterator<Item = usize>) -> Vec<Cell> {
-    values.into_iter().map(Cell::Whole).collect()
-}
-
-fn real(values: &[f64]) -> Vec<Cell> {
-    values.iter().copied().map(Cell::Real).collect()
 }
 
 /// Columns under their names; a cell may be empty.
@@ -130,6 +122,16 @@ impl Table {
 
     pub(super) fn add(&mut self, name: &str, cells: Vec<Cell>) {
         self.columns.push((name.into(), cells));
+    }
+
+    /// A column of whole numbers.
+    pub(super) fn whole(&mut self, name: &str, values: impl IntoIterator<Item = usize>) {
+        self.add(name, values.into_iter().map(Cell::Whole).collect());
+    }
+
+    /// A column of numbers.
+    pub(super) fn real(&mut self, name: &str, values: impl IntoIterator<Item = f64>) {
+        self.add(name, values.into_iter().map(Cell::Real).collect());
     }
 
     /// An error where a column is too short or too long or a number is not finite.

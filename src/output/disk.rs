@@ -111,6 +111,34 @@ pub fn write_result(dir: &Path, files: &[File], known: &[String]) -> Result<()> 
     flush_directory(dir)
 }
 
+/// Writes files that may be there already, all of them or none. One that is there is replaced if it `may_be`, or by `force`; it is an
+/// error ([`ErrorKind::AlreadyExists`]) otherwise.
+pub fn replace(dir: &Path, files: &[File], may_be: impl Fn(&File, &[u8]) -> bool, force: bool) -> Result<()> {
+    create(dir)?;
+    for file in files {
+        let path = dir.join(&file.name);
+        if path.is_dir() {
+            let words = "is a directory, where a figure is to be; give another place with --out";
+            return Err(io_error(&path, io::Error::new(ErrorKind::AlreadyExists, words)));
+        }
+        match fs::read(&path) {
+            Ok(old) if force || may_be(file, &old) => {}
+            Ok(_) => {
+                let words = "is there and is not this figure; use --force to replace it, or another place with --out";
+                return Err(io_error(&path, io::Error::new(ErrorKind::AlreadyExists, words)));
+            }
+            Err(e) if e.kind() == ErrorKind::NotFound => {}
+            Err(e) => return Err(io_error(&path, e)),
+        }
+    }
+    let staged = files.iter().map(|file| stage(dir, file)).collect::<Result<Vec<_>>>()?;
+    for (name, file) in staged {
+        let path = dir.join(name);
+        file.persist(&path).map_err(|e| io_error(&path, e.error))?;
+    }
+    flush_directory(dir)
+}
+
 /// Writes one file, whole or not at all, in place of an older one.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
     let dir = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));

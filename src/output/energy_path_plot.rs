@@ -1,25 +1,27 @@
 //! `energy_path.svg` and `.png`: energy against the reaction coordinate, images as marks on the interpolated curve, saddles as
-//! diamonds, the barrier as a double arrow.
+//! diamonds, the barrier as a double arrow. Several paths are laid over each other, each with its barrier in the legend.
+//!
+//! Their numbers are those of `path.csv` (images), `profile.csv` (curve) and `summary.json` (saddles and barrier).
 
 use super::canvas::{
-    AxisLabel, BLACK, BLUE, Canvas, Frame, GREY, LinePlot, Marker, Obstacles, Point, Rect, SERIES, SMALL_PT, Series,
-    THIN_PT, Text, VERMILLION, WHITE, significant,
+    BLACK, BLUE, Canvas, Frame, GREY, LinePlot, Look, Marker, Obstacles, Point, Rect, SERIES, SMALL_PT, Series,
+    THIN_PT, Text, VERMILLION, WHITE, pattern, significant,
 };
-use super::{Format, Picture, RunReport};
+use super::{Plot, PlotData};
 use crate::drive::{Barrier, Outcome};
 use crate::error::{Error, Result};
 
 /// The energy path as a figure.
 #[derive(Clone, Copy, Debug)]
-pub struct EnergyPathPlot(pub Picture);
+pub struct EnergyPathPlot;
 
-impl Format for EnergyPathPlot {
-    fn file_name(&self) -> String {
-        format!("energy_path.{}", self.0.extension())
+impl Plot for EnergyPathPlot {
+    fn name(&self) -> &'static str {
+        "energy_path"
     }
 
-    fn render(&self, run: &RunReport) -> Result<Vec<u8>> {
-        self.0.render(&draw_energy_paths(&[EnergyPath::from_outcome(run.name, run.outcome)])?)
+    fn draw(&self, data: &PlotData, look: &Look) -> Result<Canvas> {
+        draw_energy_paths(std::slice::from_ref(&data.energy), look)
     }
 }
 
@@ -52,19 +54,19 @@ impl EnergyPath {
     }
 
     /// The curve to draw: the profile, or the images where there is none.
-    fn curve(&self) -> &[(f64, f64)] {
+    pub(super) fn curve(&self) -> &[(f64, f64)] {
         if self.profile.len() > 1 { &self.profile } else { &self.images }
     }
 
-    fn energies(&self) -> impl Iterator<Item = f64> {
+    pub(super) fn energies(&self) -> impl Iterator<Item = f64> {
         self.images.iter().chain(&self.profile).chain(&self.saddles).map(|p| p.1)
     }
 }
 
 /// One path with its barrier marked, or several with a legend.
-pub fn draw_energy_paths(paths: &[EnergyPath]) -> Result<Canvas> {
+pub fn draw_energy_paths(paths: &[EnergyPath], look: &Look) -> Result<Canvas> {
     let unit = EnergyUnit::for_paths(paths);
-    let plot = plot(paths, unit);
+    let plot = plot(paths, unit).look(look);
     let (mut canvas, frame) = plot.draw_frame()?;
     match paths {
         [only] => {
@@ -83,7 +85,7 @@ pub fn draw_energy_paths(paths: &[EnergyPath]) -> Result<Canvas> {
 
 /// The unit in which the numbers on the axis are short.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct EnergyUnit {
+pub(super) struct EnergyUnit {
     name: &'static str,
     per_mev: f64,
     /// The span of energies in this unit; zero where the path is flat.
@@ -95,8 +97,12 @@ impl EnergyUnit {
     const FLAT_MEV: f64 = 1e-9;
 
     fn for_paths(paths: &[EnergyPath]) -> EnergyUnit {
-        let (lo, hi) =
-            paths.iter().flat_map(EnergyPath::energies).fold((0.0f64, 0.0f64), |(lo, hi), e| (lo.min(e), hi.max(e)));
+        EnergyUnit::for_energies(paths.iter().flat_map(EnergyPath::energies))
+    }
+
+    /// For energies above the initial state (meV).
+    pub(super) fn for_energies(energies: impl Iterator<Item = f64>) -> EnergyUnit {
+        let (lo, hi) = energies.fold((0.0f64, 0.0f64), |(lo, hi), e| (lo.min(e), hi.max(e)));
         let mev = hi - lo;
         let (name, per_mev) = match mev {
             ..EnergyUnit::FLAT_MEV => ("meV", 1.0),
@@ -108,31 +114,55 @@ impl EnergyUnit {
         EnergyUnit { name, per_mev, span: if mev < EnergyUnit::FLAT_MEV { 0.0 } else { mev * per_mev } }
     }
 
-    fn scaled(&self, points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    pub(super) fn name(&self) -> &'static str {
+        self.name
+    }
+
+    /// Whether the energies are all the same.
+    pub(super) fn is_flat(&self) -> bool {
+        self.span == 0.0
+    }
+
+    /// The label of an axis of energies above the initial state.
+    pub(super) fn axis_label(&self) -> String {
+        format!("E − E_{{initial}} ({})", self.name)
+    }
+
+    pub(super) fn scaled(&self, points: &[(f64, f64)]) -> Vec<(f64, f64)> {
         points.iter().map(|&(x, e)| (x, e * self.per_mev)).collect()
     }
 }
 
 fn plot(paths: &[EnergyPath], unit: EnergyUnit) -> LinePlot {
-    let mut plot = LinePlot::new("Reaction coordinate (rad)", "");
-    plot.y = AxisLabel { label: format!("E − E_{{initial}} ({})", unit.name), ..AxisLabel::default() };
+    let mut plot = LinePlot::new("Reaction coordinate (rad)", unit.axis_label());
+    plot.legend_above = paths.len() > 1;
     for (k, path) in paths.iter().enumerate() {
         let colour = if paths.len() == 1 { BLUE } else { SERIES[k % SERIES.len()] };
-        let marker = image_marker(path.images.len());
+        // images of many paths would hide each other
+        let marker = image_marker(path.images.len()).filter(|_| paths.len() <= FEW);
         let mut curve = Series::line(unit.scaled(path.curve())).colour(colour);
         if paths.len() > 1 {
-            curve = curve.label(legend(path, unit));
+            curve = Series { dash: pattern(k), ..curve.label(legend(path, unit)) };
         }
         plot.series.push(curve);
         plot.series.extend(marker.map(|m| Series::markers(unit.scaled(&path.images), m).colour(colour)));
         let saddle_colour = if paths.len() == 1 { VERMILLION } else { colour };
-        plot.series.push(Series::markers(unit.scaled(&path.saddles), Marker::Diamond).colour(saddle_colour));
+        let saddle = saddle_marker(path.saddles.len());
+        plot.series.push(Series::markers(unit.scaled(&path.saddles), saddle).colour(saddle_colour));
     }
     plot.y.range = Some(energy_range(paths, unit));
     if plot.series.iter().flat_map(|s| &s.points).all(|p| p.0 == 0.0) {
         plot.x.range = Some((-1.2, 1.2));
     }
     plot
+}
+
+/// Of up to so many paths the images are marked.
+const FEW: usize = 3;
+
+/// Smaller where there are many.
+pub(super) fn saddle_marker(saddles: usize) -> Marker {
+    if saddles <= 20 { Marker::Diamond } else { Marker::Dot }
 }
 
 /// Smaller where there are many, none where they would run into a band.
@@ -273,7 +303,7 @@ impl Guides {
             heights.into_iter().map(move |t| around((x, longest.from + t * (longest.to - longest.from)), width, height))
         });
         let mut elsewhere = grid(frame, width, height);
-        let distance = |r: &Rect| ((r.x0 + r.x1) / 2.0 - longest.x).hypot((r.y0 + r.y1) / 2.0 - longest.to);
+        let distance = |r: &Rect| libm::hypot((r.x0 + r.x1) / 2.0 - longest.x, (r.y0 + r.y1) / 2.0 - longest.to);
         elsewhere.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
         beside.chain(elsewhere).collect()
     }

@@ -26,6 +26,12 @@ pub(super) fn width_em(text: &str) -> Result<f64> {
     Ok(units / units_per_em(font))
 }
 
+/// The first letter of `text` that the font does not have.
+pub fn unknown_letter(text: &str) -> Option<char> {
+    let font = outlines().ok()?;
+    text.chars().find(|c| font.glyph_id(*c).0 == 0)
+}
+
 /// The glyphs of `text` with its baseline starting at (0, 0), `em` pixels an em.
 pub(super) fn glyphs(text: &str, em: f64) -> Result<Vec<OutlinedGlyph>> {
     let font = outlines()?;

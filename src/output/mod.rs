@@ -5,35 +5,49 @@
 
 mod arrhenius_plot;
 pub mod canvas;
+mod columns;
 mod config_copy;
+mod convergence_plot;
 mod csv;
 pub mod disk;
 mod energy_path_plot;
+mod energy_terms_plot;
 mod font;
+mod magnetisation_plot;
+mod plot;
+mod plot_data;
 mod rates_csv;
 mod rates_summary;
 mod relaxed;
 mod report;
 mod spin_files;
 mod spins_plot;
+mod stored_run;
 mod summary;
 pub mod sweep;
 
 pub use arrhenius_plot::{ArrheniusPlot, draw_lifetimes};
 pub use config_copy::ConfigCopy;
+pub use convergence_plot::ConvergencePlot;
 pub use csv::{HistoryCsv, PathCsv, ProfileCsv};
 pub use energy_path_plot::{EnergyPath, EnergyPathPlot, draw_energy_paths};
+pub use energy_terms_plot::EnergyTermsPlot;
+pub use magnetisation_plot::MagnetisationPlot;
+pub use plot::{PLOTS, Plot, PlotFile, PlotTable, describe};
+pub use plot_data::{Lifetimes, PlotData, RateRow};
 pub use rates_csv::RatesCsv;
 pub use relaxed::{RelaxReport, StateReport, relaxed_file_names};
 pub use report::ReportPage;
 pub use spin_files::{OvfImages, PathNpz, PathOvf, SaddleOvf, SpinsCsv, Vtk};
 pub use spins_plot::{SpinsPlot, draw_spins};
+pub use stored_run::StoredRun;
 pub use summary::Summary;
 
 use crate::drive::Outcome;
 use crate::error::Result;
 use crate::files::OvfData;
 use crate::lattice::Chain;
+use rayon::prelude::*;
 
 /// Everything that a format may know about a run.
 #[derive(Clone, Copy, Debug)]
@@ -50,6 +64,8 @@ pub struct RunReport<'a> {
     pub inputs: &'a [disk::File],
     /// The chain.
     pub chain: &'a Chain,
+    /// How figures look.
+    pub look: canvas::Look,
     /// What was found.
     pub outcome: &'a Outcome,
 }
@@ -58,7 +74,7 @@ pub struct RunReport<'a> {
 pub const INPUTS: &str = "inputs";
 
 /// One file of a result, perhaps with companions in a folder: a pure function of the outcome.
-pub trait Format {
+pub trait Format: Sync {
     /// Its name in the directory of the result.
     fn file_name(&self) -> String;
 
@@ -187,13 +203,14 @@ pub const KINDS: &[Kind] = &[
     Kind {
         name: "svg",
         group: Group::Plots,
-        summary: "energy_path.svg, spins.svg: the energy path and the map of the spins as vector graphics; with rates arrhenius.svg",
+        summary: "energy_path.svg, energy_terms.svg, spins.svg, magnetisation.svg, convergence.svg as vector graphics; with rates \
+                  arrhenius.svg",
         formats: || plots(Picture::Svg),
     },
     Kind {
         name: "png",
         group: Group::Plots,
-        summary: "energy_path.png, spins.png, arrhenius.png: the same figures as pixels, 300 an inch",
+        summary: "energy_path.png and the others: the same figures as pixels, 300 an inch",
         formats: || plots(Picture::Png),
     },
     Kind {
@@ -211,7 +228,7 @@ pub const KINDS: &[Kind] = &[
 ];
 
 fn plots(picture: Picture) -> Vec<Box<dyn Format>> {
-    vec![Box::new(EnergyPathPlot(picture)), Box::new(SpinsPlot(picture)), Box::new(ArrheniusPlot(picture))]
+    PLOTS.iter().map(|plot| Box::new(PlotFile { plot: *plot, picture }) as Box<dyn Format>).collect()
 }
 
 fn ovf(data: OvfData) -> Vec<Box<dyn Format>> {
@@ -221,12 +238,15 @@ fn ovf(data: OvfData) -> Vec<Box<dyn Format>> {
 /// The files of a run that names these kinds.
 pub fn render_files(run: &RunReport, wanted: impl Fn(&Kind) -> bool) -> Result<Vec<disk::File>> {
     let kinds = KINDS.iter().filter(|kind| kind.group == Group::Always || wanted(kind));
-    let mut files = Vec::new();
-    for format in kinds.flat_map(|kind| (kind.formats)()).filter(|format| format.applies(run)) {
-        files.push(disk::File { name: format.file_name(), bytes: format.render(run)? });
+    let formats: Vec<Box<dyn Format>> =
+        kinds.flat_map(|kind| (kind.formats)()).filter(|format| format.applies(run)).collect();
+    let files = |format: &dyn Format| -> Result<Vec<disk::File>> {
+        let mut files = vec![disk::File { name: format.file_name(), bytes: format.render(run)? }];
         files.extend(format.companions(run)?);
-    }
-    Ok(files)
+        Ok(files)
+    };
+    let files: Vec<Vec<disk::File>> = formats.par_iter().map(|format| files(&**format)).collect::<Result<_>>()?;
+    Ok(files.concat())
 }
 
 /// Names of all files that a result can have; a name that ends in `/` is a folder of them.

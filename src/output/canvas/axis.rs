@@ -62,15 +62,19 @@ impl Axis {
         let usable = |v: f64| if v.is_finite() && v > 0.0 { v } else { 1.0 };
         let (mut min, mut max) = (usable(min.min(max)), usable(max.max(min)));
         if max / min < 10.0 {
-            let middle = (min.log10() + max.log10()) / 2.0;
-            (min, max) = (10f64.powf((middle - 0.5).floor()), 10f64.powf((middle + 0.5).ceil()));
+            let middle = (libm::log10(min) + libm::log10(max)) / 2.0;
+            (min, max) = (power_of_10((middle - 0.5).floor()), power_of_10((middle + 0.5).ceil()));
         }
-        let (first, last) = ((min.log10() - 1e-9).ceil() as i32, (max.log10() + 1e-9).floor() as i32);
+        let (first, last) = ((libm::log10(min) - 1e-9).ceil() as i32, (libm::log10(max) + 1e-9).floor() as i32);
         let every = (((last - first) as f64 / most.max(1) as f64).ceil() as usize).max(1);
-        let ticks = (first..=last)
+        let decades = (first..=last)
             .filter(|n| n.rem_euclid(every as i32) == 0)
-            .map(|n| Tick { at: 10f64.powi(n), label: power_of_ten(n) })
-            .collect();
+            .map(|n| Tick { at: power_of_10(f64::from(n)), label: power_of_ten(n) });
+        let mut ticks: Vec<Tick> = decades.collect();
+        if ticks.len() < 3 {
+            let finer = finer_ticks(min, max);
+            ticks = if (ticks.len() + 1..=2 * most.max(2)).contains(&finer.len()) { finer } else { ticks };
+        }
         Axis { min, max, scale: Scale::Log, ticks }
     }
 
@@ -78,11 +82,32 @@ impl Axis {
     pub fn fraction(&self, v: f64) -> Option<f64> {
         let f = match self.scale {
             Scale::Linear => (v - self.min) / (self.max - self.min),
-            Scale::Log if v > 0.0 => (v / self.min).ln() / (self.max / self.min).ln(),
+            Scale::Log if v > 0.0 => libm::log(v / self.min) / libm::log(self.max / self.min),
             Scale::Log => return None,
         };
         f.is_finite().then_some(f)
     }
+}
+
+/// 10ⁿ, the same on every machine.
+fn power_of_10(n: f64) -> f64 {
+    libm::pow(10.0, n)
+}
+
+/// 1, 2 and 5 of every decade.
+fn finer_ticks(min: f64, max: f64) -> Vec<Tick> {
+    let decades = libm::log10(min).floor() as i32..=libm::log10(max).floor() as i32;
+    let tick = |n: i32, digit: f64| {
+        let at = digit * power_of_10(f64::from(n));
+        let label = match n {
+            -3..=4 => decimal(at, (-n).max(0) as usize),
+            _ if digit == 1.0 => power_of_ten(n),
+            _ => format!("{digit}×{}", power_of_ten(n)),
+        };
+        Tick { at, label }
+    };
+    let all = decades.flat_map(|n| [1.0, 2.0, 5.0].map(|digit| tick(n, digit)));
+    all.filter(|t| t.at >= min * (1.0 - 1e-9) && t.at <= max * (1.0 + 1e-9)).collect()
 }
 
 /// The range, or one around it if it is empty.
@@ -103,7 +128,7 @@ fn widened(min: f64, max: f64) -> (f64, f64) {
 
 /// The next of 1, 2, 5 × 10ⁿ at or above `step`.
 fn round_step(step: f64) -> f64 {
-    let decade = 10f64.powf(step.log10().floor());
+    let decade = power_of_10(libm::log10(step).floor());
     let factor = [1.0, 2.0, 5.0].into_iter().find(|f| f * decade >= step * (1.0 - 1e-9));
     factor.unwrap_or(10.0) * decade
 }
@@ -121,13 +146,13 @@ fn linear_ticks(min: f64, max: f64, step: f64) -> Vec<Tick> {
 
 /// Plain decimals where they are short, m×10ⁿ otherwise.
 fn tick_label(at: f64, step: f64, largest: f64) -> String {
-    let decimals = (-(step.log10() + 1e-9).floor()).max(0.0) as usize;
+    let decimals = (-(libm::log10(step) + 1e-9).floor()).max(0.0) as usize;
     if decimals <= 4 && largest < 1e5 {
         return decimal(at, decimals);
     }
-    let exponent = largest.log10().floor() as i32;
-    let scale = 10f64.powi(exponent);
-    let decimals = (-((step / scale).log10() + 1e-9).floor()).max(0.0) as usize;
+    let exponent = libm::log10(largest).floor() as i32;
+    let scale = power_of_10(f64::from(exponent));
+    let decimals = (-(libm::log10(step / scale) + 1e-9).floor()).max(0.0) as usize;
     if (at / step).abs() < 0.5 {
         "0".into()
     } else {
@@ -148,6 +173,7 @@ mod tests {
         assert_eq!(labels(Axis::linear(-0.25, 1.07, 6)), ["0.0", "0.5", "1.0"]);
         assert_eq!(labels(Axis::linear(-1.0, 1.0, 4)), ["−1.0", "−0.5", "0.0", "0.5", "1.0"]);
         assert_eq!(labels(Axis::linear(0.0, 3e-7, 3)), ["0", "1×10⁻⁷", "2×10⁻⁷", "3×10⁻⁷"]);
+        assert_eq!(labels(Axis::log(0.15, 6.0, 5)), ["0.2", "0.5", "1", "2", "5"]);
         assert_eq!(labels(Axis::log(1e-12, 10.0, 7)), ["10⁻¹²", "10⁻¹⁰", "10⁻⁸", "10⁻⁶", "10⁻⁴", "10⁻²", "10⁰"]);
     }
 

@@ -30,7 +30,7 @@ fn rectangles(canvas: &mut Canvas, r: Rect, columns: usize, rows: usize, colour:
     for row in 0..rows {
         for column in 0..columns {
             let (x1, y0) = ((x(column + 1) + 0.5).min(r.x1), (y(row + 1) - 0.5).max(r.y0));
-            canvas.fill(Rect { x0: x(column), y0, x1, y1: y(row) }, colour(column, row));
+            canvas.cell(Rect { x0: x(column), y0, x1, y1: y(row) }, colour(column, row));
         }
     }
 }

@@ -5,8 +5,17 @@ use super::frame::{Frame, Rect, Ticks};
 use super::obstacles::Obstacles;
 use super::palette::{Colour, SERIES};
 use super::shapes::{Canvas, Point, Text};
-use super::{COLUMN_MM, MM, SMALL_PT, WHITE};
+use super::{COLUMN_MM, Look, MM, SMALL_PT, Style, WHITE};
 use crate::error::{Error, Result};
+
+/// Height of a figure that is a column wide (mm).
+const HEIGHT_MM: f64 = 60.0;
+/// Room above the frame (pt).
+const TOP: f64 = 4.0;
+/// Length of the line in a legend (pt).
+const LINE: f64 = 17.0;
+/// Distance of its rows (pt).
+const PITCH: f64 = SMALL_PT + 3.0;
 
 /// The mark at a data point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,10 +100,14 @@ pub struct AxisLabel {
 /// A plot of series.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinePlot {
-    /// Width of the figure (mm).
+    /// Width of the figure, before the style's zoom (mm).
     pub width_mm: f64,
-    /// Height of the figure (mm).
+    /// Height of the figure, before the style's zoom (mm).
     pub height_mm: f64,
+    /// Its style.
+    pub style: Style,
+    /// The legend stands above the frame, where it covers nothing, instead of in its freest corner.
+    pub legend_above: bool,
     /// The horizontal axis.
     pub x: AxisLabel,
     /// The vertical axis.
@@ -109,11 +122,26 @@ impl LinePlot {
         let axis = |label| AxisLabel { label, ..AxisLabel::default() };
         LinePlot {
             width_mm: COLUMN_MM,
-            height_mm: 60.0,
+            height_mm: HEIGHT_MM,
+            style: Style::Paper,
+            legend_above: false,
             x: axis(x_label.into()),
             y: axis(y_label.into()),
             series: Vec::new(),
         }
+    }
+
+    /// In this style and width, and as much higher as it is wider.
+    pub fn look(mut self, look: &Look) -> LinePlot {
+        (self.style, self.width_mm) = (look.style(), look.drawn_width_mm());
+        self.height_mm = HEIGHT_MM * (self.width_mm / COLUMN_MM).max(0.85);
+        self
+    }
+
+    /// With the legend above the frame.
+    pub fn legend_above(mut self) -> LinePlot {
+        self.legend_above = true;
+        self
     }
 
     /// With one more series.
@@ -159,8 +187,10 @@ impl LinePlot {
         if !self.series.iter().flat_map(|s| &s.points).all(|p| p.0.is_finite() && p.1.is_finite()) {
             return Err(Error::Numerical(format!("a number to plot as {:?} is not finite", self.y.label)));
         }
-        let mut canvas = Canvas::new(self.width_mm, self.height_mm);
-        let frame = self.frame(&canvas)?;
+        let above = if self.legend_above { self.rows(self.width_mm * MM)?.len() } else { 0 };
+        let height_mm = self.height_mm + PITCH * above as f64 / MM;
+        let mut canvas = Canvas { style: self.style, ..Canvas::new(self.width_mm, height_mm) };
+        let frame = self.frame(&canvas, TOP + PITCH * above as f64)?;
         frame.draw(&mut canvas, &self.x.label, &self.y.label)?;
         Ok((canvas, frame))
     }
@@ -190,13 +220,62 @@ impl LinePlot {
         obstacles
     }
 
-    /// The legend in the freest corner; nothing without labels.
+    /// The legend, above the frame or in the freest corner; nothing without labels.
     pub fn draw_legend(&self, canvas: &mut Canvas, frame: &Frame, obstacles: &Obstacles) -> Result<()> {
-        const LINE: f64 = 14.0;
-        const PITCH: f64 = SMALL_PT + 3.0;
-        let entries: Vec<(usize, Text)> = (self.series.iter().enumerate())
-            .filter_map(|(k, s)| s.label.as_ref().map(|label| (k, Text::new(label, SMALL_PT))))
-            .collect();
+        if self.legend_above { self.draw_rows(canvas, frame) } else { self.draw_corner(canvas, frame, obstacles) }
+    }
+
+    /// What the legend says of which series.
+    fn entries(&self) -> Vec<(usize, Text)> {
+        let label = |(k, s): (usize, &Series)| s.label.as_ref().map(|label| (k, Text::new(label, SMALL_PT)));
+        self.series.iter().enumerate().filter_map(label).collect()
+    }
+
+    /// The legend above the frame, row by row: columns of the widest entry's width, as many as fit.
+    fn rows(&self, width: f64) -> Result<Vec<Vec<(usize, Text)>>> {
+        let entries = self.entries();
+        let fit = (width / self.column(&entries)?.max(1.0)).floor().max(1.0) as usize;
+        // rows of equal length
+        let fit = entries.len().div_ceil(entries.len().div_ceil(fit).max(1)).max(1);
+        Ok(entries.chunks(fit).map(<[_]>::to_vec).collect())
+    }
+
+    /// Width of a column of entries (pt).
+    fn column(&self, entries: &[(usize, Text)]) -> Result<f64> {
+        let widest = entries.iter().try_fold(0.0, |w: f64, (_, t)| Ok::<_, Error>(w.max(t.width()?)))?;
+        Ok(LINE + 4.0 + widest + 8.0)
+    }
+
+    fn draw_rows(&self, canvas: &mut Canvas, frame: &Frame) -> Result<()> {
+        let rows = self.rows(canvas.width())?;
+        let column = self.column(&rows.concat())?;
+        let most = rows.first().map_or(0, Vec::len) as f64;
+        let left = ((frame.rect.x0 + frame.rect.x1 - column * most) / 2.0 + 4.0).max(2.0);
+        let left = left.min(canvas.width() - column * most + 6.0).max(1.0);
+        let top = frame.rect.y0 - 3.0 - PITCH * rows.len() as f64;
+        for (row, entries) in rows.into_iter().enumerate() {
+            let y = top + PITCH * (row as f64 + 0.5);
+            for (place, (k, text)) in entries.into_iter().enumerate() {
+                self.draw_entry(canvas, (left + column * place as f64, y), k, text)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// A piece of the line and its name.
+    fn draw_entry(&self, canvas: &mut Canvas, (x, y): Point, k: usize, text: Text) -> Result<()> {
+        let series = &self.series[k];
+        if let Some(width) = series.width {
+            stroke(canvas, &[(x + 1.0, y), (x + 1.0 + LINE, y)], width, self.colour(k), series.dash);
+        }
+        if let Some(marker) = series.marker {
+            mark(canvas, (x + 1.0 + LINE / 2.0, y), marker, self.colour(k));
+        }
+        canvas.text((x + LINE + 5.0, y + 0.36 * SMALL_PT), text)
+    }
+
+    fn draw_corner(&self, canvas: &mut Canvas, frame: &Frame, obstacles: &Obstacles) -> Result<()> {
+        let entries = self.entries();
         let widest = entries.iter().try_fold(0.0, |w: f64, (_, t)| Ok::<_, Error>(w.max(t.width()?)))?;
         let (width, height) = (LINE + 4.0 + widest + 4.0, PITCH * entries.len() as f64 + 2.0);
         let corners = corners(&frame.rect.grown(-5.0), width, height);
@@ -208,15 +287,7 @@ impl LinePlot {
             canvas.fill(r, WHITE);
         }
         for (row, (k, text)) in entries.into_iter().enumerate() {
-            let y = r.y0 + 1.0 + PITCH * (row as f64 + 0.5);
-            let series = &self.series[k];
-            if let Some(width) = series.width {
-                stroke(canvas, &[(r.x0 + 1.0, y), (r.x0 + 1.0 + LINE, y)], width, self.colour(k), series.dash);
-            }
-            if let Some(marker) = series.marker {
-                mark(canvas, (r.x0 + 1.0 + LINE / 2.0, y), marker, self.colour(k));
-            }
-            canvas.text((r.x0 + LINE + 5.0, y + 0.36 * SMALL_PT), text)?;
+            self.draw_entry(canvas, (r.x0, r.y0 + 1.0 + PITCH * (row as f64 + 0.5)), k, text)?;
         }
         Ok(())
     }
@@ -225,15 +296,15 @@ impl LinePlot {
         self.series[k].colour.unwrap_or(SERIES[k % SERIES.len()])
     }
 
-    fn frame(&self, canvas: &Canvas) -> Result<Frame> {
+    fn frame(&self, canvas: &Canvas, top: f64) -> Result<Frame> {
         let (x0, x1) = self.x.range.unwrap_or_else(|| self.data_range(self.x.scale, 0.03, |p| p.0));
         let (y0, y1) = self.y.range.unwrap_or_else(|| self.data_range(self.y.scale, 0.06, |p| p.1));
-        let inner_height = canvas.height() - Frame::bottom_margin() - 4.0;
+        let inner_height = canvas.height() - Frame::bottom_margin() - top;
         let y = Axis::new(y0, y1, self.y.scale, (inner_height / (3.0 * SMALL_PT)) as usize);
         let left = Frame::left_margin(&y)?;
         let x = Axis::new(x0, x1, self.x.scale, ((canvas.width() - left) / (4.5 * SMALL_PT)) as usize);
         let right = self.overhang(&x, canvas.width() - left)?.max(1.5 * MM);
-        let rect = Rect { x0: left, y0: 4.0, x1: canvas.width() - right, y1: 4.0 + inner_height };
+        let rect = Rect { x0: left, y0: top, x1: canvas.width() - right, y1: top + inner_height };
         Ok(Frame { rect, x, y, ticks: Ticks::Inward })
     }
 
@@ -245,14 +316,14 @@ impl LinePlot {
     }
 
     /// Smallest and largest value with a margin on both sides.
-    fn data_range(&self, scale: Scale, margin: f64, value: impl Fn(&(f64, f64)) -> f64) -> (f64, f64) {
+    pub fn data_range(&self, scale: Scale, margin: f64, value: impl Fn(&(f64, f64)) -> f64) -> (f64, f64) {
         let values = self.series.iter().flat_map(|s| &s.points).map(value);
         let usable = values.filter(|v| scale == Scale::Linear || *v > 0.0);
         let (lo, hi) = usable.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| (lo.min(v), hi.max(v)));
         match scale {
             _ if lo > hi => (0.0, 1.0),
             Scale::Linear => (lo - margin * (hi - lo), hi + margin * (hi - lo)),
-            Scale::Log => (lo * (lo / hi).powf(margin), hi * (hi / lo).powf(margin)),
+            Scale::Log => (lo * libm::pow(lo / hi, margin), hi * libm::pow(hi / lo, margin)),
         }
     }
 }

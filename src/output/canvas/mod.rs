@@ -21,7 +21,9 @@ mod obstacles;
 mod palette;
 mod render_plot;
 mod shapes;
+mod style;
 
+pub use super::font::unknown_letter;
 pub use axis::{Axis, Scale, Tick};
 pub use frame::{Frame, Rect, Ticks};
 pub use heat_map::{colour_bar, heat_map};
@@ -30,15 +32,17 @@ pub use number::{decimal, power_of_ten, significant};
 pub use obstacles::Obstacles;
 pub use palette::*;
 pub(super) use render_plot::base64;
+pub use render_plot::description;
 pub use shapes::{Align, Canvas, Point, Text};
+pub use style::{COLUMN_MM, Look, Style};
 
 /// Points in a millimetre.
 pub const MM: f64 = 72.0 / 25.4;
-/// Width of a figure in a journal's single column (mm).
-pub const COLUMN_MM: f64 = 85.0;
 /// Size of the axis labels (pt).
 pub const LABEL_PT: f64 = 8.0;
 /// Size of tick labels, legends and notes (pt).
 pub const SMALL_PT: f64 = 7.0;
+/// No text is smaller (pt), nor a subscript.
+pub const MIN_PT: f64 = 7.0;
 /// Thickness of frames and ticks (pt).
 pub const THIN_PT: f64 = 0.5;

@@ -20,7 +20,11 @@ pub fn significant(v: f64, digits: usize) -> String {
     if (-3..6).contains(&exponent) {
         return decimal(v, (digits as i32 - 1 - exponent).max(0) as usize);
     }
-    format!("{}×{}", decimal(v / 10f64.powi(exponent), digits.saturating_sub(1)), power_of_ten(exponent))
+    format!(
+        "{}×{}",
+        decimal(v / libm::pow(10.0, f64::from(exponent)), digits.saturating_sub(1)),
+        power_of_ten(exponent)
+    )
 }
 
 /// 10ⁿ.

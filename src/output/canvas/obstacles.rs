@@ -14,7 +14,7 @@ impl Obstacles {
     pub fn add_line(&mut self, line: &[Point]) {
         for pair in line.windows(2) {
             let (a, b) = (pair[0], pair[1]);
-            let pieces = ((b.0 - a.0).hypot(b.1 - a.1).ceil() as usize).clamp(1, 2000);
+            let pieces = (libm::hypot(b.0 - a.0, b.1 - a.1).ceil() as usize).clamp(1, 2000);
             self.points.extend(
                 (0..pieces).map(|k| k as f64 / pieces as f64).map(|t| (a.0 + t * (b.0 - a.0), a.1 + t * (b.1 - a.1))),
             );

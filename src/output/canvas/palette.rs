@@ -28,6 +28,12 @@ pub const SKY: Colour = Colour(0x56, 0xb4, 0xe9);
 /// The order in which series take their colours.
 pub const SERIES: [Colour; 7] = [BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, BLACK];
 
+/// The dashes of the k-th line (pt drawn, pt left out): full, long, dotted, longer; then again. Seven colours and four patterns
+/// make 28 lines that differ.
+pub fn pattern(k: usize) -> Option<(f64, f64)> {
+    [None, Some((4.5, 1.8)), Some((1.6, 1.4)), Some((8.0, 2.2))][k % 4]
+}
+
 /// The mixture (1 − t) a + t b, t in [0, 1].
 pub fn mix(a: Colour, b: Colour, t: f64) -> Colour {
     let t = t.clamp(0.0, 1.0);
@@ -47,29 +53,43 @@ pub fn diverging(v: f64) -> Colour {
     let t = if v.is_finite() { v.clamp(-1.0, 1.0) } else { 0.0 };
     let hue = if t < 0.0 { 255.0_f64 } else { 28.0 }.to_radians();
     let s = t.abs();
-    let lightness = 0.975 - 0.53 * s.powf(1.25);
-    let chroma = 0.165 * (1.35 * s).sin();
-    oklab(lightness, chroma * hue.cos(), chroma * hue.sin())
+    let lightness = 0.975 - 0.53 * libm::pow(s, 1.25);
+    let chroma = 0.165 * libm::sin(1.35 * s);
+    oklab(lightness, chroma * libm::cos(hue), chroma * libm::sin(hue))
 }
 
 /// A cyclic map of an angle (rad): the hue circle at nearly equal lightness; 0 is red, π green-blue.
 pub fn cyclic(phi: f64) -> Colour {
     let phi = if phi.is_finite() { phi } else { 0.0 };
     let hue = phi + 25.0_f64.to_radians();
-    let lightness = 0.70 + 0.10 * (phi - 1.5).cos();
-    oklab(lightness, 0.125 * hue.cos(), 0.125 * hue.sin())
+    let lightness = 0.70 + 0.10 * libm::cos(phi - 1.5);
+    oklab(lightness, 0.125 * libm::cos(hue), 0.125 * libm::sin(hue))
 }
 
 /// From Oklab (Ottosson 2020): lightness and two opponent axes.
 fn oklab(l: f64, a: f64, b: f64) -> Colour {
-    let long = (l + 0.3963377774 * a + 0.2158037573 * b).powi(3);
-    let medium = (l - 0.1055613458 * a - 0.0638541728 * b).powi(3);
-    let short = (l - 0.0894841775 * a - 1.2914855480 * b).powi(3);
+    let cube = |v: f64| v * v * v;
+    let long = cube(l + 0.3963377774 * a + 0.2158037573 * b);
+    let medium = cube(l - 0.1055613458 * a - 0.0638541728 * b);
+    let short = cube(l - 0.0894841775 * a - 1.2914855480 * b);
     Colour(
         gamma(4.0767416621 * long - 3.3077115913 * medium + 0.2309699292 * short),
         gamma(-1.2684380046 * long + 2.6097574011 * medium - 0.3413193965 * short),
         gamma(-0.0041960863 * long - 0.7034186147 * medium + 1.7076147010 * short),
     )
+}
+
+/// Linear red, green and blue in Oklab.
+#[cfg(test)]
+pub(super) fn oklab_of([r, g, b]: [f64; 3]) -> [f64; 3] {
+    let long = libm::cbrt(0.4122214708 * r + 0.5363325363 * g + 0.0514459929 * b);
+    let medium = libm::cbrt(0.2119034982 * r + 0.6806995451 * g + 0.1073969566 * b);
+    let short = libm::cbrt(0.0883024619 * r + 0.2817188376 * g + 0.6299787005 * b);
+    [
+        0.2104542553 * long + 0.7936177850 * medium - 0.0040720468 * short,
+        1.9779984951 * long - 2.4285922050 * medium + 0.4505937099 * short,
+        0.0259040371 * long + 0.7827717662 * medium - 0.8086757660 * short,
+    ]
 }
 
 /// The sRGB transfer curve.

@@ -3,7 +3,7 @@
 //! The backends know whole pixels only. So an SVG is drawn with many units a point and its root says how large it is,
 //! and a PNG is drawn larger and box-averaged.
 
-use super::palette::Colour;
+use super::palette::{Colour, WHITE};
 use super::shapes::{Align, Canvas, Point, Raster, Shape, Text};
 use crate::error::{Error, Result};
 use crate::output::font::{glyphs, named};
@@ -21,6 +21,13 @@ const SVG_SIZE_PER_EM: f64 = 1.24;
 const DPI: f64 = 300.0;
 /// A PNG is drawn so many times larger.
 const OVERSAMPLING: usize = 4;
+/// How every SVG begins.
+const SVG_START: &str = "<svg xmlns=\"http://www.w3.org/2000/svg\"";
+/// What is around the description in an SVG.
+const DESC: &str = "<desc>";
+const DESC_END: &str = "</desc>";
+/// Under which word a PNG has its description.
+const KEYWORD: &str = "Description";
 /// What an SVG asks for, best first.
 const FONT_STACK: &str = "DejaVu Sans, Verdana, sans-serif";
 
@@ -39,28 +46,33 @@ impl Canvas {
 
     /// The figure as PNG, 300 pixels an inch.
     pub fn png(&self) -> Result<Vec<u8>> {
-        let scale = DPI / 72.0;
+        let scale = self.style.zoom() * DPI / 72.0;
         let (width, height) = ((self.width() * scale).round() as usize, (self.height() * scale).round() as usize);
         let (wide, high) = (width * OVERSAMPLING, height * OVERSAMPLING);
-        let mut pixels = vec![255u8; 3 * wide * high];
+        let Colour(r, g, b) = self.style.colour(WHITE);
+        let mut pixels = [r, g, b].repeat(wide * high);
         let scale = scale * OVERSAMPLING as f64;
         self.rasters.iter().for_each(|r| paint(&mut pixels, (wide, high), r, scale));
         let mut backend = BitMapBackend::with_buffer(&mut pixels, (wide as u32, high as u32));
         let mut pen = Pen { backend: &mut backend, scale, kind: Kind::Pixels };
         self.shapes.iter().try_for_each(|shape| pen.draw(shape))?;
         drop(backend);
-        encode_png(&averaged(&pixels, width, height), width, height)
+        encode_png(&averaged(&pixels, width), (width, height), &self.description)
     }
 
     /// The root in millimetres, a white ground, the rasters beneath the shapes, and the font by name.
     fn finish_svg(&self, drawn: &str) -> Result<String> {
         let (root, body) = drawn.split_once('\n').ok_or_else(|| Error::Numerical("the SVG has no root".into()))?;
         let view = root.split("viewBox=\"").nth(1).and_then(|s| s.split('"').next()).unwrap_or_default();
+        let mm = |drawn: f64| (drawn * self.style.zoom() * 1e6).round() / 1e6;
+        let (width, height, Colour(r, g, b)) = (mm(self.width_mm), mm(self.height_mm), self.style.colour(WHITE));
         let mut svg = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}mm\" height=\"{}mm\" viewBox=\"{view}\" stroke-linejoin=\"round\">\n\
-             <rect width=\"100%\" height=\"100%\" fill=\"#FFFFFF\"/>\n",
-            self.width_mm, self.height_mm
+            "{SVG_START} width=\"{width}mm\" height=\"{height}mm\" viewBox=\"{view}\" stroke-linejoin=\"round\">\n"
         );
+        if !self.description.is_empty() {
+            let _ = writeln!(svg, "{DESC}{}{DESC_END}", escaped(&self.description));
+        }
+        let _ = writeln!(svg, "<rect width=\"100%\" height=\"100%\" fill=\"#{r:02X}{g:02X}{b:02X}\"/>");
         for raster in &self.rasters {
             svg.push_str(&image_element(raster)?);
         }
@@ -71,6 +83,26 @@ impl Canvas {
         );
         Ok(svg)
     }
+}
+
+/// The words that a figure drawn here carries; nothing where it carries none, or is another's.
+pub fn description(file: &[u8]) -> Option<String> {
+    if file.starts_with(SVG_START.as_bytes()) {
+        // its second line, or there is none
+        let head = String::from_utf8_lossy(&file[..file.len().min(8192)]);
+        let words = head.lines().nth(1)?.strip_prefix(DESC)?.strip_suffix(DESC_END)?;
+        return Some(ESCAPES.iter().rev().fold(words.to_string(), |text, (c, code)| text.replace(code, c)));
+    }
+    let reader = png::Decoder::new(file).read_info().ok()?;
+    let chunk = reader.info().utf8_text.iter().find(|chunk| chunk.keyword == KEYWORD)?;
+    chunk.get_text().ok()
+}
+
+/// Characters that an SVG writes otherwise.
+const ESCAPES: [(&str, &str); 3] = [("&", "&amp;"), ("<", "&lt;"), (">", "&gt;")];
+
+fn escaped(text: &str) -> String {
+    ESCAPES.iter().fold(text.to_string(), |text, (c, code)| text.replace(c, code))
 }
 
 /// An error of a backend.
@@ -132,7 +164,7 @@ impl<B: DrawingBackend> Pen<'_, B> {
     fn bars(&mut self, points: &[Point], width: f64, colour: Colour) -> Result<()> {
         for pair in points.windows(2) {
             let ((ax, ay), (bx, by)) = (pair[0], pair[1]);
-            let length = (bx - ax).hypot(by - ay);
+            let length = libm::hypot(bx - ax, by - ay);
             if length > 0.0 {
                 let (nx, ny) = (-(by - ay) / length * width / 2.0, (bx - ax) / length * width / 2.0);
                 self.polygon(
@@ -221,29 +253,37 @@ fn paint(pixels: &mut [u8], (wide, high): (usize, usize), raster: &Raster, scale
 }
 
 /// Each pixel the mean of the block drawn for it.
-fn averaged(pixels: &[u8], width: usize, height: usize) -> Vec<u8> {
-    const BLOCK: u32 = (OVERSAMPLING * OVERSAMPLING) as u32;
+fn averaged(pixels: &[u8], width: usize) -> Vec<u8> {
+    const BLOCK: u16 = (OVERSAMPLING * OVERSAMPLING) as u16;
     let row_bytes = 3 * width * OVERSAMPLING;
-    let mut out = Vec::with_capacity(3 * width * height);
-    let mut sums = vec![0u32; 3 * width];
+    let mut out = Vec::with_capacity(pixels.len() / (OVERSAMPLING * OVERSAMPLING));
+    let mut sums = vec![[0u16; 3]; width];
     for block in pixels.chunks_exact(row_bytes * OVERSAMPLING) {
-        sums.fill(0);
+        sums.fill([0; 3]);
         for row in block.chunks_exact(row_bytes) {
-            for (k, &v) in row.iter().enumerate() {
-                sums[3 * (k / (3 * OVERSAMPLING)) + k % 3] += u32::from(v);
+            for (sum, cell) in sums.iter_mut().zip(row.chunks_exact(3 * OVERSAMPLING)) {
+                for rgb in cell.chunks_exact(3) {
+                    (0..3).for_each(|c| sum[c] += u16::from(rgb[c]));
+                }
             }
         }
-        out.extend(sums.iter().map(|s| ((s + BLOCK / 2) / BLOCK) as u8));
+        out.extend(sums.iter().flatten().map(|s| ((s + BLOCK / 2) / BLOCK) as u8));
     }
     out
 }
 
 /// RGB pixels as a PNG file that knows its size.
-fn encode_png(rgb: &[u8], width: usize, height: usize) -> Result<Vec<u8>> {
+fn encode_png(rgb: &[u8], (width, height): (usize, usize), description: &str) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width as u32, height as u32);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
+    // measured on line plots: the smallest files, a third of the encoder's own choice
+    encoder.set_compression(png::Compression::Default);
+    encoder.set_filter(png::FilterType::NoFilter);
+    if !description.is_empty() {
+        encoder.add_itxt_chunk(KEYWORD.into(), description.into()).map_err(refused)?;
+    }
     let per_metre = (DPI / 0.0254).round() as u32;
     encoder.set_pixel_dims(Some(png::PixelDimensions { xppu: per_metre, yppu: per_metre, unit: png::Unit::Meter }));
     encoder.write_header().and_then(|mut writer| writer.write_image_data(rgb)).map_err(refused)?;
@@ -253,7 +293,7 @@ fn encode_png(rgb: &[u8], width: usize, height: usize) -> Result<Vec<u8>> {
 /// A raster as an SVG element that carries its pixels.
 fn image_element(raster: &Raster) -> Result<String> {
     let r = raster.rect;
-    let data = base64(&encode_png(&raster.rgb, raster.columns, raster.rows)?);
+    let data = base64(&encode_png(&raster.rgb, (raster.columns, raster.rows), "")?);
     let unit = |v: f64| (v * SVG_UNITS).round();
     Ok(format!(
         "<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\" \
@@ -282,6 +322,18 @@ pub(in crate::output) fn base64(bytes: &[u8]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_figure_carries_its_description() {
+        let canvas = Canvas::new(20.0, 10.0);
+        assert_eq!(description(&canvas.svg().unwrap()), None);
+        assert_eq!(description(&canvas.png().unwrap()), None);
+        let words = "spinneb: a <b> & c – d";
+        let canvas = canvas.describe(words);
+        assert_eq!(description(&canvas.svg().unwrap()).as_deref(), Some(words));
+        assert_eq!(description(&canvas.png().unwrap()).as_deref(), Some(words));
+        assert_eq!(description(b"image,energy_meV"), None);
+    }
 
     #[test]
     fn base64_pads_as_rfc_4648_says() {

@@ -1,7 +1,7 @@
 //! The display list: what is drawn, before any file format.
 
 use super::palette::Colour;
-use super::{MM, Rect};
+use super::{Look, MIN_PT, MM, Rect, Style};
 use crate::error::Result;
 use crate::output::font::width_em;
 
@@ -69,11 +69,11 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    const SUBSCRIPT_SIZE: f64 = 0.72;
+    const SUBSCRIPT_SIZE: f64 = 0.8;
     const SUBSCRIPT_DROP: f64 = 0.22;
 
     fn size(&self, size: f64) -> f64 {
-        if self.subscript { size * Run::SUBSCRIPT_SIZE } else { size }
+        if self.subscript { (size * Run::SUBSCRIPT_SIZE).max(MIN_PT) } else { size }
     }
 
     fn drop(&self, size: f64) -> f64 {
@@ -130,6 +130,8 @@ pub(super) struct Raster {
 pub struct Canvas {
     pub(super) width_mm: f64,
     pub(super) height_mm: f64,
+    pub(super) style: Style,
+    pub(super) description: String,
     pub(super) rasters: Vec<Raster>,
     pub(super) shapes: Vec<Shape>,
 }
@@ -137,15 +139,31 @@ pub struct Canvas {
 impl Canvas {
     /// An empty white figure.
     pub fn new(width_mm: f64, height_mm: f64) -> Canvas {
-        Canvas { width_mm, height_mm, rasters: Vec::new(), shapes: Vec::new() }
+        let (style, description) = (Style::Paper, String::new());
+        Canvas { width_mm, height_mm, style, description, rasters: Vec::new(), shapes: Vec::new() }
     }
 
-    /// Width (pt).
+    /// An empty figure that looks so; the height is that before the style's zoom.
+    pub fn styled(look: &Look, height_mm: f64) -> Canvas {
+        Canvas { style: look.style(), ..Canvas::new(look.drawn_width_mm(), height_mm) }
+    }
+
+    /// With words that the file carries unseen.
+    pub fn describe(self, description: impl Into<String>) -> Canvas {
+        Canvas { description: description.into(), ..self }
+    }
+
+    /// Its style.
+    pub fn style(&self) -> Style {
+        self.style
+    }
+
+    /// Width in which is drawn, before the style's zoom (pt).
     pub fn width(&self) -> f64 {
         self.width_mm * MM
     }
 
-    /// Height (pt).
+    /// Height in which is drawn, before the style's zoom (pt).
     pub fn height(&self) -> f64 {
         self.height_mm * MM
     }
@@ -153,6 +171,7 @@ impl Canvas {
     /// A line through points.
     pub fn line(&mut self, points: &[Point], width: f64, colour: Colour) {
         if points.len() > 1 {
+            let colour = self.style.colour(colour);
             self.shapes.push(Shape::Line { points: points.to_vec(), width, colour });
         }
     }
@@ -171,16 +190,24 @@ impl Canvas {
 
     /// A filled polygon.
     pub fn polygon(&mut self, points: &[Point], colour: Colour) {
+        let colour = self.style.colour(colour);
         self.shapes.push(Shape::Polygon { points: points.to_vec(), colour });
     }
 
     /// A filled rectangle.
     pub fn fill(&mut self, rect: Rect, colour: Colour) {
+        let colour = self.style.colour(colour);
+        self.shapes.push(Shape::Box { rect, colour });
+    }
+
+    /// A filled rectangle whose colour is data, the same in every style.
+    pub(super) fn cell(&mut self, rect: Rect, colour: Colour) {
         self.shapes.push(Shape::Box { rect, colour });
     }
 
     /// A filled circle.
     pub fn disc(&mut self, centre: Point, radius: f64, colour: Colour) {
+        let colour = self.style.colour(colour);
         self.shapes.push(Shape::Disc { centre, radius, colour });
     }
 
@@ -191,6 +218,7 @@ impl Canvas {
 
     /// A text with its baseline at a place.
     pub fn text(&mut self, at: Point, text: Text) -> Result<()> {
+        let text = Text { colour: self.style.colour(text.colour), ..text };
         let pieces = runs(&text.text);
         if pieces.iter().all(|run| !run.subscript) {
             self.shapes.push(Shape::Text { at, text });
@@ -220,7 +248,7 @@ fn dashes(points: &[Point], on: f64, off: f64) -> Vec<Vec<Point>> {
     let (mut drawing, mut left) = (true, on);
     for pair in points.windows(2) {
         let (a, b) = (pair[0], pair[1]);
-        let length = (b.0 - a.0).hypot(b.1 - a.1);
+        let length = libm::hypot(b.0 - a.0, b.1 - a.1);
         let at = |s: f64| (a.0 + (b.0 - a.0) * s / length, a.1 + (b.1 - a.1) * s / length);
         let mut done = 0.0;
         if drawing {

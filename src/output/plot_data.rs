@@ -1,0 +1,87 @@
+//! What figures are drawn from: taken from an outcome, or read back from the files of a result ([`super::StoredRun`]).
+
+use super::csv::column_name;
+use super::{EnergyPath, RunReport};
+use crate::drive::HistoryRow;
+use crate::path::Path;
+use crate::rates::{Row, Way};
+
+/// The numbers of one result's figures.
+#[derive(Clone, Debug, Default)]
+pub struct PlotData<'a> {
+    /// Name of the run.
+    pub name: String,
+    /// Energies along the path.
+    pub energy: EnergyPath,
+    /// Energy of each term above that of the initial image (meV), image by image, under the name of its column in `path.csv`.
+    pub terms_mev: Vec<(String, Vec<f64>)>,
+    /// The spins, where they are known.
+    pub path: Option<&'a Path>,
+    /// Sites without a spin; empty if there are none.
+    pub vacant: Vec<bool>,
+    /// One row a band iteration.
+    pub history: Vec<HistoryRow>,
+    /// Mean lifetimes of both ends, where rates were asked for.
+    pub lifetimes: Vec<Lifetimes>,
+}
+
+/// Rates of leaving one end of the path.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lifetimes {
+    /// Which end: forward leaves the initial state.
+    pub way: Way,
+    /// One entry a temperature.
+    pub rows: Vec<RateRow>,
+}
+
+/// Rates at one temperature; none where a theory was not asked for or has none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RateRow {
+    /// Temperature (K).
+    pub temperature_k: f64,
+    /// By harmonic transition-state theory (1/s).
+    pub htst_per_s: Option<f64>,
+    /// By Langer's theory (1/s).
+    pub langer_per_s: Option<f64>,
+}
+
+impl<'a> PlotData<'a> {
+    /// Of a run.
+    pub fn of(run: &RunReport<'a>) -> PlotData<'a> {
+        let outcome = run.outcome;
+        let transitions = outcome.rates.as_ref().map(|r| &r.transitions[..]).unwrap_or_default();
+        PlotData {
+            name: run.name.into(),
+            energy: EnergyPath::from_outcome(run.name, outcome),
+            terms_mev: outcome.images.terms_mev.iter().map(|(name, e)| (column_name(name), above_first(e))).collect(),
+            path: Some(&outcome.path),
+            vacant: run.chain.is_vacant().unwrap_or_default(),
+            history: outcome.history.clone(),
+            lifetimes: transitions
+                .iter()
+                .map(|t| Lifetimes { way: t.way, rows: t.rows.iter().map(RateRow::of).collect() })
+                .collect(),
+        }
+    }
+
+    /// The reaction coordinate of every image (rad).
+    pub fn coordinate(&self) -> impl Iterator<Item = f64> + '_ {
+        self.energy.images.iter().map(|p| p.0)
+    }
+}
+
+impl RateRow {
+    fn of(row: &Row) -> RateRow {
+        let rate = |ln: Option<f64>| ln.map(libm::exp).filter(|r| r.is_finite());
+        RateRow {
+            temperature_k: row.temperature_k,
+            htst_per_s: rate(row.ln_htst_per_s),
+            langer_per_s: rate(row.ln_langer_per_s),
+        }
+    }
+}
+
+/// The energies less the first of them.
+pub(super) fn above_first(energies: &[f64]) -> Vec<f64> {
+    energies.iter().map(|e| e - energies.first().unwrap_or(&0.0)).collect()
+}

@@ -1,0 +1,267 @@
+//! A result read back from its directory, as far as figures need it.
+//!
+//! `summary.json` and one of `path.csv` and `path.npz` must be there. Without `profile.csv` the curve joins the images; without
+//! `history.csv`, or a file of spins, some figures cannot be drawn, and `notes` say so. A file that is there must be whole.
+
+use super::columns::{Columns, WAY_OUT};
+use super::disk::MARK;
+use super::plot_data::above_first;
+use super::{EnergyPath, Lifetimes, PlotData, RateRow};
+use crate::drive::{Barrier, HistoryRow};
+use crate::error::{Error, Result};
+use crate::files;
+use crate::path::Path as SpinPath;
+use crate::rates::Way;
+use crate::spins::Spins;
+use serde::Deserialize;
+use std::fs;
+use std::io::ErrorKind;
+use std::path::Path;
+
+/// Files of spins, best first.
+const SPINS: [&str; 4] = ["path.npz", "path.ovf", "path_text.ovf", "spins.csv"];
+
+/// A result as its files tell.
+#[derive(Clone, Debug)]
+pub struct StoredRun {
+    /// What could not be read because it is not there, and what that means.
+    pub notes: Vec<String>,
+    /// Sites without a spin, as the config says; empty if there are none.
+    pub vacant: Vec<bool>,
+    summary: Summary,
+    images: Vec<(f64, f64)>,
+    terms_mev: Vec<(String, Vec<f64>)>,
+    profile: Vec<(f64, f64)>,
+    history: Vec<HistoryRow>,
+    path: Option<SpinPath>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[allow(non_snake_case)]
+struct Summary {
+    name: String,
+    barrier_meV: Option<BothWays>,
+    saddles: Vec<Saddle>,
+    path: PathEntry,
+    #[serde(default)]
+    transition_rates: Vec<Transition>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+struct BothWays {
+    forward: f64,
+    backward: f64,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[allow(non_snake_case)]
+struct Saddle {
+    energy_above_initial_meV: f64,
+    reaction_coordinate_rad: f64,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+struct PathEntry {
+    images: usize,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+struct Transition {
+    direction: String,
+    temperatures: Vec<Temperature>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[allow(non_snake_case)]
+struct Temperature {
+    temperature_K: f64,
+    htst_rate_per_s: Option<f64>,
+    langer_rate_per_s: Option<f64>,
+}
+
+impl StoredRun {
+    /// Reads the result in `dir`; with its spins if they are `wanted`.
+    pub fn read(dir: &Path, spins_wanted: bool) -> Result<StoredRun> {
+        let mut notes = Vec::new();
+        let summary = summary(dir)?;
+        let images = summary.path.images;
+        let table = path_table(dir)?;
+        agree(&table.0, table.1.rows(), images)?;
+        let table = table.1;
+        let points = table.points("reaction_coordinate_rad", "energy_above_initial_meV")?;
+        let profile = match text(dir, "profile.csv")? {
+            Some(text) => Columns::read(&shown(dir, "profile.csv"), &text)?
+                .points("reaction_coordinate_rad", "energy_above_initial_meV")?,
+            None => {
+                notes.push("there is no profile.csv: the curve joins the images by straight lines".into());
+                Vec::new()
+            }
+        };
+        let history = match text(dir, "history.csv")? {
+            Some(text) => history(&Columns::read(&shown(dir, "history.csv"), &text)?)?,
+            None => {
+                notes.push("there is no history.csv: the convergence cannot be drawn".into());
+                Vec::new()
+            }
+        };
+        let path = if spins_wanted { spins(dir, images)? } else { None };
+        if spins_wanted && path.is_none() {
+            notes.push(format!(
+                "there is no file of spins ({}): spins and magnetisation cannot be drawn",
+                SPINS.join(", ")
+            ));
+        }
+        let terms_mev = terms(&table);
+        Ok(StoredRun { notes, vacant: Vec::new(), summary, images: points, terms_mev, profile, history, path })
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.summary.name
+    }
+
+    /// Number of sites, where the spins are known.
+    pub fn sites(&self) -> Option<usize> {
+        self.path.as_ref().map(SpinPath::sites)
+    }
+
+    /// What its figures are drawn from.
+    pub fn data(&self) -> PlotData<'_> {
+        let barrier = |b: BothWays| Barrier { forward_mev: b.forward, backward_mev: b.backward };
+        let saddle = |s: &Saddle| (s.reaction_coordinate_rad, s.energy_above_initial_meV);
+        PlotData {
+            name: self.summary.name.clone(),
+            energy: EnergyPath {
+                name: self.summary.name.clone(),
+                images: self.images.clone(),
+                profile: self.profile.clone(),
+                saddles: self.summary.saddles.iter().map(saddle).collect(),
+                barrier: self.summary.barrier_meV.map(barrier),
+            },
+            terms_mev: self.terms_mev.clone(),
+            path: self.path.as_ref(),
+            vacant: self.vacant.clone(),
+            history: self.history.clone(),
+            lifetimes: self.summary.transition_rates.iter().filter_map(lifetimes).collect(),
+        }
+    }
+}
+
+fn summary(dir: &Path) -> Result<Summary> {
+    let place = dir.display().to_string();
+    if !dir.exists() {
+        return Err(Error::invalid(
+            place,
+            "there is no such directory; name the directory of a result, such as results/wall",
+        ));
+    }
+    if !dir.is_dir() {
+        return Err(Error::invalid(place, "is a file; name the directory of a result, such as results/wall"));
+    }
+    let Some(text) = text(dir, MARK)? else {
+        let message =
+            format!("holds no finished result: there is no {MARK}. Run its config first: spinneb run CONFIG.json");
+        return Err(Error::invalid(place, message));
+    };
+    serde_json::from_str(&text).map_err(|e| Error::invalid(shown(dir, MARK), format!("{e}: {WAY_OUT}")))
+}
+
+/// The table of the images, with the file it is from.
+fn path_table(dir: &Path) -> Result<(String, Columns)> {
+    let file = shown(dir, "path.csv");
+    if let Some(text) = text(dir, "path.csv")? {
+        return Ok((file.clone(), Columns::read(&file, &text)?));
+    }
+    let Some(bytes) = bytes(dir, "path.npz")? else {
+        let message = "there is neither this nor path.npz, so there are no energies to draw: run the config again with \
+                       \"csv\" or \"npz\" in output.formats";
+        return Err(Error::invalid(file, message));
+    };
+    let file = shown(dir, "path.npz");
+    let arrays = files::read_npz_columns(&file, &bytes)?;
+    Ok((file.clone(), Columns::from_arrays(&file, arrays)?))
+}
+
+fn terms(table: &Columns) -> Vec<(String, Vec<f64>)> {
+    const OTHERS: [&str; 3] = ["energy", "max_perpendicular_torque", "energy_above_initial"];
+    let term = |(name, column): &(String, Vec<f64>)| {
+        let term = name.strip_suffix("_meV").filter(|term| !OTHERS.contains(term))?;
+        Some((term.to_string(), above_first(column)))
+    };
+    table.all().iter().filter_map(term).collect()
+}
+
+fn history(table: &Columns) -> Result<Vec<HistoryRow>> {
+    let [iteration, images] = ["iteration", "images"].map(|name| table.named(name));
+    let (iteration, images) = (iteration?, images?);
+    let torque = table.named("max_perpendicular_torque_meV")?;
+    let rotation = table.named("largest_predicted_rotation_rad")?;
+    let highest = table.named("highest_image_above_initial_meV")?;
+    let length = table.named("length_rad")?;
+    let row = |k: usize| HistoryRow {
+        iteration: iteration[k] as usize,
+        images: images[k] as usize,
+        max_perpendicular_torque_mev: torque[k],
+        largest_predicted_rotation_rad: rotation[k],
+        highest_image_mev: highest[k],
+        length_rad: length[k],
+    };
+    Ok((0..table.rows()).map(row).collect())
+}
+
+/// The spins of all images from the best file there is.
+fn spins(dir: &Path, images: usize) -> Result<Option<SpinPath>> {
+    for name in SPINS {
+        let Some(bytes) = bytes(dir, name)? else { continue };
+        let file = shown(dir, name);
+        let found = files::read(&file, &bytes)?.images;
+        agree(&file, found.len(), images)?;
+        // the reader's vectors are of unit length already
+        let states: Vec<Spins> = found.iter().map(|v| Spins::from_unit_vectors(v)).collect();
+        return Ok(Some(SpinPath::new(&states)));
+    }
+    Ok(None)
+}
+
+/// Files of one result have the same number of images.
+fn agree(file: &str, found: usize, images: usize) -> Result<()> {
+    if found == images {
+        return Ok(());
+    }
+    Err(Error::invalid(
+        file,
+        format!("has {found} images, but {MARK} says {images}: the files are not of one result; {RERUN}"),
+    ))
+}
+
+const RERUN: &str = "`spinneb run` with --force on the result's config.json writes them anew";
+
+fn lifetimes(t: &Transition) -> Option<Lifetimes> {
+    let way = [Way::Forward, Way::Backward].into_iter().find(|way| way.name() == t.direction)?;
+    let row = |t: &Temperature| RateRow {
+        temperature_k: t.temperature_K,
+        htst_per_s: t.htst_rate_per_s,
+        langer_per_s: t.langer_rate_per_s,
+    };
+    Some(Lifetimes { way, rows: t.temperatures.iter().map(row).collect() })
+}
+
+fn shown(dir: &Path, name: &str) -> String {
+    dir.join(name).display().to_string()
+}
+
+/// A file's text; nothing where there is no such file.
+fn text(dir: &Path, name: &str) -> Result<Option<String>> {
+    let Some(bytes) = bytes(dir, name)? else { return Ok(None) };
+    let no_text = |_| Error::invalid(shown(dir, name), format!("is no text: {WAY_OUT}"));
+    String::from_utf8(bytes).map(Some).map_err(no_text)
+}
+
+fn bytes(dir: &Path, name: &str) -> Result<Option<Vec<u8>>> {
+    let path = dir.join(name);
+    match fs::read(&path) {
+        Ok(bytes) => Ok(Some(bytes)),
+        Err(e) if e.kind() == ErrorKind::NotFound => Ok(None),
+        Err(source) => Err(Error::Io { path, source }),
+    }
+}
