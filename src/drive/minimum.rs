@@ -2,6 +2,7 @@
 
 use super::climb::Found;
 use super::ends::relax_to_minimum;
+use super::recorder::Recorder;
 use crate::energy::Hamiltonian;
 use crate::error::Result;
 use crate::field::{Components, ComponentsMut};
@@ -157,6 +158,13 @@ impl Link {
         let (spectrum, sides) = if h.sites() > MANY { (modes(), descents()) } else { rayon::join(modes, descents) };
         let ((before, f, back), (after, g, on)) = (sides.0?, sides.1?);
         Ok(Link { spectrum, before, after, fallen_mev: [f, g], ways: [back, on], found })
+    }
+
+    /// The same, as far as it is not on record.
+    pub fn recorded(h: &Hamiltonian, found: Found, c: f64, recorder: &mut Recorder) -> Result<Link> {
+        let Found { top, refined } = &found;
+        let [m, valley, tau] = [&refined.state.m, &refined.valley, &top.tau].map(Vec::clone);
+        recorder.call(h, &[&m, &valley, &tau], || Link::of(h, found, c))
     }
 
     /// Exchanges its two sides: which of them the path comes from is not always plain at the saddle itself.

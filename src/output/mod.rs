@@ -1,15 +1,20 @@
-//! What is written: each format is a pure function of the outcome, from [`RunReport`] to bytes; only [`disk`] touches the disk.
+//! What is written: each format is a pure function of the outcome, from [`RunReport`] to bytes; only [`disk`] touches the disk,
+//! with the [`Checkpoint`] and the [`Lock`] of a run at work.
 //!
 //! Energies are in meV, angles and path lengths in rad, and every outer name carries its unit. The same outcome gives the same
 //! bytes: there are no time stamps.
 
 mod arrhenius_plot;
 pub mod canvas;
+mod checkpoint;
 mod config_copy;
 mod csv;
 pub mod disk;
 mod energy_path_plot;
 mod font;
+mod frame;
+mod lock;
+mod partial;
 mod rates_csv;
 mod rates_summary;
 mod spin_files;
@@ -17,9 +22,12 @@ mod spins_plot;
 mod summary;
 
 pub use arrhenius_plot::{ArrheniusPlot, draw_lifetimes};
+pub use checkpoint::{Checkpoint, Identity};
 pub use config_copy::ConfigCopy;
 pub use csv::{HistoryCsv, PathCsv, ProfileCsv};
 pub use energy_path_plot::{EnergyPath, EnergyPathPlot, draw_energy_paths};
+pub use lock::Lock;
+pub use partial::{StoppedRun, discard_partial, partial_files};
 pub use rates_csv::RatesCsv;
 pub use spin_files::{OvfImages, PathNpz, PathOvf, SaddleOvf, SpinsCsv, Vtk};
 pub use spins_plot::{SpinsPlot, draw_spins};

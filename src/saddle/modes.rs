@@ -41,7 +41,7 @@ pub fn follow_modes(h: &Hamiltonian, m: &[f64], c: f64) -> Option<Refined> {
         factorisations += 1;
         loop {
             steps += 1;
-            if steps > STEPS || radius < 1e-7 {
+            if steps > STEPS || radius < 1e-7 || h.is_stopped() {
                 return None;
             }
             let (v, longest) = frame.step(&state, radius);
