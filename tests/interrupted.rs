@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 /// A slow method on a chain, with some hundred iterations.
 const CONFIG: &str = r#"{
-  "material": {"moment": "2 mu_B", "energy": [
+  "material": {"name": "toy", "moment": "2 mu_B", "energy": [
     {"exchange": {"J": ["10 meV"]}},
     {"anisotropy": {"K": "0.5 meV", "axis": [0, 0, 1]}}
   ]},
@@ -34,7 +34,8 @@ fn folder() -> tempfile::TempDir {
 
 fn command(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_spinneb"));
-    command.current_dir(folder).args(["run", "slow.json", "--out", "out"]).args(arguments);
+    let out: &[&str] = if arguments.contains(&"--out") { &[] } else { &["--out", "out"] };
+    command.current_dir(folder).args(["run", "slow.json"]).args(out).args(arguments);
     command
 }
 
@@ -47,11 +48,14 @@ fn run(folder: &Path, arguments: &[&str]) -> (Option<i32>, String, String) {
 /// A run at work, with a checkpoint after every iteration and some of them done.
 fn at_work(folder: &Path, arguments: &[&str]) -> Child {
     let mut command = command(folder, &["--checkpoint-every", "0 s", "--json"]);
-    let child = command.args(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut child = command.args(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     // one that is there already is replaced by the first of this run
     let started = Instant::now();
     while !folder.join("out/checkpoint/snapshot.previous").is_file() {
         assert!(started.elapsed() < Duration::from_secs(60), "no checkpoint appears");
+        if child.try_wait().unwrap().is_some() {
+            panic!("not at work: {:?}", ended(child));
+        }
         std::thread::sleep(Duration::from_millis(1));
     }
     child
@@ -232,9 +236,10 @@ fn a_checkpoint_of_another_version_or_build_is_refused() {
     let folder = killed();
     let journal = folder.path().join("out/checkpoint/journal");
     let old = fs::read(&journal).unwrap();
-    for (key, value, words) in
-        [("version", Value::from("9.1.0"), "version 9.1.0 (this is"), ("program_crc32", 1.into(), "another build of version")]
-    {
+    for (key, value, words) in [
+        ("version", Value::from("9.1.0"), "version 9.1.0 (this is"),
+        ("program_crc32", 1.into(), "another build of version"),
+    ] {
         fs::write(&journal, with_another_head(&old, key, value)).unwrap();
         let (code, _, said) = run(folder.path(), &["--resume"]);
         assert_eq!(code, Some(2), "{said}");
@@ -342,7 +347,10 @@ fn when_files_cannot_be_written_the_computation_is_kept() {
     let (code, _, said) = run(folder.path(), &[]);
     assert_eq!(code, Some(1), "{said}");
     assert!(said.contains("error: out/path.csv: "), "{said}");
-    assert!(said.contains("slow: the checkpoint is kept: once files can be written, --resume makes the result"), "{said}");
+    assert!(
+        said.contains("slow: the checkpoint is kept: once files can be written, --resume makes the result"),
+        "{said}"
+    );
     assert!(!folder.path().join("out/summary.json").exists());
     fs::remove_dir_all(folder.path().join("out/path.csv")).unwrap();
     let said = goes_on(folder.path(), &[]);

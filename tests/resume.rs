@@ -185,7 +185,7 @@ fn a_library_user_can_stop_a_run_without_any_record() {
     let problem = Build::open(20).easy(0.2).reversal();
     problem.hamiltonian.switch().store(true, Ordering::Relaxed);
     assert!(matches!(run(&problem, &mut Silent), Err(Error::Stopped)));
-    let problem = Build::open(2000).easy(0.2).reversal();
+    let problem = Build::open(20_000).easy(0.2).reversal();
     let switch = Arc::clone(problem.hamiltonian.switch());
     let stopped = std::thread::scope(|scope| {
         let run = scope.spawn(|| run(&problem, &mut Silent));
@@ -204,6 +204,7 @@ fn a_record_of_another_problem_or_a_damaged_one_changes_nothing() {
     sit(&|| Build::open(14).easy(0.25).reversal(), &stored, 15);
     let foreign = sit(&make, &stored, usize::MAX);
     assert_eq!(told(foreign.outcome.unwrap()), whole);
+    assert_eq!(foreign.taken, 0);
 
     let good: Arc<Mutex<Stored>> = Arc::default();
     sit(&make, &good, 15);

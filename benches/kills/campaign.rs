@@ -14,10 +14,16 @@ use std::time::{Duration, Instant};
 /// Short runs that pass through everything that is recorded: a row of minima, a plain reversal, a slow method that does not
 /// converge, a ring.
 const CONFIGS: [(&str, &str); 4] = [
-    ("row", r#"{"chain": {"sites": 8}}, "energy": [{"anisotropy": {"K": "9.5 meV", "axis": [0, 0, 1]}}], "rates": {"temperatures": ["300 K"]}"#),
-    ("reversal", r#"{"chain": {"sites": 40}}"#),
-    ("slow", r#"{"chain": {"sites": 30}}, "path": {"images": 11, "guess": {"sweep": {"from": "left"}}}, "neb": {"optimiser": {"velocity_projection": {}}, "max_evaluations": 150}"#),
-    ("ring", r#"{"chain": {"sites": 24, "periodic": true}}, "energy": [{"zeeman": {"B": ["0 T", "0 T", "-1 T"]}}]"#),
+    (
+        "row",
+        r#"{"chain": {"sites": 14}}, "energy": [{"anisotropy": {"K": "9.5 meV", "axis": [0, 0, 1]}}], "rates": {"temperatures": ["300 K"]}"#,
+    ),
+    ("reversal", r#"{"chain": {"sites": 300}}"#),
+    (
+        "slow",
+        r#"{"chain": {"sites": 30}}, "path": {"images": 11, "guess": {"sweep": {"from": "left"}}}, "neb": {"optimiser": {"velocity_projection": {}}, "max_evaluations": 300}"#,
+    ),
+    ("ring", r#"{"chain": {"sites": 60, "periodic": true}}, "energy": [{"zeeman": {"B": ["0 T", "0 T", "-1 T"]}}]"#),
 ];
 
 /// Every tenth kill is one of these signals instead, with its exit code.
@@ -64,7 +70,7 @@ impl<'a> Campaign<'a> {
         for (name, rest) in CONFIGS {
             let config = folder.join(format!("{name}.json"));
             let text = format!(
-                r#"{{"material": {{"moment": "2 mu_B", "energy": [{{"exchange": {{"J": ["10 meV"]}}}},
+                r#"{{"material": {{"name": "toy", "moment": "2 mu_B", "energy": [{{"exchange": {{"J": ["10 meV"]}}}},
                     {{"anisotropy": {{"K": "0.5 meV", "axis": [0, 0, 1]}}}}]}},
                     "initial": {{"uniform": {{"direction": [0, 0, 1]}}}}, "final": {{"uniform": {{"direction": [0, 0, -1]}}}},
                     "output": {{"formats": ["csv", "npz", "ovf"], "plots": ["svg"]}}, "lattice": {rest}}}"#

@@ -105,6 +105,15 @@ impl Fingerprint {
         self
     }
 
+    pub fn real(self, x: f64) -> Self {
+        self.row(&[x])
+    }
+
+    pub fn text(mut self, text: &str) -> Self {
+        self.0.update(text.as_bytes());
+        self
+    }
+
     pub fn row(mut self, row: &[f64]) -> Self {
         let mut bytes = [0; 4096];
         for some in row.chunks(bytes.len() / 8) {

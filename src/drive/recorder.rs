@@ -7,6 +7,7 @@
 //! finished calls are answered from the record, and the one in progress goes on from where it was saved. So the end is the same
 //! to the bit, wherever the run was interrupted and however often.
 
+use super::Problem;
 use super::bytes::{Fingerprint, Reader, Writer};
 use super::outcome::HistoryRow;
 use super::stored::Stored;
@@ -46,6 +47,8 @@ pub struct Partial {
 #[derive(Default)]
 pub struct Recorder {
     keep: Option<Box<dyn Keep>>,
+    /// What tells the problem from another.
+    problem: usize,
     done: usize,
     taken: usize,
     partial: Option<Partial>,
@@ -66,6 +69,26 @@ impl Recorder {
     /// Records in `keep`, and answers from what that has.
     pub fn new(keep: Box<dyn Keep>) -> Recorder {
         Recorder { keep: Some(keep), ..Recorder::default() }
+    }
+
+    /// Starts with a problem: only what was recorded of the same energies, states and settings is an answer.
+    pub(super) fn begin(&mut self, problem: &Problem) {
+        (self.done, self.taken, self.partial) = (0, 0, None);
+        if self.keep.is_none() {
+            return;
+        }
+        let h = &problem.hamiltonian;
+        let before = h.evaluations();
+        let mut print = Fingerprint::default().real(h.reference_mev()).real(h.stiffness_mev());
+        for spins in [&problem.initial, &problem.final_state] {
+            let mut gradient = vec![0.0; 3 * h.sites()];
+            let energy = h.energy_gradient(spins.as_slice(), &mut gradient);
+            print = print.real(energy).row(&gradient).row(spins.as_slice());
+        }
+        let Problem { relax_ends, images, guess, noise, smooth, refine, certify, neb, .. } = problem;
+        let settings = format!("{relax_ends} {images:?} {guess:?} {noise:?} {smooth:?} {refine} {certify} {neb:?}");
+        self.problem = print.text(&settings).value();
+        h.set_evaluations(before);
     }
 
     /// How many calls were answered from the record.
@@ -114,7 +137,10 @@ impl Recorder {
 
     /// What identifies the next call, by its input.
     pub(super) fn ticket(&self, h: &Hamiltonian, input: impl FnOnce(Fingerprint) -> Fingerprint) -> Ticket {
-        let print = if self.keep.is_some() { input(Fingerprint::default()).value() } else { 0 };
+        let print = match self.keep {
+            Some(_) => input(Fingerprint::default().whole(self.problem)).value(),
+            None => 0,
+        };
         Ticket { print, before: h.evaluations() }
     }
 

@@ -57,6 +57,7 @@ pub fn run(problem: &Problem, observer: &mut dyn Observer) -> Result<Outcome> {
 /// [`Error::Stopped`](crate::error::Error::Stopped); with a recorder of the same [`Keep`](super::Keep) it goes on later, to the
 /// outcome that it would have had.
 pub fn run_recorded(problem: &Problem, observer: &mut dyn Observer, recorder: &mut Recorder) -> Result<Outcome> {
+    recorder.begin(problem);
     Run::prepare(problem, observer, recorder)?.finish()
 }
 
@@ -161,7 +162,9 @@ impl<'a, 'o> Run<'a, 'o> {
         let mut candidates = match &self.problem.guess {
             Some(guess) => {
                 let (noise, smoothing) = (self.problem.noise.as_ref(), self.problem.smooth);
-                let mut c = self.start(describe(guess, false), guess, noise, smoothing, usize::MAX)?;
+                let name = describe(guess, false);
+                self.observer.stage(&format!("first path: {name}"));
+                let mut c = self.start(name, guess, noise, smoothing, usize::MAX)?;
                 self.conclude(&mut c)?;
                 vec![c]
             }
