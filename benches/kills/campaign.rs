@@ -18,7 +18,7 @@ const CONFIGS: [(&str, &str); 4] = [
         "row",
         r#"{"chain": {"sites": 14}}, "energy": [{"anisotropy": {"K": "9.5 meV", "axis": [0, 0, 1]}}], "rates": {"temperatures": ["300 K"]}"#,
     ),
-    ("reversal", r#"{"chain": {"sites": 300}}"#),
+    ("reversal", r#"{"chain": {"sites": 100}}"#),
     (
         "slow",
         r#"{"chain": {"sites": 30}}, "path": {"images": 11, "guess": {"sweep": {"from": "left"}}}, "neb": {"optimiser": {"velocity_projection": {}}, "max_evaluations": 300}"#,
@@ -77,7 +77,7 @@ impl<'a> Campaign<'a> {
             );
             fs::write(&config, text).unwrap();
             let [plain, watched] = ["off", "0 s"].map(|every| {
-                let out = folder.join(format!("{name}_{}", every.len()));
+                let out = folder.join(format!("{name} {every}"));
                 let started = Instant::now();
                 let code = campaign.start(&config, &out, every, &[]).wait().unwrap().code();
                 (code, files(&out), started.elapsed())

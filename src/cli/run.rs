@@ -10,7 +10,8 @@ use spinneb::drive::{self, Observer, Outcome, Recorder};
 use spinneb::error::Error;
 use spinneb::output::disk::{self, Destination};
 use spinneb::output::{
-    Checkpoint, Group, Kind, Lock, RunReport, StoppedRun, discard_partial, known_files, partial_files, render_files,
+    Checkpoint, Group, Kind, Lock, RunReport, StoppedRun, discard_partial, is_partial_left, known_files, partial_files,
+    render_files,
 };
 use std::collections::HashMap;
 use std::io::{self, Write};
@@ -164,7 +165,8 @@ fn reserve(arguments: &Run, loaded: &Loaded, directory: &Path) -> Result<Option<
     };
     if finished()? {
         // a run that was killed between its last file and the end leaves some
-        if Checkpoint::exists(directory) && Lock::of(directory).is_ok() {
+        let left = Checkpoint::is_left(directory) || Lock::is_left(directory) || is_partial_left(directory);
+        if left && let Ok(_lock) = Lock::of(directory) {
             discard_leftovers(directory)?;
         }
         return Ok(None);

@@ -128,6 +128,11 @@ impl Checkpoint {
         directory.join(FOLDER).join(JOURNAL).is_file()
     }
 
+    /// Whether anything of a checkpoint is there.
+    pub fn is_left(directory: &Path) -> bool {
+        directory.join(FOLDER).exists()
+    }
+
     /// Takes a checkpoint away, if there is one.
     pub fn discard(directory: &Path) -> Result<()> {
         let folder = directory.join(FOLDER);
@@ -188,12 +193,12 @@ impl Checkpoint {
     fn scan(&mut self, file: &File) -> io::Result<Option<Identity>> {
         let size = file.metadata()?.len();
         let Some(mut frames) = Frames::of(BufReader::with_capacity(1 << 16, file), size)? else { return Ok(None) };
-        let Some(identity) = frames.next()?.and_then(|json| serde_json::from_slice(&json).ok()) else {
+        let Some(identity) = frames.next_frame()?.and_then(|json| serde_json::from_slice(&json).ok()) else {
             return Ok(None);
         };
         self.start = frames.end;
         let mut begin = frames.end;
-        while frames.next()?.is_some() {
+        while frames.next_frame()?.is_some() {
             self.frames.push((begin, frames.end));
             begin = frames.end;
         }
@@ -231,13 +236,14 @@ impl Checkpoint {
         let file = File::open(path)?;
         let size = file.metadata()?.len();
         let Some(mut frames) = Frames::of(BufReader::new(file), size)? else { return Ok(None) };
-        let Some(identity) = frames.next()?.and_then(|json| serde_json::from_slice::<Identity>(&json).ok()) else {
+        let Some(identity) = frames.next_frame()?.and_then(|json| serde_json::from_slice::<Identity>(&json).ok())
+        else {
             return Ok(None);
         };
         if identity != *self.identity() {
             return Ok(None);
         }
-        let (Some(place), Some(state)) = (frames.next()?, frames.next()?) else { return Ok(None) };
+        let (Some(place), Some(state)) = (frames.next_frame()?, frames.next_frame()?) else { return Ok(None) };
         let place = place.try_into().map(u64::from_le_bytes).ok();
         Ok(place.map(|place| (place, state)))
     }

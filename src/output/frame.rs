@@ -55,7 +55,7 @@ impl<R: Read> Frames<R> {
     }
 
     /// The content of the next frame; nothing at the end of the file, or where the frame is not whole.
-    pub fn next(&mut self) -> io::Result<Option<Vec<u8>>> {
+    pub fn next_frame(&mut self) -> io::Result<Option<Vec<u8>>> {
         let mut head = [0; HEAD as usize];
         let left = self.size.saturating_sub(self.end);
         if left < HEAD {
@@ -88,7 +88,7 @@ mod tests {
 
     fn contents(bytes: &[u8]) -> Option<(Vec<Vec<u8>>, bool)> {
         let mut frames = Frames::of(bytes, bytes.len() as u64).unwrap()?;
-        let found = std::iter::from_fn(|| frames.next().unwrap()).collect();
+        let found = std::iter::from_fn(|| frames.next_frame().unwrap()).collect();
         Some((found, frames.has_rest()))
     }
 

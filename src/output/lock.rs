@@ -42,6 +42,11 @@ impl Lock {
         Err(held(directory, File::open(&path).map_err(io_error)?))
     }
 
+    /// Whether the file of a lock is there, held or left by a kill.
+    pub fn is_left(directory: &Path) -> bool {
+        directory.join(NAME).exists()
+    }
+
     /// Whether the file system knows locks: where not, nothing keeps another run away.
     pub fn is_sure(&self) -> bool {
         self.sure

@@ -27,7 +27,7 @@ pub use config_copy::ConfigCopy;
 pub use csv::{HistoryCsv, PathCsv, ProfileCsv};
 pub use energy_path_plot::{EnergyPath, EnergyPathPlot, draw_energy_paths};
 pub use lock::Lock;
-pub use partial::{StoppedRun, discard_partial, partial_files};
+pub use partial::{StoppedRun, discard_partial, is_partial_left, partial_files};
 pub use rates_csv::RatesCsv;
 pub use spin_files::{OvfImages, PathNpz, PathOvf, SaddleOvf, SpinsCsv, Vtk};
 pub use spins_plot::{SpinsPlot, draw_spins};

@@ -54,6 +54,11 @@ pub fn partial_files(run: &StoppedRun, band: Option<&RunReport>) -> Result<Vec<F
     Ok(files)
 }
 
+/// Whether some of them are there; `partial.json` is taken away last.
+pub fn is_partial_left(directory: &Path) -> bool {
+    directory.join(format!("{PARTIAL}.json")).exists()
+}
+
 /// Takes them away.
 pub fn discard_partial(directory: &Path) -> Result<()> {
     let names = formats().into_iter().map(|format| name(format.as_ref()));
