@@ -59,7 +59,7 @@ struct Case {
     /// Its files, `summary.json` without what may differ.
     files: BTreeMap<String, Vec<u8>>,
     code: Option<i32>,
-    /// How long it takes with a checkpoint after every iteration.
+    /// How long it takes with a checkpoint after every iteration, as far as the machine's other work tells.
     takes: Duration,
 }
 
@@ -105,7 +105,14 @@ impl<'a> Campaign<'a> {
                 if tally.kills + tally.signals == count {
                     break;
                 }
-                self.kill_once(&self.cases[case].config.clone(), case, &out, &mut tally);
+                let before = tally.too_late;
+                self.kill_once(case, &out, &mut tally);
+                let late = tally.too_late > before;
+                let takes = &mut self.cases[case].takes;
+                *takes = takes.mul_f64(if late { 0.85 } else { 1.04 });
+                if late {
+                    break;
+                }
             }
             let (code, said) = ended(self.start(&self.cases[case].config, &out, "0 s", &["--resume"]));
             let case = &self.cases[case];
@@ -122,12 +129,12 @@ impl<'a> Campaign<'a> {
         tally
     }
 
-    fn kill_once(&mut self, config: &Path, case: usize, out: &Path, tally: &mut Tally) {
+    fn kill_once(&mut self, case: usize, out: &Path, tally: &mut Tally) {
         let threads = ["--resume", "--threads", ["1", "2"][self.random.random_range(0..2)]];
         let signal = (self.random.random_range(0..10) == 0).then(|| SIGNALS[self.random.random_range(0..2)]);
         let takes = self.cases[case].takes;
         let moment = takes.mul_f64(self.random.random_range(0.0..1.1));
-        let mut child = self.start(config, out, "0 s", &threads);
+        let mut child = self.start(&self.cases[case].config, out, "0 s", &threads);
         std::thread::sleep(moment);
         if child.try_wait().unwrap().is_some() {
             tally.too_late += 1;
