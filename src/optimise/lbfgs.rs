@@ -108,8 +108,8 @@ impl Optimiser for Memory {
 
     fn remember(&mut self, memory: Vec<Vec<f64>>) {
         let mut rows = memory.into_iter();
-        let mut two = || Some((rows.next()?, rows.next()?));
-        self.last = two();
-        self.pairs = std::iter::from_fn(two).collect();
+        let mut pairs = std::iter::from_fn(|| Some((rows.next()?, rows.next()?)));
+        self.last = pairs.next();
+        self.pairs = pairs.collect();
     }
 }

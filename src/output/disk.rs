@@ -15,7 +15,7 @@ use tempfile::NamedTempFile;
 const PREFIX: &str = ".spinneb-";
 
 /// What is written to see whether there is room.
-const PROBE: [u8; 1 << 16] = [0; 1 << 16];
+static PROBE: [u8; 1 << 16] = [0; 1 << 16];
 
 /// The file that marks a finished result.
 pub const MARK: &str = "summary.json";
