@@ -5,9 +5,11 @@ pub mod collect;
 mod jobs;
 pub mod list;
 pub mod plot;
+pub mod progress;
 pub mod rate;
 pub mod relax;
 pub mod run;
+pub mod signals;
 pub mod start;
 pub mod sweep;
 
@@ -17,10 +19,11 @@ use spinneb::error::Error;
 use spinneb::output::Picture;
 use spinneb::output::canvas::Style;
 use spinneb::rates::Theory;
-use spinneb::units::Temperature;
+use spinneb::units::{Temperature, Time};
 use std::io::{self, ErrorKind, Write};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
+use std::time::Duration;
 
 /// Exit code of a command line or config that is wrong.
 pub const USAGE: u8 = 2;
@@ -169,6 +172,12 @@ pub struct Run {
     /// Go on from the last checkpoint in the folder; without one, start anew
     #[arg(long)]
     pub resume: bool,
+
+    /// How often a checkpoint is written; "off" writes none
+    ///
+    /// The first one is written after this time: shorter runs write none, unless they are interrupted.
+    #[arg(long, value_name = "TIME", default_value = EVERY, value_parser = interval)]
+    pub checkpoint_every: Interval,
 }
 
 /// The arguments of `check`.
@@ -229,6 +238,31 @@ pub struct Rate {
     /// Print one line of JSON for each result on stdout instead of the table
     #[arg(long)]
     pub json: bool,
+}
+
+/// The time between checkpoints; none where there are to be none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval(pub Option<Duration>);
+
+/// What it is if nothing is said.
+const EVERY: &str = "30 s";
+
+impl Default for Interval {
+    fn default() -> Interval {
+        interval(EVERY).unwrap_or(Interval(None))
+    }
+}
+
+fn interval(text: &str) -> Result<Interval, String> {
+    if text == "off" {
+        return Ok(Interval(None));
+    }
+    let time: Time = text.parse().map_err(|e: Error| e.to_string())?;
+    let seconds = 1e-12 * time.0;
+    match Duration::try_from_secs_f64(seconds) {
+        Ok(duration) => Ok(Interval(Some(duration))),
+        Err(_) => Err(format!("found {time}, but a checkpoint is written every 0 s or more, or \"off\"")),
+    }
 }
 
 fn temperature(text: &str) -> Result<Temperature, String> {
@@ -359,13 +393,14 @@ mod tests {
 
     #[test]
     fn everything_that_can_be_said_is_understood() {
-        let line = "spinneb run a.json b.json --out d --threads 2 --set a.b=1 --set c=2 --force --quiet --json";
+        let line = "spinneb run a.json b.json --out d --threads 2 --set a.b=1 --set c=2 --force --quiet --json --checkpoint-every 0.5s";
         let Command::Run(run) = Cli::try_parse_from(line.split(' ')).unwrap().command else { panic!("not run") };
         assert_eq!(run.configs, [PathBuf::from("a.json"), PathBuf::from("b.json")]);
         assert_eq!(run.out, Some(PathBuf::from("d")));
         assert_eq!(run.threads.map(NonZeroUsize::get), Some(2));
         assert_eq!(run.set, ["a.b=1", "c=2"]);
         assert!(run.force && run.quiet && run.json && !run.resume);
+        assert_eq!(run.checkpoint_every, Interval(Some(Duration::from_millis(500))));
         for line in [
             "spinneb rate results/a b -T 300K -T 4K --damping 0.2 --theory htst --json",
             "spinneb plot results/a results/b --labels a,b --style dark --width 120 --format svg --out c.svg --force -q",
@@ -373,6 +408,7 @@ mod tests {
             "spinneb list",
             "spinneb list terms",
             "spinneb run a.json --resume",
+            "spinneb run a.json --checkpoint-every off",
             "spinneb init",
             "spinneb init nanowire --out a.json --force",
             "spinneb schema",
@@ -403,6 +439,9 @@ mod tests {
             "spinneb check",
             "spinneb list nothing",
             "spinneb run a.json --threads 0",
+            "spinneb run a.json --checkpoint-every 10",
+            "spinneb run a.json --checkpoint-every=-1s",
+            "spinneb run a.json --checkpoint-every 3meV",
             "spinneb walk a.json",
             "spinneb relax",
             "spinneb relax a.json --force",

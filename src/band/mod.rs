@@ -133,6 +133,12 @@ impl<'h> Band<'h> {
         &mut self.path
     }
 
+    /// Puts all images where they were after `evaluations` evaluations of an earlier band; they are not evaluated.
+    pub(crate) fn restore(&mut self, images: &[f64], evaluations: usize) {
+        self.path.as_mut_slice().copy_from_slice(images);
+        self.evaluations = evaluations;
+    }
+
     /// Puts a saddle in the place of image k, where it stays: the stretches on its two sides relax on their own.
     pub fn hold(&mut self, k: usize, saddle: &[f64]) {
         let n = saddle.len();

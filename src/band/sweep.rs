@@ -43,6 +43,16 @@ impl Sweep {
         Sweep { stiffness, shifts: Vec::new(), room: Vec::new() }
     }
 
+    /// The shift μ of every image (meV), all that one evaluation tells the next; empty before the first.
+    pub fn shifts(&self) -> &[f64] {
+        &self.shifts
+    }
+
+    /// Goes on with the shifts of another sweep.
+    pub fn set_shifts(&mut self, shifts: Vec<f64>) {
+        self.shifts = shifts;
+    }
+
     /// Writes the tangent moves (rad) of the images between the ends, slab after slab, of an evaluated band.
     pub fn step(&mut self, band: &Band, axes: &[Vector], moves: &mut [f64]) -> SweepStep {
         let (images, c) = (band.images(), self.stiffness);

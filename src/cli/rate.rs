@@ -6,7 +6,7 @@ use anyhow::Result;
 use serde_json::json;
 use spinneb::config::{RatesConfig, load};
 use spinneb::drive::Outcome;
-use spinneb::output::disk;
+use spinneb::output::{Lock, disk};
 use spinneb::rates::{Row, Theory, Way};
 use std::f64::consts::LN_10;
 use std::io::{self, Write};
@@ -35,6 +35,7 @@ fn rate_one(arguments: &Rate, directory: &Path) -> Result<u8> {
         note(&format!("error: {place}: config.json is not the config of summary.json: run it anew"));
         return Ok(USAGE);
     }
+    let _lock = Lock::of(directory)?;
     loaded.config.rates = Some(asked(arguments));
     let problem = loaded.problem()?;
     let name = &loaded.name;

@@ -1,18 +1,23 @@
 //! `run`: from each config to its results.
 
+pub(super) use super::progress::Progress;
+use super::signals::Signals;
 use super::{Run, UNFINISHED, USAGE, note, report, worse};
 use anyhow::{Context, Result};
 use serde_json::{Value, json};
 use spinneb::config::{Loaded, load};
-use spinneb::drive::{self, HistoryRow, Observer, Outcome};
+use spinneb::drive::{self, Observer, Outcome, Recorder};
 use spinneb::error::Error;
 use spinneb::output::disk::{self, Destination};
-use spinneb::output::{Group, Kind, RunReport, known_files, render_files};
+use spinneb::output::{
+    Checkpoint, Group, Kind, Lock, RunReport, StoppedRun, discard_partial, is_partial_left, known_files, partial_files,
+    render_files,
+};
 use std::collections::HashMap;
 use std::io::{self, Write};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
@@ -40,8 +45,15 @@ pub fn run(arguments: &Run) -> Result<u8> {
     if code != 0 {
         return Ok(code);
     }
+    let signals = Signals::watch()?;
     for (one, directory) in loaded.iter().zip(&directories) {
-        code = worse(code, run_one(arguments, one, directory).unwrap_or_else(|error| report(&error)));
+        let done = run_one(arguments, &signals, one, directory).unwrap_or_else(|error| report(&error));
+        // a signal that comes while the last result is written does not make it another one
+        let left = !std::ptr::eq(one, &loaded[loaded.len() - 1]);
+        match signals.caught() {
+            Some((code, _)) if left || done == code => return Ok(code),
+            _ => code = worse(code, done),
+        }
     }
     Ok(code)
 }
@@ -82,23 +94,58 @@ fn distinct(loaded: &[Loaded], directories: &[PathBuf]) -> u8 {
 }
 
 /// Runs one config into its folder, or says that it is done.
-pub(super) fn run_one(arguments: &Run, loaded: &Loaded, directory: &Path) -> Result<u8> {
+pub(super) fn run_one(arguments: &Run, signals: &Signals, loaded: &Loaded, directory: &Path) -> Result<u8> {
     let started = Instant::now();
     let say = |line: &str| {
         if !arguments.quiet {
             note(line)
         }
     };
-    let problem = loaded.problem()?;
+    let mut problem = loaded.problem()?;
+    problem.hamiltonian.obey(signals.switch());
     let (name, place) = (&loaded.name, directory.display());
-    if let Destination::Finished(_) = disk::prepare(directory, VERSION, &loaded.sha256, arguments.force)? {
+    let Some(lock) = reserve(arguments, loaded, directory)? else {
         let stored = Stored::read(directory)?;
         say(&format!("{name}: {place} holds the finished result of this config already; --force runs it again"));
         return print(arguments, name, directory, &stored);
+    };
+    if !lock.is_sure() {
+        say(&format!("{name}: the file system of {place} has no locks: see to it that no other run writes there"));
     }
     let mut progress = Progress::new(name, arguments.quiet);
-    let outcome = outcome(loaded, &problem, &mut progress, started)?;
-    write(loaded, &outcome, directory)?;
+    let mut recorder = recorder(arguments, loaded, directory, &progress)?;
+    let outcome = match outcome_recorded(loaded, &problem, &mut progress, &mut recorder, started) {
+        Ok(outcome) => outcome,
+        Err(error) => match (error.downcast_ref(), signals.caught()) {
+            (Some(Error::Stopped), Some((code, word))) => {
+                let stage = progress.stage_now().to_string();
+                drop(progress);
+                if let Err(error) = leave_partial(loaded, &problem, &recorder, directory, &stage, word) {
+                    report(&error);
+                }
+                let on = match Checkpoint::exists(directory) {
+                    true => "--resume goes on from there",
+                    false => "there is no checkpoint to go on from",
+                };
+                say(&format!("{name}: {word} while {stage}; {on}; partial results in {place}"));
+                return Ok(code);
+            }
+            _ => return Err(error),
+        },
+    };
+    drop(progress);
+    if let Err(error) = write(loaded, &outcome, directory) {
+        // what was computed is not lost with the files
+        recorder.save();
+        if Checkpoint::exists(directory) {
+            say(&format!("{name}: the checkpoint is kept: once files can be written, --resume makes the result of it"));
+        }
+        return Err(error.into());
+    }
+    drop(recorder);
+    if let Err(error) = discard_leftovers(directory) {
+        say(&format!("{name}: the checkpoint is of no use any more but cannot be taken away: {error}"));
+    }
     for warning in &outcome.warnings {
         say(&format!("{name}: warning: {warning}"));
     }
@@ -111,6 +158,85 @@ pub(super) fn run_one(arguments: &Run, loaded: &Loaded, directory: &Path) -> Res
     print(arguments, name, directory, &stored)
 }
 
+/// Sees that the results can be written, and that nobody else writes there; nothing if they are there already.
+fn reserve(arguments: &Run, loaded: &Loaded, directory: &Path) -> Result<Option<Lock>> {
+    let finished = || -> Result<bool> {
+        let found = disk::prepare(directory, VERSION, &loaded.sha256, arguments.force)?;
+        Ok(matches!(found, Destination::Finished(_)))
+    };
+    if finished()? {
+        // a run that was killed between its last file and the end leaves some
+        let left = Checkpoint::is_left(directory) || Lock::is_left(directory) || is_partial_left(directory);
+        if left && let Ok(_lock) = Lock::of(directory) {
+            discard_leftovers(directory)?;
+        }
+        return Ok(None);
+    }
+    let lock = Lock::of(directory)?;
+    // who held the lock may have finished meanwhile
+    if finished()? {
+        return Ok(None);
+    }
+    disk::clean(directory)?;
+    let names = known_files();
+    names.iter().filter_map(|name| name.strip_suffix('/')).try_for_each(|name| disk::clean(&directory.join(name)))?;
+    Ok(Some(lock))
+}
+
+/// What only an unfinished run needs.
+fn discard_leftovers(directory: &Path) -> Result<()> {
+    Checkpoint::discard(directory)?;
+    Ok(discard_partial(directory)?)
+}
+
+/// Records the run as asked for, and goes on from what is on record if asked to.
+fn recorder(arguments: &Run, loaded: &Loaded, directory: &Path, progress: &Progress) -> Result<Recorder> {
+    let Some(every) = arguments.checkpoint_every.0 else {
+        return Ok(Recorder::off());
+    };
+    let new = || Checkpoint::new(directory, VERSION, &loaded.sha256, every, progress.speaker());
+    let mut say = progress.speaker();
+    if !arguments.resume {
+        if Checkpoint::exists(directory) {
+            say("starting anew; --resume would have gone on from the checkpoint that is there");
+        }
+        return Ok(Recorder::new(Box::new(new())));
+    }
+    let checkpoint = match new().resume() {
+        Err(e) if arguments.force => {
+            say(&format!("starting anew: {e}"));
+            new()
+        }
+        found => found?,
+    };
+    if !checkpoint.is_empty() {
+        say(&format!("going on from the checkpoint, with {} finished steps", checkpoint.len()));
+    }
+    Ok(Recorder::new(Box::new(checkpoint)))
+}
+
+/// What is known of a run that was stopped.
+fn leave_partial(
+    loaded: &Loaded,
+    problem: &drive::Problem,
+    recorder: &Recorder,
+    directory: &Path,
+    stage: &str,
+    word: &str,
+) -> Result<()> {
+    let reason = format!("{word} while {stage}: this is no result; run the config with --resume to go on");
+    let (name, sha) = (loaded.name.as_str(), loaded.sha256.as_str());
+    let stopped = StoppedRun { name, version: VERSION, config_sha256: sha, stage, reason: &reason };
+    let outcome = recorder.partial().map(|band| drive::partial(problem, band, &reason));
+    let report = outcome.as_ref().map(|outcome| report_of(loaded, outcome)).transpose()?;
+    let files = partial_files(&stopped, report.as_ref())?;
+    discard_partial(directory)?;
+    for file in files {
+        disk::write_file(&directory.join(file.name), &file.bytes)?;
+    }
+    Ok(())
+}
+
 /// The outcome of a config's problem, as it is written.
 pub(super) fn outcome(
     loaded: &Loaded,
@@ -118,24 +244,37 @@ pub(super) fn outcome(
     observer: &mut dyn Observer,
     started: Instant,
 ) -> Result<Outcome> {
-    let mut outcome = drive::run(problem, observer)?;
+    outcome_recorded(loaded, problem, observer, &mut Recorder::off(), started)
+}
+
+fn outcome_recorded(
+    loaded: &Loaded,
+    problem: &drive::Problem,
+    observer: &mut dyn Observer,
+    recorder: &mut Recorder,
+    started: Instant,
+) -> Result<Outcome> {
+    let mut outcome = drive::run_recorded(problem, observer, recorder)?;
     outcome.work.seconds = started.elapsed().as_secs_f64();
     outcome.warnings.extend(loaded.warnings.iter().cloned());
     Ok(outcome)
 }
 
-pub(super) fn write(loaded: &Loaded, outcome: &Outcome, directory: &Path) -> spinneb::error::Result<()> {
-    let (name, sha) = (loaded.name.as_str(), loaded.sha256.as_str());
-    let run = RunReport {
-        name,
+fn report_of<'a>(loaded: &'a Loaded, outcome: &'a Outcome) -> spinneb::error::Result<RunReport<'a>> {
+    Ok(RunReport {
+        name: loaded.name.as_str(),
         version: VERSION,
-        config_sha256: sha,
+        config_sha256: loaded.sha256.as_str(),
         config_text: &loaded.as_run,
         inputs: &loaded.inputs,
         chain: loaded.chain(),
         look: loaded.look()?,
         outcome,
-    };
+    })
+}
+
+pub(super) fn write(loaded: &Loaded, outcome: &Outcome, directory: &Path) -> spinneb::error::Result<()> {
+    let run = report_of(loaded, outcome)?;
     let output = &loaded.config.output;
     let named = |list: &[String], kind: &Kind| list.iter().any(|name| name == kind.name);
     let files = render_files(&run, |kind| match kind.group {
@@ -197,39 +336,4 @@ fn print(arguments: &Run, name: &str, directory: &Path, stored: &Stored) -> Resu
         writeln!(io::stdout(), "{line}")?;
     }
     Ok(code)
-}
-
-/// Progress in plain lines, at most one a second and one a stage.
-pub(super) struct Progress<'a> {
-    name: &'a str,
-    quiet: bool,
-    last: Instant,
-}
-
-impl<'a> Progress<'a> {
-    pub(super) fn new(name: &'a str, quiet: bool) -> Progress<'a> {
-        Progress { name, quiet, last: Instant::now() }
-    }
-
-    fn say(&mut self, words: &str) {
-        if !self.quiet {
-            note(&format!("{}: {words}", self.name));
-        }
-        self.last = Instant::now();
-    }
-}
-
-impl Observer for Progress<'_> {
-    fn iteration(&mut self, row: &HistoryRow) {
-        if self.last.elapsed() >= Duration::from_secs(1) {
-            self.say(&format!(
-                "iteration {}, {} images: highest {:.6} meV, still turning by {:.1e} rad",
-                row.iteration, row.images, row.highest_image_mev, row.largest_predicted_rotation_rad
-            ));
-        }
-    }
-
-    fn stage(&mut self, what: &str) {
-        self.say(what);
-    }
 }

@@ -5,6 +5,7 @@
 use super::collect::{self, json_line, states};
 use super::jobs::{Ended, run_all};
 use super::run::{run_one, start_threads};
+use super::signals::Signals;
 use super::{Run, UNFINISHED, USAGE, note, report, worse};
 use anyhow::{Context, Result};
 use clap::Args;
@@ -175,8 +176,9 @@ fn one(arguments: &Arguments, sweep: &Sweep, dir: &Path, point: usize) -> Result
         quiet: arguments.quiet,
         json: arguments.json,
         resume: !arguments.force,
+        checkpoint_every: super::Interval::default(),
     };
-    run_one(&run, &loaded, &dir.join(sweep.directory(point)))
+    run_one(&run, &Signals::watch()?, &loaded, &dir.join(sweep.directory(point)))
 }
 
 /// A line a point.

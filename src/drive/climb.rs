@@ -1,9 +1,11 @@
 //! From a band's top to a refined saddle, and away from saddles of higher index.
 
 use super::minimum::{turned, turns};
+use super::recorder::Recorder;
 use super::top::{Top, highest};
 use crate::band::Band;
 use crate::energy::Hamiltonian;
+use crate::error::Result;
 use crate::field::project;
 use crate::linalg::{lowest_modes, slab};
 use crate::path::{Path, largest_angle};
@@ -78,6 +80,12 @@ impl Found {
         [hop, -hop, 0.5 * hop, -0.5 * hop].into_iter().find_map(|far| found.beside(h, c, far)).unwrap_or(found)
     }
 
+    /// The same, as far as it is not on record.
+    pub fn recorded(h: &Hamiltonian, top: Top, c: f64, hop: f64, recorder: &mut Recorder) -> Result<Found> {
+        let [m, tau] = [&top.m, &top.tau].map(Vec::clone);
+        recorder.call(h, &[&m, &tau], || Ok(Found::at(h, top, c, hop)))
+    }
+
     /// The saddle of index one a little along the second-lowest mode.
     fn beside(&self, h: &Hamiltonian, c: f64, far: f64) -> Option<Found> {
         let state = &self.refined.state;
@@ -122,8 +130,8 @@ impl Found {
 }
 
 /// The refined top of a band, if it has one.
-pub fn conclude(band: &Band, c: f64, hop: f64) -> Option<Found> {
-    highest(band).map(|top| Found::at(band.hamiltonian(), top, c, hop))
+pub fn conclude(band: &Band, c: f64, hop: f64, recorder: &mut Recorder) -> Result<Option<Found>> {
+    highest(band).map(|top| Found::recorded(band.hamiltonian(), top, c, hop, recorder)).transpose()
 }
 
 /// The path with more of its images in the first or last interval, if its top is there: or, if none shows, at its higher end

@@ -78,7 +78,7 @@ pub fn follow(
             sequence.gap = Some(format!("the path has more than {MOST} stretches between minima"));
             break;
         }
-        if stretch.saddle.is_none() && is_flat(relaxation, h, &stretch) {
+        if stretch.saddle.is_none() && is_flat(relaxation, h, &stretch)? {
             close(&mut sequence, &mut open, &stretch.b, h);
             continue;
         }
@@ -88,7 +88,7 @@ pub fn follow(
             None => {
                 let known: Vec<&Found> =
                     sequence.links.iter().chain(open.iter().map(|o| &o.1)).map(|l| &l.found).collect();
-                let found = new_saddle(relaxation, h, &stretch, &known, c);
+                let found = new_saddle(relaxation, h, &stretch, &known, c)?;
                 again = found.as_ref().is_some_and(|f| known.iter().any(|k| k.is_same(h, f)));
                 found
             }
@@ -99,7 +99,7 @@ pub fn follow(
             close(&mut sequence, &mut open, &stretch.b, h);
             continue;
         };
-        let mut link = Link::of(h, found, c)?;
+        let mut link = Link::recorded(h, found, c, relaxation.recorder)?;
         if link.before.is_same(h, &stretch.b) || link.after.is_same(h, &stretch.a) {
             link.reverse();
         }
@@ -145,16 +145,16 @@ fn close(sequence: &mut Sequence, open: &mut Vec<(Minimum, Link)>, reached: &Min
 }
 
 /// Whether two minima are joined by a valley that is flat as far as double precision tells: a soliton on a ring, moved along it.
-fn is_flat(relaxation: &mut Relaxation, h: &Hamiltonian, stretch: &Stretch) -> bool {
+fn is_flat(relaxation: &mut Relaxation, h: &Hamiltonian, stretch: &Stretch) -> Result<bool> {
     let flat = FLAT * h.stiffness_mev();
     if h.difference_mev(stretch.a.spins.as_slice(), stretch.b.spins.as_slice()).abs() > flat {
-        return false;
+        return Ok(false);
     }
     let mut band = Band::new(h, stretch.path.clone());
-    relaxation.run(&mut band, Goal::Tight, FLAT_EVALUATIONS);
+    relaxation.run(&mut band, Goal::Tight, FLAT_EVALUATIONS)?;
     let start = stretch.a.spins.as_slice();
-    band.path().largest_rotation() < 1.0
-        && (0..band.images()).all(|k| h.difference_mev(band.path().image(k), start).abs() < flat)
+    Ok(band.path().largest_rotation() < 1.0
+        && (0..band.images()).all(|k| h.difference_mev(band.path().image(k), start).abs() < flat))
 }
 
 /// A saddle on a stretch after a loose relaxation: one that is none of the known ones, if there is any.
@@ -164,13 +164,13 @@ fn new_saddle(
     stretch: &Stretch,
     known: &[&Found],
     c: f64,
-) -> Option<Found> {
+) -> Result<Option<Found>> {
     let mut band = Band::new(h, stretch.path.clone());
-    relaxation.run(&mut band, Goal::Loose, EVALUATIONS);
+    relaxation.run(&mut band, Goal::Loose, EVALUATIONS)?;
     for _ in 0..ZOOMS {
         let Some(path) = zoomed(&band, band.images() + 4) else { break };
         band = Band::new(h, path);
-        relaxation.run(&mut band, Goal::Loose, EVALUATIONS);
+        relaxation.run(&mut band, Goal::Loose, EVALUATIONS)?;
     }
     let hop = relaxation.scales.half_site_rad();
     let is_new = |f: &Found| f.is_saddle(c) && !known.iter().any(|k| k.is_same(h, f));
@@ -180,21 +180,30 @@ fn new_saddle(
     let highest = tops.first().map_or(e[0].max(e[last]), |top| top.energy_mev);
     // a saddle far above the band leads elsewhere
     let most = highest + ABOVE * (highest - e[0].min(e[last]));
-    let from_tops = tops.iter().take(MOST_TOPS).map(|top| Found::at(h, top.clone(), c, hop));
-    let from_ends = [(0, 1), (last, last - 1)].into_iter().flat_map(|(end, next)| uphill(h, &band, end, next, c));
     let mut high: Vec<Found> = Vec::new();
     let mut known_top = None;
-    for (k, found) in from_tops.chain(from_ends).enumerate() {
+    for (k, top) in tops.iter().take(MOST_TOPS).enumerate() {
+        let found = Found::recorded(h, top.clone(), c, hop, relaxation.recorder)?;
         if !is_new(&found) {
-            known_top = known_top.or((k == 0 && !tops.is_empty()).then_some(found));
+            known_top = known_top.or((k == 0).then_some(found));
         } else if found.refined.state.energy_mev <= most {
-            return Some(found);
+            return Ok(Some(found));
         } else {
             high.push(found);
         }
     }
+    for (end, next) in [(0, 1), (last, last - 1)] {
+        let input = [band.path().image(end), band.path().image(next)];
+        let from_end = relaxation.recorder.call(h, &input, || Ok(uphill(h, &band, end, next, c)))?;
+        for found in from_end.into_iter().filter(is_new) {
+            if found.refined.state.energy_mev <= most {
+                return Ok(Some(found));
+            }
+            high.push(found);
+        }
+    }
     let lowest = high.into_iter().min_by(|p, q| p.refined.state.energy_mev.total_cmp(&q.refined.state.energy_mev));
-    lowest.or(known_top)
+    Ok(lowest.or(known_top))
 }
 
 /// Saddles above the minimum at one end of a band, along its soft modes towards the next image.

@@ -71,6 +71,9 @@ pub fn relax_to_minimum(h: &Hamiltonian, start: &Spins, tolerance_mev: f64) -> R
     let mut steps = 0;
     let mut stalled = 0;
     while steps < STEPS {
+        if h.is_stopped() {
+            return Err(Error::Stopped);
+        }
         if !p.torque().is_finite() {
             return Err(Error::Numerical(
                 "the forces on the state are not finite numbers: are the energies absurdly large?".into(),

@@ -6,9 +6,10 @@
 
 use super::minimum::{Link, turned, turns};
 use super::relaxation::{Goal, Relaxation};
-use super::{Images, NebSettings, Scales, Silent};
+use super::{Images, NebSettings, Recorder, Scales, Silent};
 use crate::band::{Band, Laplacian};
 use crate::energy::Hamiltonian;
+use crate::error::Result;
 use crate::geometry::Vector;
 use crate::optimise::Follows;
 use crate::path::{Path, largest_angle};
@@ -45,11 +46,14 @@ pub fn joined(
     images: Images,
     apart: f64,
     tools: &Tools,
-) -> Option<Joined> {
-    let raw = stretches(h, links, a, b)?;
-    let counts = counts(&raw, images, apart)?;
-    let pieces: Vec<Path> =
-        raw.par_iter().zip(&counts).map(|(piece, &n)| relaxed(h, piece.resampled(n), tools)).collect();
+    recorder: &mut Recorder,
+) -> Result<Option<Joined>> {
+    let Some(raw) = stretches(h, links, a, b) else { return Ok(None) };
+    let Some(counts) = counts(&raw, images, apart) else { return Ok(None) };
+    let input: Vec<&[f64]> = raw.iter().map(Path::as_slice).collect();
+    let pieces: Vec<Path> = recorder.call(h, &input, || {
+        raw.par_iter().zip(&counts).map(|(piece, &n)| relaxed(h, piece.resampled(n), tools)).collect()
+    })?;
     let mut row: Vec<Spins> = vec![a.clone()];
     let mut stops = Vec::new();
     for piece in &pieces {
@@ -57,7 +61,7 @@ pub fn joined(
         stops.push(row.len() - 1);
     }
     stops.pop();
-    Some(Joined { path: Path::new(&row), stops })
+    Ok(Some(Joined { path: Path::new(&row), stops }))
 }
 
 /// The descents from the saddles, end to end from `a` to `b`: minimum to saddle, saddle to minimum, …
@@ -125,15 +129,15 @@ fn shared(lengths: &[f64], total: usize) -> Option<Vec<usize>> {
 }
 
 /// A stretch between its two stationary ends, relaxed.
-fn relaxed(h: &Hamiltonian, path: Path, tools: &Tools) -> Path {
+fn relaxed(h: &Hamiltonian, path: Path, tools: &Tools) -> Result<Path> {
     if path.images() < 3 {
-        return path;
+        return Ok(path);
     }
     let limit = match tools.settings.optimiser.member().follows() {
         Follows::Sweep => 100,
         _ => 2000,
     };
-    let mut silent = Silent;
+    let (mut silent, mut off) = (Silent, Recorder::off());
     let mut relaxation = Relaxation {
         settings: tools.settings,
         climb: false,
@@ -142,10 +146,11 @@ fn relaxed(h: &Hamiltonian, path: Path, tools: &Tools) -> Path {
         laplacian: tools.laplacian,
         history: Vec::new(),
         observer: &mut silent,
+        recorder: &mut off,
     };
     let mut band = Band::new(h, path);
-    relaxation.run(&mut band, Goal::Tight, limit.min(tools.settings.max_evaluations));
-    band.into_path()
+    relaxation.run(&mut band, Goal::Tight, limit.min(tools.settings.max_evaluations))?;
+    Ok(band.into_path())
 }
 
 #[cfg(test)]

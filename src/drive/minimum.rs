@@ -2,6 +2,7 @@
 
 use super::climb::Found;
 use super::ends::relax_to_minimum;
+use super::recorder::Recorder;
 use crate::energy::Hamiltonian;
 use crate::error::Result;
 use crate::field::{Components, ComponentsMut};
@@ -176,6 +177,13 @@ impl Link {
         }
         let fallen_mev = [&before, &after].map(|end| h.difference_mev(&state.m, end.spins.as_slice()));
         Some(Link { spectrum, before, after, fallen_mev, ways: Default::default(), found, given: true })
+    }
+
+    /// The same, as far as it is not on record.
+    pub fn recorded(h: &Hamiltonian, found: Found, c: f64, recorder: &mut Recorder) -> Result<Link> {
+        let Found { top, refined } = &found;
+        let [m, valley, tau] = [&refined.state.m, &refined.valley, &top.tau].map(Vec::clone);
+        recorder.call(h, &[&m, &valley, &tau], || Link::of(h, found, c))
     }
 
     /// Exchanges its two sides: which of them the path comes from is not always plain at the saddle itself.

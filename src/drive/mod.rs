@@ -1,5 +1,6 @@
 //! From two states to a barrier: relax the ends, make a first path, relax the band, read off what it found.
 
+mod bytes;
 mod candidate;
 mod climb;
 mod connect;
@@ -10,12 +11,14 @@ mod minimum;
 mod outcome;
 mod problem;
 mod rates;
+mod recorder;
 mod relaxation;
 mod relaxed;
 mod report;
 mod run;
 mod scales;
 mod stop;
+mod stored;
 mod top;
 
 pub use ends::{Relaxed, relax_to_minimum};
@@ -23,9 +26,11 @@ pub use explore::natural_guesses;
 pub use minimum::{Link, Minimum};
 pub use outcome::*;
 pub use problem::{Images, NebSettings, Problem};
+pub use recorder::{Keep, Partial, Recorder};
 pub use relaxation::{Goal, Relaxation, image_levels, prominent_maxima, refined};
 pub use relaxed::{RelaxedState, relaxed_state};
-pub use run::run;
+pub use report::partial;
+pub use run::{run, run_recorded};
 pub use scales::Scales;
 pub use stop::Stop;
 pub use top::{Top, tops};
@@ -37,6 +42,9 @@ pub trait Observer {
 
     /// A stage begins, in words.
     fn stage(&mut self, _what: &str) {}
+
+    /// The relaxation of a band begins. A tight one ends once no spin is predicted to turn by more than `_tolerance_rad`.
+    fn relaxing(&mut self, _goal: Goal, _tolerance_rad: f64) {}
 }
 
 /// Watches nothing.

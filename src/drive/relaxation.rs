@@ -1,11 +1,15 @@
 //! The loop that relaxes a band: evaluate, judge, move; it counts and says why it stopped.
 
+use super::bytes::{Fingerprint, Reader, Writer};
 use super::outcome::HistoryRow;
-use super::{NebSettings, Observer, Scales, Stop};
+use super::stored::{Stored, read_history, write_history};
+use super::{NebSettings, Observer, Recorder, Scales, Stop};
 use crate::band::{Band, Laplacian, Sweep, align_rotations};
+use crate::energy::Hamiltonian;
+use crate::error::Result;
 use crate::geometry::Vector;
 use crate::linalg::slab;
-use crate::optimise::{Follows, OptimiserSpec};
+use crate::optimise::{Follows, Optimiser, OptimiserSpec};
 use crate::path::Path;
 use crate::sphere::rotation_of;
 
@@ -39,6 +43,8 @@ pub struct Relaxation<'a> {
     pub history: Vec<HistoryRow>,
     /// Who watches.
     pub observer: &'a mut dyn Observer,
+    /// What is recorded, to go on from there if the run is interrupted.
+    pub recorder: &'a mut Recorder,
 }
 
 /// Watches the predicted rotation: a sweep that runs in circles is damped, and what makes no progress ends.
@@ -73,49 +79,92 @@ impl Progress {
     }
 }
 
+/// What a relaxation remembers from one iteration to the next.
+struct Iterate {
+    optimiser: Box<dyn Optimiser>,
+    sweep: Sweep,
+    progress: Progress,
+}
+
 impl Relaxation<'_> {
-    /// Relaxes the band of `path` with at most `limit` evaluations.
-    pub fn run<'h>(&mut self, band: &mut Band<'h>, goal: Goal, limit: usize) -> Stop {
+    /// Relaxes the band of `path` with at most `limit` evaluations. An error where the run was stopped on the way.
+    pub fn run<'h>(&mut self, band: &mut Band<'h>, goal: Goal, limit: usize) -> Result<Stop> {
         let h = band.hamiltonian();
-        let size = 3 * h.sites();
-        let method = self.settings.optimiser.member();
-        let mut optimiser = method.start(h.stiffness_mev());
-        let mut sweep = Sweep::new(self.scales.stiffness_mev);
-        let tolerance = self.settings.tolerance;
-        let mut progress = Progress::new(method.follows());
-        let mut direction = vec![0.0; band.inner_mut().len()];
-        loop {
-            self.align(band);
-            band.evaluate();
-            let force = band.max_perpendicular_mev();
-            if goal == Goal::Loose && force < LOOSE * self.scales.stiffness_mev {
-                let rotation = force / self.scales.stiffness_mev;
-                self.record(band, rotation);
-                return Stop::Converged { rotation, tolerance: LOOSE };
-            }
-            let climbing = self.climbing(band, goal);
-            let rotation = match method.follows() {
-                Follows::Sweep => sweep.step(band, self.axes, &mut direction).rotation,
-                follows => self.along_forces(band, follows, &climbing, &mut direction),
-            };
-            self.record(band, rotation);
-            if !rotation.is_finite() || !force.is_finite() {
-                return Stop::NotFinite;
-            }
-            if goal == Goal::Tight && rotation <= tolerance {
-                return Stop::Converged { rotation, tolerance };
-            }
-            if band.evaluations() >= limit {
-                return Stop::MaxEvaluations { evaluations: band.evaluations(), rotation, tolerance };
-            }
-            if let Some(evaluations) = progress.stalled(rotation) {
-                return Stop::Stalled { evaluations, rotation, tolerance };
-            }
-            if progress.damping != 1.0 {
-                slab::scale(&mut direction, progress.damping);
-            }
-            optimiser.advance(band.inner_mut(), size, &direction);
+        let first = self.history.len();
+        let ticket = self.recorder.ticket(h, |print| fingerprint(print, band, goal, limit));
+        if let Some((stop, rows)) = self.recorder.answer(h, &ticket, |r| read_end(r, band)) {
+            self.history.extend(rows);
+            return Ok(stop);
         }
+        self.observer.relaxing(goal, self.settings.tolerance);
+        let mut now = self.start(h);
+        if let Some(rows) = self.recorder.resume(h, &ticket, |r| now.read(r, band)) {
+            self.history.extend(rows);
+        }
+        let mut direction = vec![0.0; band.inner_mut().len()];
+        let stop = loop {
+            let state = || ticket.sealed(h, |w| now.write(w, band, &self.history[first..]));
+            self.recorder.obey(h, || Some(state()))?;
+            self.recorder.save_if_due(state);
+            if let Some(stop) = self.step(band, &mut now, &mut direction, goal, limit) {
+                break stop;
+            }
+        };
+        self.recorder.finish(h, &ticket, |w| write_end(w, band, stop, &self.history[first..]));
+        Ok(stop)
+    }
+
+    fn start(&self, h: &Hamiltonian) -> Iterate {
+        let method = self.settings.optimiser.member();
+        Iterate {
+            optimiser: method.start(h.stiffness_mev()),
+            sweep: Sweep::new(self.scales.stiffness_mev),
+            progress: Progress::new(method.follows()),
+        }
+    }
+
+    /// One iteration: evaluate, judge, move; why it was the last, if it was.
+    fn step(
+        &mut self,
+        band: &mut Band,
+        now: &mut Iterate,
+        direction: &mut [f64],
+        goal: Goal,
+        limit: usize,
+    ) -> Option<Stop> {
+        let size = 3 * band.path().sites();
+        let tolerance = self.settings.tolerance;
+        self.align(band);
+        band.evaluate();
+        let force = band.max_perpendicular_mev();
+        if goal == Goal::Loose && force < LOOSE * self.scales.stiffness_mev {
+            let rotation = force / self.scales.stiffness_mev;
+            self.record(band, rotation);
+            return Some(Stop::Converged { rotation, tolerance: LOOSE });
+        }
+        let climbing = self.climbing(band, goal);
+        let rotation = match self.settings.optimiser.member().follows() {
+            Follows::Sweep => now.sweep.step(band, self.axes, direction).rotation,
+            follows => self.along_forces(band, follows, &climbing, direction),
+        };
+        self.record(band, rotation);
+        if !rotation.is_finite() || !force.is_finite() {
+            return Some(Stop::NotFinite);
+        }
+        if goal == Goal::Tight && rotation <= tolerance {
+            return Some(Stop::Converged { rotation, tolerance });
+        }
+        if band.evaluations() >= limit {
+            return Some(Stop::MaxEvaluations { evaluations: band.evaluations(), rotation, tolerance });
+        }
+        if let Some(evaluations) = now.progress.stalled(rotation) {
+            return Some(Stop::Stalled { evaluations, rotation, tolerance });
+        }
+        if now.progress.damping != 1.0 {
+            slab::scale(direction, now.progress.damping);
+        }
+        now.optimiser.advance(band.inner_mut(), size, direction);
+        None
     }
 
     fn align(&self, band: &mut Band) {
@@ -169,6 +218,60 @@ impl Relaxation<'_> {
         self.history.push(row);
         self.observer.iteration(&row);
     }
+}
+
+impl Iterate {
+    /// All that the next iteration depends on, with the iterations so far.
+    fn write(&self, w: &mut Writer, band: &Band, rows: &[HistoryRow]) {
+        w.row(band.path().as_slice());
+        w.whole(band.evaluations());
+        w.row(self.sweep.shifts());
+        w.rows(&self.optimiser.memory());
+        w.real(self.progress.best);
+        w.whole(self.progress.since);
+        w.real(self.progress.damping);
+        write_history(rows, w);
+    }
+
+    /// Goes on from what was written; the iterations up to there.
+    fn read(&mut self, r: &mut Reader, band: &mut Band) -> Option<Vec<HistoryRow>> {
+        let images = r.row().filter(|images| images.len() == band.path().as_slice().len())?;
+        let evaluations = r.whole()?;
+        let shifts = r.row()?;
+        let memory = r.rows()?;
+        let (best, since, damping) = (r.real()?, r.whole()?, r.real()?);
+        let rows = read_history(r)?;
+        band.restore(&images, evaluations);
+        self.sweep.set_shifts(shifts);
+        self.optimiser.remember(memory);
+        (self.progress.best, self.progress.since, self.progress.damping) = (best, since, damping);
+        Some(rows)
+    }
+}
+
+fn fingerprint(print: Fingerprint, band: &Band, goal: Goal, limit: usize) -> Fingerprint {
+    let held = (0..band.images()).filter(|&k| band.is_held(k)).fold(print, Fingerprint::whole);
+    let print = held.whole(Stop::KIND).whole(usize::from(goal == Goal::Tight)).whole(limit);
+    print.whole(band.evaluations()).row(band.path().as_slice())
+}
+
+/// The end of a relaxation.
+fn write_end(w: &mut Writer, band: &Band, stop: Stop, rows: &[HistoryRow]) {
+    w.row(band.path().as_slice());
+    w.whole(band.evaluations());
+    stop.write(w);
+    write_history(rows, w);
+}
+
+/// Puts the band where its relaxation ended.
+fn read_end(r: &mut Reader, band: &mut Band) -> Option<(Stop, Vec<HistoryRow>)> {
+    let images = r.row().filter(|images| images.len() == band.path().as_slice().len())?;
+    let evaluations = r.whole()?;
+    let stop = Stop::read(r, band.hamiltonian())?;
+    let rows = read_history(r)?;
+    band.restore(&images, evaluations.checked_sub(1)?);
+    band.evaluate();
+    Some((stop, rows))
 }
 
 /// Whether an optimiser needs the preconditioner.

@@ -1,6 +1,5 @@
 //! From a finished run to its outcome: tables, barrier, warnings.
 
-use super::Problem;
 use super::candidate::Candidate;
 use super::climb::Found;
 use super::ends::Relaxed;
@@ -8,6 +7,7 @@ use super::minimum::{Link, Minimum};
 use super::outcome::*;
 use super::rates::{self, Known};
 use super::relaxation::{height, prominent_maxima};
+use super::{Partial, Problem};
 use crate::band::{Band, Extremum};
 use crate::energy::Hamiltonian;
 use crate::linalg::slab;
@@ -169,6 +169,39 @@ pub fn same_minimum(run: Summary) -> Outcome {
         max_perpendicular_torque_mev: 0.0,
         largest_predicted_rotation_rad: 0.0,
         path,
+    }
+}
+
+/// What is known of a run that was stopped: the band as it stood, without a barrier. `why` says that it is not the end.
+pub fn partial(problem: &Problem, partial: &Partial, why: &str) -> Outcome {
+    let h = &problem.hamiltonian;
+    let mut band = Band::new(h, partial.path.clone());
+    band.evaluate();
+    let end = |k: usize| EndPoint {
+        energy_mev: h.energy_mev(band.path().image(k)),
+        max_torque_mev: torque(&band, k),
+        negative_modes: None,
+        zero_modes: None,
+    };
+    Outcome {
+        converged: false,
+        certified: false,
+        stop_reason: why.into(),
+        warnings: Vec::new(),
+        barrier: None,
+        saddles: Vec::new(),
+        initial: end(0),
+        final_state: end(band.images() - 1),
+        intermediate_minima: Vec::new(),
+        rates: None,
+        rejected_paths: Vec::new(),
+        images: image_table(h, &band),
+        profile: profile(&band),
+        work: Work { iterations: partial.history.len(), threads: rayon::current_num_threads(), ..Work::default() },
+        max_perpendicular_torque_mev: band.max_perpendicular_mev(),
+        largest_predicted_rotation_rad: partial.history.last().map_or(0.0, |r| r.largest_predicted_rotation_rad),
+        history: partial.history.clone(),
+        path: band.into_path(),
     }
 }
 

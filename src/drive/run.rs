@@ -11,7 +11,7 @@ use super::outcome::*;
 use super::relaxation::{Goal, Relaxation, height, image_levels, needs_laplacian, refined};
 use super::report::{self, Proof};
 use super::top::tops;
-use super::{Images, Observer, Problem, Scales, Silent, Stop};
+use super::{Images, Observer, Problem, Recorder, Scales, Silent, Stop};
 use crate::band::{Band, Laplacian, align_rotations};
 use crate::error::Result;
 use crate::geometry::{Direction, Vector};
@@ -48,7 +48,17 @@ pub(super) const END_TOLERANCE: f64 = 1e-14;
 
 /// Finds the minimum-energy path of a problem.
 pub fn run(problem: &Problem, observer: &mut dyn Observer) -> Result<Outcome> {
-    Run::prepare(problem, observer)?.finish()
+    run_recorded(problem, observer, &mut Recorder::off())
+}
+
+/// The same, taking what it finds on record from there, and recording what it computes.
+///
+/// A run that is stopped ([`Hamiltonian::obey`](crate::energy::Hamiltonian::obey)) ends with
+/// [`Error::Stopped`](crate::error::Error::Stopped); with a recorder of the same [`Keep`](super::Keep) it goes on later, to the
+/// outcome that it would have had.
+pub fn run_recorded(problem: &Problem, observer: &mut dyn Observer, recorder: &mut Recorder) -> Result<Outcome> {
+    recorder.begin(problem);
+    Run::prepare(problem, observer, recorder)?.finish()
 }
 
 /// A path with what is known of it.
@@ -77,6 +87,7 @@ fn over(c: &Candidate, links: &[Link]) -> f64 {
 struct Run<'a, 'o> {
     problem: &'a Problem,
     observer: &'o mut dyn Observer,
+    recorder: &'o mut Recorder,
     started: Instant,
     ends: [Relaxed; 2],
     scales: Scales,
@@ -89,7 +100,11 @@ struct Run<'a, 'o> {
 }
 
 impl<'a, 'o> Run<'a, 'o> {
-    fn prepare(problem: &'a Problem, observer: &'o mut dyn Observer) -> Result<Run<'a, 'o>> {
+    fn prepare(
+        problem: &'a Problem,
+        observer: &'o mut dyn Observer,
+        recorder: &'o mut Recorder,
+    ) -> Result<Run<'a, 'o>> {
         let started = Instant::now();
         let h = &problem.hamiltonian;
         observer.stage("relaxing the ends");
@@ -98,7 +113,8 @@ impl<'a, 'o> Run<'a, 'o> {
             if !problem.relax_ends {
                 return Ok(kept(h, spins));
             }
-            let relaxed = relax_to_minimum(h, spins, END_TOLERANCE * h.stiffness_mev())?;
+            let relax = || relax_to_minimum(h, spins, END_TOLERANCE * h.stiffness_mev());
+            let relaxed = recorder.call(h, &[spins.as_slice()], relax)?;
             warnings.extend(judge_end(&relaxed, which));
             Ok(relaxed)
         };
@@ -110,12 +126,13 @@ impl<'a, 'o> Run<'a, 'o> {
             );
         }
         let (a, b) = (ends[0].spins.as_slice(), ends[1].spins.as_slice());
-        let scales = Scales::of_ends(h, a, b);
+        let scales = recorder.call(h, &[a, b], || Ok(Scales::of_ends(h, a, b)))?;
         let axes = h.symmetry_axes_at(a);
         let laplacian = needs_laplacian(&problem.neb.optimiser).then(|| Laplacian::new(h, scales.stiffness_mev));
         let mut run = Run {
             problem,
             observer,
+            recorder,
             started,
             ends,
             scales,
@@ -148,8 +165,10 @@ impl<'a, 'o> Run<'a, 'o> {
         let mut candidates = match &self.problem.guess {
             Some(guess) => {
                 let (noise, smoothing) = (self.problem.noise.as_ref(), self.problem.smooth);
-                let mut c = self.start(describe(guess, false), guess, noise, smoothing, usize::MAX)?;
-                self.conclude(&mut c);
+                let name = describe(guess, false);
+                self.observer.stage(&format!("first path: {name}"));
+                let mut c = self.start(name, guess, noise, smoothing, usize::MAX)?;
+                self.conclude(&mut c)?;
                 vec![c]
             }
             None => self.natural()?,
@@ -169,7 +188,7 @@ impl<'a, 'o> Run<'a, 'o> {
                 continue;
             }
             if next.found.is_none() {
-                self.conclude(&mut next);
+                self.conclude(&mut next)?;
             }
             let next = self.settle(next)?;
             // the images of an unproven path are an upper bound all the same
@@ -186,32 +205,32 @@ impl<'a, 'o> Run<'a, 'o> {
 
     /// A path in full: as many images as it needs, its saddles, and what could be proven of them.
     fn settle(&mut self, mut c: Candidate<'a>) -> Result<Settled<'a>> {
-        self.relax_resolved(&mut c, FIRST);
-        let found = self.all_saddles(&c);
+        self.relax_resolved(&mut c, FIRST)?;
+        let found = self.all_saddles(&c)?;
         if self.problem.certify && self.problem.seeks_saddles() {
             let proof = self.prove(&c, &found)?;
-            if self.needs_joining(&c, &proof) && self.join(&mut c, &proof) {
+            if self.needs_joining(&c, &proof) && self.join(&mut c, &proof)? {
                 return Ok(Settled { candidate: c, found, proof });
             }
             if c.stop.is_converged() && !self.is_coarse(&c) {
                 return self.seated(c, found, Some(proof));
             }
         }
-        self.relax_resolved(&mut c, usize::MAX);
-        let found = self.all_saddles(&c);
+        self.relax_resolved(&mut c, usize::MAX)?;
+        let found = self.all_saddles(&c)?;
         self.seated(c, found, None)
     }
 
     /// Relaxes tightly with as many images as it takes, each time with at most `more` evaluations.
-    fn relax_resolved(&mut self, c: &mut Candidate<'a>, more: usize) {
+    fn relax_resolved(&mut self, c: &mut Candidate<'a>, more: usize) -> Result<()> {
         loop {
             let before = c.band.images();
-            self.resolve(c, more);
+            self.resolve(c, more)?;
             let images = c.band.images();
-            self.relax(c, Goal::Tight, c.band.evaluations().saturating_add(more));
+            self.relax(c, Goal::Tight, c.band.evaluations().saturating_add(more))?;
             let finer = self.is_coarse(c) && images > before && images < MOST_IMAGES;
             if !finer || !c.stop.is_converged() || more < usize::MAX {
-                return;
+                return Ok(());
             }
         }
     }
@@ -219,7 +238,7 @@ impl<'a, 'o> Run<'a, 'o> {
     /// With its saddles as images, and proven.
     fn seated(&mut self, mut c: Candidate<'a>, found: Vec<Found>, proof: Option<Proof>) -> Result<Settled<'a>> {
         if self.problem.neb.climb && seat(&mut c.band, &found) {
-            self.relax(&mut c, Goal::Tight, usize::MAX);
+            self.relax(&mut c, Goal::Tight, usize::MAX)?;
         }
         let proof = match proof {
             Some(proof) => proof,
@@ -240,10 +259,10 @@ impl<'a, 'o> Run<'a, 'o> {
     }
 
     /// The path from stretch to stretch in the place of the band, if all of it is proven; says whether it took the place.
-    fn join(&mut self, c: &mut Candidate<'a>, proof: &Proof) -> bool {
+    fn join(&mut self, c: &mut Candidate<'a>, proof: &Proof) -> Result<bool> {
         let h = &self.problem.hamiltonian;
         if !proof.doubts.is_empty() || !self.problem.relax_ends {
-            return false;
+            return Ok(false);
         }
         self.observer.stage("putting the path together");
         let tools = Tools {
@@ -253,8 +272,8 @@ impl<'a, 'o> Run<'a, 'o> {
             laplacian: self.laplacian.as_ref(),
         };
         let ends = [&self.ends[0].spins, &self.ends[1].spins];
-        let joined = joined(h, &proof.links, ends, self.problem.images, 0.9 * RESOLVED, &tools);
-        let Some(Joined { path, stops }) = joined else { return false };
+        let joined = joined(h, &proof.links, ends, self.problem.images, 0.9 * RESOLVED, &tools, self.recorder)?;
+        let Some(Joined { path, stops }) = joined else { return Ok(false) };
         let mut band = Band::continued(h, path, c.band.evaluations());
         for k in stops {
             let m = band.path().image(k).to_vec();
@@ -262,16 +281,16 @@ impl<'a, 'o> Run<'a, 'o> {
         }
         let before = std::mem::replace(&mut c.band, band);
         let stop = c.stop;
-        self.relax(c, Goal::Tight, c.band.evaluations() + FIRST);
+        self.relax(c, Goal::Tight, c.band.evaluations() + FIRST)?;
         let fits = c.top_mev() <= over(c, &proof.links);
         if fits && !c.stop.is_converged() {
-            self.relax(c, Goal::Tight, usize::MAX);
+            self.relax(c, Goal::Tight, usize::MAX)?;
         }
         let good = fits && (c.stop.is_converged() || !stop.is_converged());
         if !good {
             (c.band, c.stop) = (before, stop);
         }
-        good
+        Ok(good)
     }
 
     /// Follows the path from its highest saddle down to both ends, and says what was proven on the way.
@@ -299,7 +318,7 @@ impl<'a, 'o> Run<'a, 'o> {
                 None => Link::between(h, highest.clone(), ends.clone()),
                 Some(_) => None,
             };
-            sequence.links.push(alone.map_or_else(|| Link::of(h, highest.clone(), scale), Ok)?);
+            sequence.links.push(alone.map_or_else(|| Link::recorded(h, highest.clone(), scale, self.recorder), Ok)?);
         }
         let mut doubts: Vec<String> = sequence.links.iter().filter_map(|l| l.doubt(h)).collect();
         doubts.extend(sequence.gap);
@@ -323,6 +342,7 @@ impl<'a, 'o> Run<'a, 'o> {
             laplacian: self.laplacian.as_ref(),
             history,
             observer: if quiet { &mut self.silent } else { &mut *self.observer },
+            recorder: self.recorder,
         }
     }
 
@@ -382,7 +402,7 @@ impl<'a, 'o> Run<'a, 'o> {
             let lowest = c.top_mev();
             let worth = finished < 2 && self.problem.seeks_saddles();
             if worth && !(finished == 1 && lowest > 1.2 * self.lowest_top) {
-                self.conclude(c);
+                self.conclude(c)?;
                 finished += 1;
                 self.lowest_top = self.lowest_top.min(c.barrier_mev(scale));
             }
@@ -394,20 +414,20 @@ impl<'a, 'o> Run<'a, 'o> {
     }
 
     /// Relaxes a path until its top is a refined saddle of index one, leaving saddles of higher index sideways.
-    fn conclude(&mut self, c: &mut Candidate<'a>) {
+    fn conclude(&mut self, c: &mut Candidate<'a>) -> Result<()> {
         let scale = self.scales.stiffness_mev;
         for round in 0..ESCAPES {
             if !c.stop.is_converged() {
-                self.relax(c, Goal::Loose, c.band.evaluations() + 24);
+                self.relax(c, Goal::Loose, c.band.evaluations() + 24)?;
             }
             if !self.problem.seeks_saddles() {
-                return;
+                break;
             }
-            self.zoom(c);
-            c.found = conclude(&c.band, scale, self.scales.half_site_rad());
-            let Some(found) = c.found.as_ref() else { return };
+            self.zoom(c)?;
+            c.found = conclude(&c.band, scale, self.scales.half_site_rad(), self.recorder)?;
+            let Some(found) = c.found.as_ref() else { break };
             if found.is_saddle(scale) || round + 1 == ESCAPES {
-                return;
+                break;
             }
             let mut best: Option<Band<'a>> = None;
             for path in escapes(&c.band, found, scale) {
@@ -419,42 +439,44 @@ impl<'a, 'o> Run<'a, 'o> {
                     best = Some(band);
                 }
             }
-            let Some(band) = best else { return };
+            let Some(band) = best else { break };
             self.observer.stage(&format!("leaving a saddle of index {}", found.refined.index));
             c.escapes.push((found.refined.state.energy_mev - c.band.energies_mev()[0], found.refined.index));
             c.band = band;
             c.stop = Stop::NotFinite;
         }
+        Ok(())
     }
 
     /// A top inside the first or last interval is not resolved: the part of the path around it becomes finer.
-    fn zoom(&mut self, c: &mut Candidate<'a>) {
+    fn zoom(&mut self, c: &mut Candidate<'a>) -> Result<()> {
         for _ in 0..ZOOMS {
             let images = match self.problem.images {
                 Images::Count(n) => n,
                 Images::Auto => c.band.images() + 8,
             };
-            let Some(path) = zoomed(&c.band, images) else { return };
+            let Some(path) = zoomed(&c.band, images) else { break };
             c.band = Band::continued(&self.problem.hamiltonian, path, c.band.evaluations());
-            self.relax(c, Goal::Loose, c.band.evaluations() + 24);
+            self.relax(c, Goal::Loose, c.band.evaluations() + 24)?;
         }
+        Ok(())
     }
 
     /// Every maximum within a tenth of the highest, refined; saddles found twice count once.
-    fn all_saddles(&self, c: &Candidate<'a>) -> Vec<Found> {
+    fn all_saddles(&mut self, c: &Candidate<'a>) -> Result<Vec<Found>> {
         let scale = self.scales.stiffness_mev;
         if !self.problem.seeks_saddles() {
-            return Vec::new();
+            return Ok(Vec::new());
         }
         let h = &self.problem.hamiltonian;
         let mut found: Vec<Found> = Vec::new();
         for top in tops(&c.band, WINDOW * height(&c.band)) {
-            let f = Found::at(h, top, scale, self.scales.half_site_rad());
+            let f = Found::recorded(h, top, scale, self.scales.half_site_rad(), self.recorder)?;
             if f.is_saddle(scale) && !found.iter().any(|g| same(&g.refined.state.m, &f.refined.state.m)) {
                 found.push(f);
             }
         }
-        found
+        Ok(found)
     }
 
     /// A first path, relaxed from few images to as many as asked for (automatic: as few as resolve it).
@@ -484,14 +506,14 @@ impl<'a, 'o> Run<'a, 'o> {
         };
         let band = Band::new(&self.problem.hamiltonian, make(coarsest)?);
         let mut c = Candidate::new(name, band, Stop::NotFinite);
-        self.relax(&mut c, Goal::Loose, limit);
+        self.relax(&mut c, Goal::Loose, limit)?;
         Ok(c)
     }
 
     /// More images, each time relaxed loosely: to the number asked for, or until neighbours are within 1 rad a spin.
-    fn resolve(&mut self, c: &mut Candidate<'a>, more: usize) {
+    fn resolve(&mut self, c: &mut Candidate<'a>, more: usize) -> Result<()> {
         if !c.stop.is_converged() {
-            self.relax(c, Goal::Loose, c.band.evaluations() + 24);
+            self.relax(c, Goal::Loose, c.band.evaluations() + 24)?;
         }
         let mut apart = f64::INFINITY;
         loop {
@@ -499,25 +521,28 @@ impl<'a, 'o> Run<'a, 'o> {
             // steps over minima stay as long as they are, however many images there are
             let before = std::mem::replace(&mut apart, c.band.path().largest_rotation());
             if (more < usize::MAX || now > 257) && self.problem.images == Images::Auto && apart > 0.8 * before {
-                return;
+                return Ok(());
             }
             let next = match self.problem.images {
                 Images::Count(n) if now < n => image_levels(n, |_| true).into_iter().find(|l| *l > now).unwrap_or(n),
                 Images::Auto if c.band.path().largest_rotation() > RESOLVED && now < MOST_IMAGES => 2 * now - 1,
-                _ => return,
+                _ => return Ok(()),
             };
             self.observer.stage(&format!("{next} images"));
             let evaluations = c.band.evaluations();
             c.band = Band::continued(&self.problem.hamiltonian, refined(c.band.path(), next), evaluations);
-            self.relax(c, Goal::Loose, evaluations + 40);
+            self.relax(c, Goal::Loose, evaluations + 40)?;
         }
     }
 
-    fn relax(&mut self, c: &mut Candidate<'a>, goal: Goal, limit: usize) {
+    fn relax(&mut self, c: &mut Candidate<'a>, goal: Goal, limit: usize) -> Result<()> {
         let limit = limit.min(self.problem.neb.max_evaluations);
         let mut relaxation = self.relaxation(std::mem::take(&mut c.history), false);
-        c.stop = relaxation.run(&mut c.band, goal, limit);
+        let stop = relaxation.run(&mut c.band, goal, limit);
         c.history = relaxation.history;
+        self.recorder.show(&c.band, &c.history);
+        c.stop = stop?;
+        Ok(())
     }
 }
 

@@ -8,7 +8,8 @@ use crate::lattice::Chain;
 use crate::linalg::slab;
 use crate::spins::Spins;
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// From this many sites on, the tiles of one image are shared among threads.
 const LONG: usize = 32 * 1024;
@@ -28,6 +29,7 @@ pub struct Hamiltonian {
     stiffness: f64,
     axes: Vec<Vector>,
     evaluations: AtomicUsize,
+    stop: Arc<AtomicBool>,
 }
 
 impl Hamiltonian {
@@ -59,6 +61,7 @@ impl Hamiltonian {
             stiffness: 0.0,
             axes,
             evaluations: AtomicUsize::new(0),
+            stop: Arc::default(),
         };
         h.blocks = h.blocks_of(|t| t.is_quadratic(), Components::new(&vec![0.0; 3 * h.sites]));
         let diagonal = |b: super::blocks::Block| b[0][0].abs() + b[1][1].abs() + b[2][2].abs();
@@ -176,6 +179,27 @@ impl Hamiltonian {
     /// Gradients computed so far.
     pub fn evaluations(&self) -> usize {
         self.evaluations.load(Ordering::Relaxed)
+    }
+
+    /// Counts on from `count`: what a resumed run takes over is counted as in the run that computed it.
+    pub(crate) fn set_evaluations(&self, count: usize) {
+        self.evaluations.store(count, Ordering::Relaxed);
+    }
+
+    /// Stops when this switch is set to true, from any thread: whatever takes long evaluates an energy, so it is here that it
+    /// learns of it. A run then finishes its iteration and ends with [`Error::Stopped`]; the switch is never set back.
+    pub fn obey(&mut self, switch: Arc<AtomicBool>) {
+        self.stop = switch;
+    }
+
+    /// The switch that stops what uses this energy.
+    pub fn switch(&self) -> &Arc<AtomicBool> {
+        &self.stop
+    }
+
+    /// Whether what uses this energy is to stop.
+    pub fn is_stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
     }
 
     /// −∂E/∂m on the tangent planes (meV), zero on frozen sites, from the Euclidean gradient.

@@ -99,4 +99,17 @@ impl Optimiser for Memory {
         move_points(points, &step, slab, 1.0);
         self.last = Some((step, force.to_vec()));
     }
+
+    /// The last step and force, then the pairs, oldest first; nothing before the first step.
+    fn memory(&self) -> Vec<Vec<f64>> {
+        let rows = self.last.iter().chain(&self.pairs);
+        rows.flat_map(|(a, b)| [a.clone(), b.clone()]).collect()
+    }
+
+    fn remember(&mut self, memory: Vec<Vec<f64>>) {
+        let mut rows = memory.into_iter();
+        let mut pairs = std::iter::from_fn(|| Some((rows.next()?, rows.next()?)));
+        self.last = pairs.next();
+        self.pairs = pairs.collect();
+    }
 }

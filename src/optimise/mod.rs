@@ -50,4 +50,12 @@ pub trait Method {
 pub trait Optimiser: Debug + Send {
     /// Moves `points` (slabs of `slab` numbers) to where they are to be looked at next, given the direction where they are.
     fn advance(&mut self, points: &mut [f64], slab: usize, direction: &[f64]);
+
+    /// Everything it remembers between visits, in rows.
+    fn memory(&self) -> Vec<Vec<f64>> {
+        Vec::new()
+    }
+
+    /// Takes over the memory of another one of its kind, and goes on as that would.
+    fn remember(&mut self, _memory: Vec<Vec<f64>>) {}
 }

@@ -84,4 +84,15 @@ impl Optimiser for Ode12r {
         }
         move_points(points, &self.direction, slab, self.h);
     }
+
+    fn memory(&self) -> Vec<Vec<f64>> {
+        vec![self.points.clone(), self.direction.clone(), vec![self.h]]
+    }
+
+    fn remember(&mut self, memory: Vec<Vec<f64>>) {
+        let mut rows = memory.into_iter();
+        self.points = rows.next().unwrap_or_default();
+        self.direction = rows.next().unwrap_or_default();
+        self.h = rows.next().and_then(|row| row.first().copied()).unwrap_or_default();
+    }
 }

@@ -55,4 +55,12 @@ impl Optimiser for Rolling {
         let step = if rotation > CAP { self.time * CAP / rotation } else { self.time };
         move_points(points, &self.velocity, slab, step);
     }
+
+    fn memory(&self) -> Vec<Vec<f64>> {
+        vec![self.velocity.clone()]
+    }
+
+    fn remember(&mut self, memory: Vec<Vec<f64>>) {
+        self.velocity = memory.into_iter().next().unwrap_or_default();
+    }
 }

@@ -14,6 +14,9 @@ use tempfile::NamedTempFile;
 /// How temporary names begin.
 const PREFIX: &str = ".spinneb-";
 
+/// What is written to see whether there is room.
+static PROBE: [u8; 1 << 16] = [0; 1 << 16];
+
 /// The file that marks a finished result.
 pub const MARK: &str = "summary.json";
 
@@ -66,8 +69,21 @@ pub fn prepare(dir: &Path, version: &str, config_sha256: &str, force: bool) -> R
             None => {}
         }
     }
-    temporary(dir)?;
+    // an empty file can be made on a disk that is full
+    fill(&mut temporary(dir)?, &PROBE, false).map_err(|e| io_error(dir, unwritable(&e)))?;
     Ok(Destination::Ready)
+}
+
+/// Takes away the temporary files of a writer that was killed. Nobody else may write there meanwhile.
+pub fn clean(dir: &Path) -> Result<()> {
+    let Ok(entries) = fs::read_dir(dir) else { return Ok(()) };
+    for entry in entries.flatten() {
+        let name = entry.file_name();
+        if name.to_string_lossy().starts_with(PREFIX) && entry.path().is_file() {
+            remove(&entry.path())?;
+        }
+    }
+    Ok(())
 }
 
 /// The finished result in `dir`, if there is one. An error where `summary.json` cannot be understood.
@@ -144,7 +160,7 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
     let dir = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     create(dir)?;
     let mut file = temporary(dir)?;
-    fill(&mut file, bytes).map_err(|e| io_error(path, e))?;
+    fill(&mut file, bytes, true).map_err(|e| io_error(path, e))?;
     file.persist(path).map_err(|e| io_error(path, e.error))?;
     Ok(())
 }
@@ -155,24 +171,30 @@ fn stage<'a>(dir: &Path, file: &'a File) -> Result<(&'a str, NamedTempFile)> {
     let folder = path.parent().unwrap_or(dir);
     create(folder)?;
     let mut staged = temporary(folder)?;
-    fill(&mut staged, &file.bytes).map_err(|e| io_error(&dir.join(&file.name), e))?;
+    fill(&mut staged, &file.bytes, true).map_err(|e| io_error(&dir.join(&file.name), e))?;
     Ok((&file.name, staged))
 }
 
-fn fill(file: &mut NamedTempFile, bytes: &[u8]) -> io::Result<()> {
+fn fill(file: &mut NamedTempFile, bytes: &[u8], flush: bool) -> io::Result<()> {
     file.as_file_mut().write_all(bytes)?;
-    file.as_file().sync_all()
+    if flush { file.as_file().sync_all() } else { Ok(()) }
 }
 
 /// A new file that vanishes unless it is given a name; readable by all whom the umask allows.
 fn temporary(dir: &Path) -> Result<NamedTempFile> {
+    temporary_file(dir).map_err(|e| io_error(dir, unwritable(&e)))
+}
+
+pub(super) fn temporary_file(dir: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(PREFIX);
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder
-        .tempfile_in(dir)
-        .map_err(|e| io_error(dir, io::Error::new(e.kind(), format!("cannot write here: {}", reason(&e)))))
+    builder.tempfile_in(dir)
+}
+
+fn unwritable(e: &io::Error) -> io::Error {
+    io::Error::new(e.kind(), format!("cannot write here: {}", reason(e)))
 }
 
 fn create(dir: &Path) -> Result<()> {
@@ -207,9 +229,9 @@ fn clear(dir: &Path, folder: &str, files: &[File]) -> Result<()> {
     Ok(())
 }
 
-fn remove(path: &Path) -> Result<()> {
+pub(super) fn remove(path: &Path) -> Result<()> {
     match fs::remove_file(path) {
-        Err(e) if e.kind() != ErrorKind::NotFound => Err(io_error(path, e)),
+        Err(e) if !matches!(e.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => Err(io_error(path, e)),
         _ => Ok(()),
     }
 }

@@ -1,10 +1,12 @@
-//! What is written: each format is a pure function of the outcome, from [`RunReport`] to bytes; only [`disk`] touches the disk.
+//! What is written: each format is a pure function of the outcome, from [`RunReport`] to bytes; only [`disk`] touches the disk,
+//! with the [`Checkpoint`] and the [`Lock`] of a run at work.
 //!
 //! Energies are in meV, angles and path lengths in rad, and every outer name carries its unit. The same outcome gives the same
 //! bytes: there are no time stamps.
 
 mod arrhenius_plot;
 pub mod canvas;
+mod checkpoint;
 mod columns;
 mod config_copy;
 mod convergence_plot;
@@ -13,7 +15,10 @@ pub mod disk;
 mod energy_path_plot;
 mod energy_terms_plot;
 mod font;
+mod frame;
+mod lock;
 mod magnetisation_plot;
+mod partial;
 mod plot;
 mod plot_data;
 mod rates_csv;
@@ -27,12 +32,15 @@ mod summary;
 pub mod sweep;
 
 pub use arrhenius_plot::{ArrheniusPlot, draw_lifetimes};
+pub use checkpoint::{Checkpoint, Identity};
 pub use config_copy::ConfigCopy;
 pub use convergence_plot::ConvergencePlot;
 pub use csv::{HistoryCsv, PathCsv, ProfileCsv};
 pub use energy_path_plot::{EnergyPath, EnergyPathPlot, draw_energy_paths};
 pub use energy_terms_plot::EnergyTermsPlot;
+pub use lock::Lock;
 pub use magnetisation_plot::MagnetisationPlot;
+pub use partial::{StoppedRun, discard_partial, is_partial_left, partial_files};
 pub use plot::{PLOTS, Plot, PlotFile, PlotTable, describe};
 pub use plot_data::{Lifetimes, PlotData, RateRow};
 pub use rates_csv::RatesCsv;

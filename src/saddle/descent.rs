@@ -68,7 +68,7 @@ pub fn descend(h: &Hamiltonian, saddle: &State, valley: &[f64], c: f64) -> Desce
         }
         less_steep = LESS_STEEP;
         arrived = matches!(end, Fall::Arrived);
-        if Spectrum::negatives(h, &state) == 0 {
+        if Spectrum::negatives(h, &state) == 0 || h.is_stopped() {
             break;
         }
         arrived = false;
@@ -100,7 +100,7 @@ fn march(h: &Hamiltonian, start: State, tau: &mut Vec<f64>, c: f64, part: f64, t
                 break;
             }
         }
-        if h.difference_mev(&state.m, &next.m) < -noise {
+        if h.difference_mev(&state.m, &next.m) < -noise || h.is_stopped() {
             break;
         }
         state = next;
@@ -155,7 +155,7 @@ fn fall(h: &Hamiltonian, mut state: State, c: f64, trail: &mut Trail) -> (State,
     let mut short = 0;
     let mut refusals: usize = 0;
     for _ in 0..STEPS {
-        if state.max_torque_mev() <= tolerance {
+        if state.max_torque_mev() <= tolerance || h.is_stopped() {
             return (state, Fall::Arrived);
         }
         let Some((next, v, refused)) = euler(h, &state, &mut rate, scale) else { return (state, Fall::Stuck) };

@@ -106,7 +106,7 @@ impl Frame {
     fn advance(&self, h: &Hamiltonian, state: &State, radius: &mut f64, steps: &mut usize) -> Option<State> {
         loop {
             *steps += 1;
-            if *steps > STEPS || *radius < 1e-7 {
+            if *steps > STEPS || *radius < 1e-7 || h.is_stopped() {
                 return None;
             }
             let (v, longest) = self.step(state, *radius);

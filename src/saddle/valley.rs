@@ -118,6 +118,9 @@ pub fn refine(h: &Hamiltonian, m: &[f64], tau: &[f64], c: f64) -> Refined {
     let mut verdict = Verdict::Stalled;
     let mut steps = 0;
     for step in 0..STEPS {
+        if h.is_stopped() {
+            break;
+        }
         steps = step + 1;
         match s.step(step) {
             Next::Move(v, tau) => {

@@ -1,0 +1,42 @@
+//! Ctrl-C and the request to terminate: the first ends the run in good order, the second at once.
+
+use anyhow::{Context, Result};
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::flag;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+/// The signals that are waited for, with their exit codes and names.
+const KNOWN: [(i32, u8, &str); 2] = [(SIGINT, 130, "interrupted"), (SIGTERM, 143, "terminated")];
+
+/// Watches for signals from when it is made.
+pub struct Signals {
+    stop: Arc<AtomicBool>,
+    caught: Arc<AtomicUsize>,
+}
+
+impl Signals {
+    /// From now on a signal is noticed; a second one ends the program at once, with the same code.
+    pub fn watch() -> Result<Signals> {
+        let (stop, caught) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicUsize::new(0)));
+        let register = |(signal, code, _): (i32, u8, &str)| -> std::io::Result<()> {
+            // in this order: the first signal only arms what the second one triggers
+            flag::register_conditional_shutdown(signal, i32::from(code), Arc::clone(&stop))?;
+            flag::register_usize(signal, Arc::clone(&caught), usize::from(code))?;
+            flag::register(signal, Arc::clone(&stop)).map(|_| ())
+        };
+        KNOWN.into_iter().try_for_each(register).context("signals cannot be watched for")?;
+        Ok(Signals { stop, caught })
+    }
+
+    /// True once a signal has come.
+    pub fn switch(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.stop)
+    }
+
+    /// The exit code that the signal asks for, and what it did, in a word; nothing as long as there was none.
+    pub fn caught(&self) -> Option<(u8, &'static str)> {
+        let code = self.caught.load(Ordering::SeqCst);
+        KNOWN.into_iter().find(|known| usize::from(known.1) == code).map(|(_, code, word)| (code, word))
+    }
+}

@@ -1,0 +1,265 @@
+//! What the computations of a run result in, as bytes and back.
+//!
+//! A state is stored as its spins: its gradient and Hessian follow from them to the last bit.
+
+use super::bytes::{Reader, Writer};
+use super::climb::Found;
+use super::ends::Relaxed;
+use super::minimum::{Link, Minimum};
+use super::outcome::HistoryRow;
+use super::top::Top;
+use super::{Scales, Stop};
+use crate::energy::Hamiltonian;
+use crate::path::Path;
+use crate::saddle::{Refined, Spectrum, State, Verdict};
+use crate::spins::Spins;
+
+/// A result that can be stored. Reading gives nothing where the bytes are not such a result.
+pub trait Stored: Sized {
+    /// Tells the kinds of computations apart.
+    const KIND: usize;
+
+    fn write(&self, w: &mut Writer);
+
+    fn read(r: &mut Reader, h: &Hamiltonian) -> Option<Self>;
+}
+
+/// Spins of a chain of the Hamiltonian's length.
+fn row_of(r: &mut Reader, h: &Hamiltonian) -> Option<Vec<f64>> {
+    r.row().filter(|row| row.len() == 3 * h.sites())
+}
+
+fn spins(r: &mut Reader, h: &Hamiltonian) -> Option<Spins> {
+    row_of(r, h).map(|row| Spins::from_unit_components(&row))
+}
+
+impl Stored for Relaxed {
+    const KIND: usize = 1;
+
+    fn write(&self, w: &mut Writer) {
+        w.row(self.spins.as_slice());
+        w.real(self.max_torque_mev);
+        w.whole(self.steps);
+        w.real(self.largest_rotation_rad);
+        w.flag(self.left_saddle);
+        w.flag(self.converged);
+    }
+
+    fn read(r: &mut Reader, h: &Hamiltonian) -> Option<Relaxed> {
+        Some(Relaxed {
+            spins: spins(r, h)?,
+            max_torque_mev: r.real()?,
+            steps: r.whole()?,
+            largest_rotation_rad: r.real()?,
+            left_saddle: r.flag()?,
+            converged: r.flag()?,
+        })
+    }
+}
+
+impl Stored for Scales {
+    const KIND: usize = 2;
+
+    fn write(&self, w: &mut Writer) {
+        [self.stiffness_mev, self.exchange_mev, self.wall_width_sites].into_iter().for_each(|x| w.real(x));
+    }
+
+    fn read(r: &mut Reader, _: &Hamiltonian) -> Option<Scales> {
+        Some(Scales { stiffness_mev: r.real()?, exchange_mev: r.real()?, wall_width_sites: r.real()? })
+    }
+}
+
+const VERDICTS: [Verdict; 5] = [Verdict::Saddle, Verdict::Flat, Verdict::HigherIndex, Verdict::Left, Verdict::Stalled];
+
+impl Stored for Found {
+    const KIND: usize = 3;
+
+    fn write(&self, w: &mut Writer) {
+        let Found { top, refined } = self;
+        w.row(&top.m);
+        w.row(&top.tau);
+        w.real(top.energy_mev);
+        w.real(top.s);
+        w.whole(top.image);
+        w.whole(VERDICTS.iter().position(|v| *v == refined.verdict).unwrap_or(VERDICTS.len()));
+        w.row(&refined.state.m);
+        w.row(&refined.valley);
+        w.whole(refined.steps);
+        w.whole(refined.factorisations);
+        w.whole(refined.index);
+        w.real(refined.curvature_mev);
+        w.real(refined.rotation_rad);
+    }
+
+    fn read(r: &mut Reader, h: &Hamiltonian) -> Option<Found> {
+        let top = Top { m: row_of(r, h)?, tau: row_of(r, h)?, energy_mev: r.real()?, s: r.real()?, image: r.whole()? };
+        let refined = Refined {
+            verdict: *VERDICTS.get(r.whole()?)?,
+            state: State::at(h, row_of(r, h)?),
+            valley: row_of(r, h)?,
+            steps: r.whole()?,
+            factorisations: r.whole()?,
+            index: r.whole()?,
+            curvature_mev: r.real()?,
+            rotation_rad: r.real()?,
+        };
+        Some(Found { top, refined })
+    }
+}
+
+impl Stored for Vec<Found> {
+    const KIND: usize = 4;
+
+    fn write(&self, w: &mut Writer) {
+        w.whole(self.len());
+        self.iter().for_each(|found| found.write(w));
+    }
+
+    fn read(r: &mut Reader, h: &Hamiltonian) -> Option<Vec<Found>> {
+        r.list(|r| Found::read(r, h))
+    }
+}
+
+impl Stored for Spectrum {
+    const KIND: usize = 5;
+
+    fn write(&self, w: &mut Writer) {
+        [self.negative, self.flat, self.zero].into_iter().for_each(|n| w.whole(n));
+        w.real(self.floor_mev);
+        w.real(self.norm_mev);
+        w.row(&self.lowest_mev);
+    }
+
+    fn read(r: &mut Reader, _: &Hamiltonian) -> Option<Spectrum> {
+        Some(Spectrum {
+            negative: r.whole()?,
+            flat: r.whole()?,
+            zero: r.whole()?,
+            floor_mev: r.real()?,
+            norm_mev: r.real()?,
+            lowest_mev: r.row()?,
+        })
+    }
+}
+
+impl Stored for Minimum {
+    const KIND: usize = 6;
+
+    fn write(&self, w: &mut Writer) {
+        w.row(self.spins.as_slice());
+        w.real(self.energy_mev);
+        w.real(self.max_torque_mev);
+        self.spectrum.write(w);
+    }
+
+    fn read(r: &mut Reader, h: &Hamiltonian) -> Option<Minimum> {
+        Some(Minimum {
+            spins: spins(r, h)?,
+            energy_mev: r.real()?,
+            max_torque_mev: r.real()?,
+            spectrum: Spectrum::read(r, h)?,
+        })
+    }
+}
+
+impl Stored for Link {
+    const KIND: usize = 7;
+
+    fn write(&self, w: &mut Writer) {
+        self.found.write(w);
+        self.spectrum.write(w);
+        self.before.write(w);
+        self.after.write(w);
+        self.fallen_mev.iter().for_each(|x| w.real(*x));
+        for way in &self.ways {
+            w.whole(way.len());
+            way.iter().for_each(|spins| w.row(spins.as_slice()));
+        }
+        w.whole(usize::from(self.given));
+    }
+
+    fn read(r: &mut Reader, h: &Hamiltonian) -> Option<Link> {
+        Some(Link {
+            found: Found::read(r, h)?,
+            spectrum: Spectrum::read(r, h)?,
+            before: Minimum::read(r, h)?,
+            after: Minimum::read(r, h)?,
+            fallen_mev: [r.real()?, r.real()?],
+            ways: [r.list(|r| spins(r, h))?, r.list(|r| spins(r, h))?],
+            given: r.whole()? == 1,
+        })
+    }
+}
+
+impl Stored for Vec<Path> {
+    const KIND: usize = 8;
+
+    fn write(&self, w: &mut Writer) {
+        w.whole(self.len());
+        for path in self {
+            w.whole(path.images());
+            (0..path.images()).for_each(|k| w.row(path.image(k)));
+        }
+    }
+
+    fn read(r: &mut Reader, h: &Hamiltonian) -> Option<Vec<Path>> {
+        r.list(|r| {
+            let images = r.list(|r| spins(r, h))?;
+            (images.len() >= 2).then(|| Path::new(&images))
+        })
+    }
+}
+
+impl Stored for Stop {
+    const KIND: usize = 9;
+
+    fn write(&self, w: &mut Writer) {
+        let (word, numbers) = match *self {
+            Stop::Converged { rotation, tolerance } => (0, (0, rotation, tolerance)),
+            Stop::MaxEvaluations { evaluations, rotation, tolerance } => (1, (evaluations, rotation, tolerance)),
+            Stop::Stalled { evaluations, rotation, tolerance } => (2, (evaluations, rotation, tolerance)),
+            Stop::NotFinite => (3, (0, 0.0, 0.0)),
+        };
+        w.whole(word);
+        w.whole(numbers.0);
+        w.real(numbers.1);
+        w.real(numbers.2);
+    }
+
+    fn read(r: &mut Reader, _: &Hamiltonian) -> Option<Stop> {
+        let (word, evaluations, rotation, tolerance) = (r.whole()?, r.whole()?, r.real()?, r.real()?);
+        match word {
+            0 => Some(Stop::Converged { rotation, tolerance }),
+            1 => Some(Stop::MaxEvaluations { evaluations, rotation, tolerance }),
+            2 => Some(Stop::Stalled { evaluations, rotation, tolerance }),
+            3 => Some(Stop::NotFinite),
+            _ => None,
+        }
+    }
+}
+
+/// Rows of a history.
+pub fn write_history(rows: &[HistoryRow], w: &mut Writer) {
+    w.whole(rows.len());
+    for row in rows {
+        w.whole(row.iteration);
+        w.whole(row.images);
+        w.real(row.max_perpendicular_torque_mev);
+        w.real(row.largest_predicted_rotation_rad);
+        w.real(row.highest_image_mev);
+        w.real(row.length_rad);
+    }
+}
+
+pub fn read_history(r: &mut Reader) -> Option<Vec<HistoryRow>> {
+    r.list(|r| {
+        Some(HistoryRow {
+            iteration: r.whole()?,
+            images: r.whole()?,
+            max_perpendicular_torque_mev: r.real()?,
+            largest_predicted_rotation_rad: r.real()?,
+            highest_image_mev: r.real()?,
+            length_rad: r.real()?,
+        })
+    })
+}

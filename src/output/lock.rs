@@ -1,0 +1,136 @@
+//! One run at a time in a folder: a lock that the system takes away when the process ends, however it ends.
+
+use crate::error::{Error, Result};
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{self, ErrorKind, Read, Seek, Write};
+use std::path::{Path, PathBuf};
+
+/// The file that is locked; it is there only while somebody works in the folder, or after a kill.
+const NAME: &str = ".spinneb.lock";
+/// How often a lock is tried whose file the last holder just took away.
+const TRIES: usize = 100;
+
+/// Held until it is dropped.
+#[derive(Debug)]
+pub struct Lock {
+    path: PathBuf,
+    file: File,
+    sure: bool,
+}
+
+impl Lock {
+    /// Locks an existing folder. An error ([`ErrorKind::WouldBlock`]) that names the holder where somebody has it.
+    pub fn of(directory: &Path) -> Result<Lock> {
+        let path = directory.join(NAME);
+        let io_error = |source| Error::Io { path: path.clone(), source };
+        for _ in 0..TRIES {
+            let mut options = OpenOptions::new();
+            let file = options.read(true).write(true).create(true).truncate(false).open(&path).map_err(io_error)?;
+            let sure = match file.try_lock() {
+                Ok(()) => true,
+                Err(TryLockError::WouldBlock) => return Err(held(directory, file)),
+                Err(TryLockError::Error(e)) if e.kind() == ErrorKind::Unsupported => false,
+                Err(TryLockError::Error(e)) => return Err(io_error(e)),
+            };
+            if is_still(&file, &path) {
+                let mut lock = Lock { path, file, sure };
+                // who holds it is a courtesy to others
+                let _ = lock.sign();
+                return Ok(lock);
+            }
+        }
+        Err(held(directory, File::open(&path).map_err(io_error)?))
+    }
+
+    /// Whether the file of a lock is there, held or left by a kill.
+    pub fn is_left(directory: &Path) -> bool {
+        directory.join(NAME).exists()
+    }
+
+    /// Whether the file system knows locks: where not, nothing keeps another run away.
+    pub fn is_sure(&self) -> bool {
+        self.sure
+    }
+
+    fn sign(&mut self) -> io::Result<()> {
+        self.file.set_len(0)?;
+        self.file.rewind()?;
+        let host = fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
+        let host = host.trim();
+        let place = if host.is_empty() { String::new() } else { format!(" on {host}") };
+        self.file.write_all(format!("process {}{place}", std::process::id()).as_bytes())
+    }
+}
+
+impl Drop for Lock {
+    fn drop(&mut self) {
+        // first the name, then the lock: who has opened the file meanwhile sees that it has lost its name
+        let _ = fs::remove_file(&self.path);
+    }
+}
+
+/// Whether the path still leads to the file.
+#[cfg(unix)]
+fn is_still(file: &File, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let place = |m: io::Result<fs::Metadata>| m.ok().map(|m| (m.dev(), m.ino()));
+    let open = place(file.metadata());
+    open.is_some() && open == place(fs::metadata(path))
+}
+
+/// An open file keeps its name.
+#[cfg(not(unix))]
+fn is_still(_: &File, _: &Path) -> bool {
+    true
+}
+
+fn held(directory: &Path, mut file: File) -> Error {
+    let mut who = String::new();
+    let _ = file.read_to_string(&mut who);
+    let who = if who.is_empty() { "another run".to_string() } else { format!("another run ({who})") };
+    let words = format!("{who} is at work in this directory: wait for it, or give another with --out");
+    Error::Io { path: directory.into(), source: io::Error::new(ErrorKind::WouldBlock, words) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_is_locked_once_and_free_again_afterwards() {
+        let folder = tempfile::tempdir().unwrap();
+        let first = Lock::of(folder.path()).unwrap();
+        assert!(first.is_sure());
+        let Err(Error::Io { source, .. }) = Lock::of(folder.path()) else { panic!("locked twice") };
+        assert_eq!(source.kind(), ErrorKind::WouldBlock);
+        let me = format!("another run (process {}", std::process::id());
+        assert!(source.to_string().starts_with(&me), "{source}");
+        drop(first);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+        // a file that a killed run left is no lock
+        fs::write(folder.path().join(NAME), "process 1").unwrap();
+        Lock::of(folder.path()).unwrap();
+    }
+
+    #[test]
+    fn of_many_at_once_one_has_the_lock_at_any_time() {
+        let folder = tempfile::tempdir().unwrap();
+        let (inside, got) = (std::sync::atomic::AtomicUsize::new(0), std::sync::atomic::AtomicUsize::new(0));
+        use std::sync::atomic::Ordering::SeqCst;
+        std::thread::scope(|scope| {
+            for _ in 0..8 {
+                scope.spawn(|| {
+                    for _ in 0..200 {
+                        let Ok(lock) = Lock::of(folder.path()) else { continue };
+                        assert_eq!(inside.fetch_add(1, SeqCst), 0);
+                        std::thread::yield_now();
+                        inside.fetch_sub(1, SeqCst);
+                        got.fetch_add(1, SeqCst);
+                        drop(lock);
+                    }
+                });
+            }
+        });
+        assert!(got.load(SeqCst) > 200);
+    }
+}
