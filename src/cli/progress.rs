@@ -68,19 +68,19 @@ impl Drop for Progress<'_> {
 impl Observer for Progress<'_> {
     fn iteration(&mut self, row: &HistoryRow) {
         self.decline.add(Instant::now(), row.largest_predicted_rotation_rad);
-        let words = || {
-            let left = self.decline.left().map_or(String::new(), |left| format!(", about {} left", rough(left)));
-            format!(
-                "iteration {}, {} images: highest {:.6} meV, still turning by {:.1e} rad{left}",
-                row.iteration, row.images, row.highest_image_mev, row.largest_predicted_rotation_rad
-            )
-        };
+        let left = || self.decline.left().map_or(String::new(), |left| format!(", about {} left", rough(left)));
+        let (n, images) = (row.iteration, row.images);
+        let (highest, rotation) = (row.highest_image_mev, row.largest_predicted_rotation_rad);
         if let Some(bar) = &self.bar {
-            bar.set_message(format!("{}; {}", self.stage, words()));
+            // the end of a long line is not seen
+            let numbers = format!("{n}: {highest:.4} meV, {rotation:.0e} rad{}", left());
+            bar.set_message(format!("{numbers}; {images} images, {}", self.stage));
             bar.set_position((self.decline.done() * PARTS as f64) as u64);
         } else if self.last.elapsed() >= Duration::from_secs(1) {
-            let words = words();
-            self.say(&words);
+            let left = left();
+            self.say(&format!(
+                "iteration {n}, {images} images: highest {highest:.6} meV, still turning by {rotation:.1e} rad{left}"
+            ));
         }
     }
 
