@@ -76,7 +76,7 @@ class Browser:
             raise RuntimeError(f"{script}: {done['exceptionDetails']}")
         return done["result"].get("value")
 
-    def until(self, script, seconds=20):
+    def until(self, script, seconds=60):
         """Waits for a script to be true in the page."""
         end = time.monotonic() + seconds
         while not self.run(script):
