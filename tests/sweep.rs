@@ -81,7 +81,7 @@ fn a_sweep_runs_every_point_and_collects_them_and_what_is_done_is_not_run_again(
     ];
     assert_eq!(rows[0], head);
     assert_eq!(rows.len(), 7);
-    assert_eq!((rows[4][0].as_str(), rows[4][1].as_str(), rows[4][2].as_str()), ("3", "4.0", "0.1"));
+    assert_eq!((rows[4][0].as_str(), rows[4][1].as_str(), rows[4][2].as_str()), ("3", "4", "0.1"));
     assert_eq!(rows[4][5..], ["true", "true", "1", "1", "certified", "sites_4__K_0.1meV"]);
     let svg = text(folder.path(), "results/many/barriers.svg");
     assert!(svg.starts_with("<svg") && svg.contains("K (meV)") && svg.contains("sites = 3"), "{svg}");

@@ -1,7 +1,7 @@
 //! `barriers.csv`: a row a point, also for those that are missing, whose cells are empty.
 
 use super::found::Prefactors;
-use super::{Found, PointState, SweepIndex, word};
+use super::{Found, IndexedPoint, PointState, SweepIndex, word};
 use crate::error::Result;
 use crate::output::csv::{Cell, Table};
 
@@ -12,6 +12,10 @@ pub fn sweep_table(index: &SweepIndex, states: &[PointState]) -> Result<Vec<u8>>
     for k in 0..index.keys.len() {
         let parameter = index.parameter(k);
         let cells = match &parameter.numbers {
+            Some(_) if index.points.iter().all(|p| p.values[k].is_u64()) => {
+                let count = |p: &IndexedPoint| p.values[k].as_u64().and_then(|n| usize::try_from(n).ok());
+                index.points.iter().map(|p| count(p).map_or(Cell::Missing, Cell::Whole)).collect()
+            }
             Some(numbers) => numbers.iter().copied().map(Cell::Real).collect(),
             None => index.points.iter().map(|p| Cell::Word(quoted(&word(&p.values[k])))).collect(),
         };
