@@ -30,7 +30,7 @@ pub use csv::{HistoryCsv, PathCsv, ProfileCsv};
 pub use energy_path_plot::{EnergyPath, EnergyPathPlot, draw_energy_paths};
 pub use energy_terms_plot::EnergyTermsPlot;
 pub use magnetisation_plot::MagnetisationPlot;
-pub use plot::{PLOTS, Plot, PlotFile, PlotTable, describe};
+pub use plot::{PLOTS, Plot, PlotFile, PlotTable, WriteTable, describe};
 pub use plot_data::{Lifetimes, PlotData, RateRow};
 pub use rates_csv::RatesCsv;
 pub use spin_files::{OvfImages, PathNpz, PathOvf, SaddleOvf, SpinsCsv, Vtk};
