@@ -120,5 +120,5 @@ fn the_gallery_is_small() {
         let entries = fs::read_dir(folder).unwrap().map(|e| e.unwrap());
         entries.map(|e| if e.path().is_dir() { size(&e.path()) } else { e.metadata().unwrap().len() }).sum()
     }
-    assert!(size(&gallery("")) < 3_500_000, "{} bytes", size(&gallery("")));
+    assert!(size(&gallery("")) < 3_000_000, "{} bytes", size(&gallery("")));
 }

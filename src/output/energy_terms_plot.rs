@@ -6,7 +6,7 @@
 use super::canvas::{BLACK, Canvas, LinePlot, Look, Marker, SERIES, Series, pattern};
 use super::csv::Table;
 use super::energy_path_plot::EnergyUnit;
-use super::{Plot, PlotData};
+use super::{Plot, PlotData, WriteTable};
 use crate::error::Result;
 
 /// The energy path by terms.
@@ -45,7 +45,7 @@ impl Plot for EnergyTermsPlot {
         plot.draw()
     }
 
-    fn table(&self) -> Option<fn(&PlotData) -> Result<Vec<u8>>> {
+    fn table(&self) -> Option<WriteTable> {
         Some(table)
     }
 }

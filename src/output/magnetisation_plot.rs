@@ -8,7 +8,7 @@
 use super::canvas::{BLUE, Canvas, GREEN, LinePlot, Look, Marker, PURPLE, SKY, Series, VERMILLION, decimal, pattern};
 use super::csv::Table;
 use super::energy_path_plot::saddle_marker;
-use super::{Plot, PlotData};
+use super::{Plot, PlotData, WriteTable};
 use crate::error::{Error, Result};
 use crate::geometry::vector::{Vector, dot, sub, unit};
 use crate::path::Path;
@@ -61,7 +61,7 @@ impl Plot for MagnetisationPlot {
         plot.y_range(lo.min(middle - 0.01), hi.max(middle + 0.01)).draw()
     }
 
-    fn table(&self) -> Option<fn(&PlotData) -> Result<Vec<u8>>> {
+    fn table(&self) -> Option<WriteTable> {
         Some(table)
     }
 }

@@ -41,7 +41,7 @@ pub use energy_terms_plot::EnergyTermsPlot;
 pub use lock::Lock;
 pub use magnetisation_plot::MagnetisationPlot;
 pub use partial::{StoppedRun, discard_partial, is_partial_left, partial_files};
-pub use plot::{PLOTS, Plot, PlotFile, PlotTable, describe};
+pub use plot::{PLOTS, Plot, PlotFile, PlotTable, WriteTable, describe};
 pub use plot_data::{Lifetimes, PlotData, RateRow};
 pub use rates_csv::RatesCsv;
 pub use relaxed::{RelaxReport, StateReport, relaxed_file_names};

@@ -7,6 +7,9 @@ use super::{
 };
 use crate::error::Result;
 
+/// What writes the numbers of a figure as a table.
+pub type WriteTable = fn(&PlotData) -> Result<Vec<u8>>;
+
 /// A figure.
 pub trait Plot: Sync {
     /// The name of its files, without the ending.
@@ -21,7 +24,7 @@ pub trait Plot: Sync {
     fn draw(&self, data: &PlotData, look: &Look) -> Result<Canvas>;
 
     /// What writes its numbers as a table, where no other file of a result has them.
-    fn table(&self) -> Option<fn(&PlotData) -> Result<Vec<u8>>> {
+    fn table(&self) -> Option<WriteTable> {
         None
     }
 }
@@ -75,7 +78,7 @@ impl Format for PlotFile {
 #[derive(Clone, Copy)]
 pub struct PlotTable {
     plot: &'static dyn Plot,
-    write: fn(&PlotData) -> Result<Vec<u8>>,
+    write: WriteTable,
 }
 
 impl PlotTable {

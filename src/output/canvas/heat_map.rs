@@ -59,8 +59,12 @@ pub fn colour_bar(
     labels: &[(f64, &str)],
     colour: impl Fn(f64) -> Colour,
 ) -> Result<()> {
-    const STEPS: usize = 128;
-    rectangles(canvas, rect, 1, STEPS, |_, k| colour((k as f64 + 0.5) / STEPS as f64));
+    // as a small image: many more rectangles than the map itself may have would be a large file
+    const STEPS: usize = 256;
+    const WIDE: usize = 32;
+    let step = |k: usize| colour((k as f64 + 0.5) / STEPS as f64);
+    let rgb = (0..STEPS).rev().map(step).flat_map(|Colour(r, g, b)| std::iter::repeat_n([r, g, b], WIDE).flatten());
+    canvas.raster(rect, WIDE, STEPS, rgb.collect());
     canvas.outline(rect, THIN_PT, BLACK);
     let mut widest: f64 = 0.0;
     for &(f, label) in labels {
