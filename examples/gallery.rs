@@ -24,6 +24,8 @@ type Result<T> = std::result::Result<T, Box<dyn Error>>;
 const LEFT_OUT: [&str; 2] = ["rates.csv", "profile.csv"];
 /// A summary of more bytes than this is kept without most of its white space.
 const LONG: usize = 100_000;
+/// The results whose `report.html` is committed; the others' are there only where the gallery was made.
+const REPORTS: [&str; 2] = ["ring_nucleus", "wall_nucleation"];
 /// The figure of the README, which is kept as pixels too.
 const SHOWN: (&str, &str) = ("wall_nucleation", "energy_path.png");
 
@@ -69,7 +71,7 @@ fn files(loaded: &Loaded, outcome: &Outcome, dir: &Path) -> Result<Vec<File>> {
         look: loaded.look()?,
         outcome,
     };
-    let mut files = render_files(&report, |kind| ["csv", "svg", "png"].contains(&kind.name))?;
+    let mut files = render_files(&report, |kind| ["csv", "svg", "png", "html"].contains(&kind.name))?;
     let shown = |file: &File| (loaded.name.as_str(), file.name.as_str()) == SHOWN;
     files.retain(|file| shown(file) || !file.name.ends_with(".png") && !LEFT_OUT.contains(&file.name.as_str()));
     for file in files.iter_mut().filter(|file| file.name == disk::MARK) {
@@ -123,8 +125,9 @@ Every shipped config as it is run, drawn by
 cargo run --release --example gallery
 ```
 
-which makes this page too. A test compares the committed numbers with a run. Beside each `summary.json` lie its tables and the
-figures shown here; `spinneb run` writes more: the spins as `path.npz` and `path.ovf`, the interpolated energies, and pixels.
+which makes this page too. A test compares the committed numbers with a run. Beside each `summary.json` lie its tables, the
+figures shown here and, where the command has run, `report.html` (two of them are committed); `spinneb run` writes more: the spins
+as `path.npz` and `path.ovf`, the interpolated energies, and pixels.
 ";
 
 fn section(page: &mut String, name: &str, purpose: &str, outcome: &Outcome, files: &[File]) -> Result<()> {
@@ -143,8 +146,9 @@ fn section(page: &mut String, name: &str, purpose: &str, outcome: &Outcome, file
     writeln!(
         page,
         "Barrier: {barrier}; {certified}{reached}; {saddles}, {} images. [Config](../../configs/{name}.json), \
-         [summary]({name}/summary.json).\n",
-        outcome.path.images()
+         [summary]({name}/summary.json){}.\n",
+        outcome.path.images(),
+        if REPORTS.contains(&name) { format!(", [report]({name}/report.html)") } else { String::new() }
     )?;
     let titles = [
         ("energy_path.svg", "Energy path"),
