@@ -7,6 +7,9 @@ use crate::band::Band;
 use crate::geometry::Direction;
 use crate::path::guess::GuessSpec;
 
+/// Barriers that differ by no more than this part are alike.
+const ROUNDING: f64 = 1e-6;
+
 /// A first path on its way.
 pub struct Candidate<'a> {
     /// What it started from.
@@ -62,8 +65,12 @@ pub fn rejection(c: &Candidate, best: &Candidate, scale: f64) -> RejectedPath {
     let found = c.stationary(scale);
     let barrier_mev = Some(c.followed_mev.unwrap_or(c.barrier_mev(scale)));
     let negative_modes = found.map(|f| f.refined.index);
+    let lower = c.followed_mev.map_or(0.0, |mev| best.barrier_mev(scale) - mev);
     let reason = match found {
         Some(f) if f.refined.index > 1 => "its top is a saddle of higher index".to_string(),
+        Some(_) if lower > ROUNDING * best.barrier_mev(scale) => {
+            format!("followed from end to end, it passes {lower:.1e} meV lower, but could not be proven")
+        }
         Some(_) if c.followed_mev.is_some() => {
             format!("followed from end to end, it passes no lower than \"{}\"", best.name)
         }

@@ -26,8 +26,9 @@ pub struct Mode {
 /// The `count` lowest modes of `matrix` in the space orthogonal to `known` (orthonormal vectors, invariant under it),
 /// ascending. Fewer where the space is smaller. Deterministic.
 ///
-/// [`sliced`]; where a factorisation is dear, since the matrix has a tail, block Lanczos on (A + s·1)⁻¹ with full orthogonalisation: blocks of a few vectors, so that degenerate modes are all
-/// found, until the wanted vectors are eigenvectors (Golub, Underwood, Mathematical Software III, 361 (1977),
+/// By Rayleigh-quotient iteration in brackets that the inertia gives (see `slices`); where a factorisation is dear, since the
+/// matrix has a tail, block Lanczos on (A + s·1)⁻¹ with full orthogonalisation: blocks of a few vectors, so that degenerate modes
+/// are all found, until the wanted vectors are eigenvectors (Golub, Underwood, Mathematical Software III, 361 (1977),
 /// doi:10.1016/B978-0-12-587260-7.50018-2). The inertia tells whether one was missed; then the blocks become larger.
 pub fn lowest_modes(matrix: &Banded, count: usize, known: &[Vec<f64>]) -> Vec<Mode> {
     soft_modes(matrix, count, known, f64::INFINITY)
