@@ -328,3 +328,29 @@ fn factors_of_hessians_agree_with_those_of_an_independent_sparse_solver() {
     }
     assert_eq!(signs.len(), 2, "definite and indefinite ones");
 }
+
+#[test]
+fn terms_as_a_config_names_them_have_the_signs_of_their_definitions() {
+    let chain = chain(2, false);
+    let energy = |text: &str, a: [f64; 3], b: [f64; 3]| {
+        let h = Hamiltonian::new(&chain, vec![build(text, &chain)]).unwrap();
+        h.energy_mev(Spins::from_vectors(&[a, b]).unwrap().as_slice())
+    };
+    let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
+    // μ·B of 2 μ_B in 1 T
+    let moment = 2.0 * 5.7883817982e-2;
+    for (text, a, b, expected) in [
+        (r#"{"exchange": {"J": ["3 meV"]}}"#, x, x, -3.0),
+        (r#"{"exchange": {"J": ["3 meV"]}}"#, x, y, 0.0),
+        (r#"{"anisotropy": {"K": "0.5 meV", "axis": [1, 0, 0]}}"#, x, y, -0.5),
+        (r#"{"anisotropy": {"K": "0 meV", "K2": "0.25 meV", "axis": [0, 0, 1]}}"#, z, z, -0.5),
+        (r#"{"cubic_anisotropy": {"K": "3 meV"}}"#, [3f64.sqrt().recip(); 3], z, 1.0),
+        (r#"{"dmi": {"D": "0.3 meV", "direction": [0, 0, 1]}}"#, x, y, 0.3),
+        (r#"{"dmi": {"D": "0.3 meV", "direction": [0, 0, 1]}}"#, y, x, -0.3),
+        (r#"{"zeeman": {"B": ["1 T", "0 T", "0 T"]}}"#, x, y, -moment),
+        (r#"{"zeeman": {"B": ["0 T", "-1 T", "0 T"]}}"#, x, y, moment),
+    ] {
+        let found = energy(text, a, b);
+        assert!((found - expected).abs() < 1e-9, "{text}: {found}, not {expected}");
+    }
+}
