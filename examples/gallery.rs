@@ -11,7 +11,7 @@ use serde_json::Value;
 use spinneb::config::{Loaded, load};
 use spinneb::drive::{Outcome, Silent, run};
 use spinneb::output::disk::{self, File};
-use spinneb::output::{RunReport, known_files, render_files};
+use spinneb::output::{known_files, render_files};
 use std::error::Error;
 use std::fmt::Write;
 use std::fs;
@@ -61,17 +61,7 @@ fn configs(root: &Path) -> Result<Vec<PathBuf>> {
 
 /// The files of a result that are kept.
 fn files(loaded: &Loaded, outcome: &Outcome, dir: &Path) -> Result<Vec<File>> {
-    let report = RunReport {
-        name: &loaded.name,
-        version: env!("CARGO_PKG_VERSION"),
-        config_sha256: &loaded.sha256,
-        config_text: &loaded.as_run,
-        inputs: &loaded.inputs,
-        chain: loaded.chain(),
-        look: loaded.look()?,
-        outcome,
-    };
-    let mut files = render_files(&report, |kind| ["csv", "svg", "png", "html"].contains(&kind.name))?;
+    let mut files = render_files(&loaded.report(outcome)?, |kind| ["csv", "svg", "png", "html"].contains(&kind.name))?;
     let shown = |file: &File| (loaded.name.as_str(), file.name.as_str()) == SHOWN;
     files.retain(|file| shown(file) || !file.name.ends_with(".png") && !LEFT_OUT.contains(&file.name.as_str()));
     for file in files.iter_mut().filter(|file| file.name == disk::MARK) {

@@ -3,7 +3,7 @@
 use serde_json::Value;
 use spinneb::config::{Loaded, load};
 use spinneb::drive::{Silent, run};
-use spinneb::output::{RunReport, render_files};
+use spinneb::output::render_files;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -51,16 +51,7 @@ fn committed_summaries_and_tables_are_those_of_a_run_to_the_last_digit() {
         let loaded = config(&name);
         let outcome = run(&loaded.problem().unwrap(), &mut Silent).unwrap();
         let reported = REPORTS.contains(&name.as_str());
-        let report = RunReport {
-            name: &loaded.name,
-            version: env!("CARGO_PKG_VERSION"),
-            config_sha256: &loaded.sha256,
-            config_text: &loaded.as_run,
-            inputs: &loaded.inputs,
-            chain: loaded.chain(),
-            look: loaded.look().unwrap(),
-            outcome: &outcome,
-        };
+        let report = loaded.report(&outcome).unwrap();
         for file in render_files(&report, |kind| kind.name == "csv" || (kind.name == "html" && reported)).unwrap() {
             let stored = gallery(&name).join(&file.name);
             let shown = stored.display();

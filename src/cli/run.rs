@@ -10,7 +10,7 @@ use spinneb::drive::{self, Observer, Outcome, Recorder};
 use spinneb::error::Error;
 use spinneb::output::disk::{self, Destination};
 use spinneb::output::{
-    Checkpoint, Group, Kind, Lock, RunReport, StoppedRun, discard_partial, is_partial_left, known_files, partial_files,
+    Checkpoint, Group, Kind, Lock, StoppedRun, discard_partial, is_partial_left, known_files, partial_files,
     render_files,
 };
 use std::collections::HashMap;
@@ -228,7 +228,7 @@ fn leave_partial(
     let (name, sha) = (loaded.name.as_str(), loaded.sha256.as_str());
     let stopped = StoppedRun { name, version: VERSION, config_sha256: sha, stage, reason: &reason };
     let outcome = recorder.partial().map(|band| drive::partial(problem, band, &reason));
-    let report = outcome.as_ref().map(|outcome| report_of(loaded, outcome)).transpose()?;
+    let report = outcome.as_ref().map(|outcome| loaded.report(outcome)).transpose()?;
     let files = partial_files(&stopped, report.as_ref())?;
     discard_partial(directory)?;
     for file in files {
@@ -260,21 +260,8 @@ fn outcome_recorded(
     Ok(outcome)
 }
 
-fn report_of<'a>(loaded: &'a Loaded, outcome: &'a Outcome) -> spinneb::error::Result<RunReport<'a>> {
-    Ok(RunReport {
-        name: loaded.name.as_str(),
-        version: VERSION,
-        config_sha256: loaded.sha256.as_str(),
-        config_text: &loaded.as_run,
-        inputs: &loaded.inputs,
-        chain: loaded.chain(),
-        look: loaded.look()?,
-        outcome,
-    })
-}
-
 pub(super) fn write(loaded: &Loaded, outcome: &Outcome, directory: &Path) -> spinneb::error::Result<()> {
-    let run = report_of(loaded, outcome)?;
+    let run = loaded.report(outcome)?;
     let output = &loaded.config.output;
     let named = |list: &[String], kind: &Kind| list.iter().any(|name| name == kind.name);
     let files = render_files(&run, |kind| match kind.group {

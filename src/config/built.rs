@@ -1,13 +1,14 @@
 //! From a config to the problem that the drive is given, with every check on the way.
 
 use super::{Loaded, memory};
-use crate::drive::{Images, Problem, Scales};
+use crate::drive::{Images, Outcome, Problem, Scales};
 use crate::energy::{EnergyTerm, Hamiltonian, Medium, TermSpec, symmetry_axes};
 use crate::error::{Error, Result};
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, Vector, angle};
 use crate::lattice::{Chain, Lattice};
 use crate::linalg::slab;
+use crate::output::RunReport;
 use crate::output::canvas::Look;
 use crate::path::guess::GuessContext;
 use crate::path::largest_angle;
@@ -47,6 +48,20 @@ impl Loaded {
     /// How figures look.
     pub fn look(&self) -> Result<Look> {
         self.config.output.look().map_err(|e| self.text.locate(e.within("output")))
+    }
+
+    /// What of a run goes into files.
+    pub fn report<'a>(&'a self, outcome: &'a Outcome) -> Result<RunReport<'a>> {
+        Ok(RunReport {
+            name: &self.name,
+            version: env!("CARGO_PKG_VERSION"),
+            config_sha256: &self.sha256,
+            config_text: &self.as_run,
+            inputs: &self.inputs,
+            chain: self.chain(),
+            look: self.look()?,
+            outcome,
+        })
     }
 
     /// The problem that the config states; an error, with its place, where something cannot be.
