@@ -146,8 +146,7 @@ impl<'a> Krylov<'a> {
             slab::scale(&mut v, 1.0 / size.max(f64::MIN_POSITIVE));
             for _ in 0..2 {
                 for space in [self.known, &self.basis] {
-                    let overlaps: Vec<f64> = slab::overlaps(space, &v).iter().map(|o| -o).collect();
-                    slab::add_all(&mut v, &overlaps, space);
+                    slab::without(&mut v, space);
                 }
             }
             let rest = slab::norm(&v);
@@ -178,8 +177,7 @@ impl<'a> Krylov<'a> {
             if !last {
                 let mut rest = combination(w, &self.images);
                 slab::add_scaled(&mut rest, -theta, &v);
-                let overlaps: Vec<f64> = slab::overlaps(self.known, &rest).iter().map(|o| -o).collect();
-                slab::add_all(&mut rest, &overlaps, self.known);
+                slab::without(&mut rest, self.known);
                 if slab::norm(&rest) > RESIDUAL * theta.abs() {
                     return None;
                 }

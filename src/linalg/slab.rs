@@ -124,6 +124,12 @@ pub fn max_abs(a: &[f64]) -> f64 {
     largest.iter().fold(0.0, |m: f64, x| m.max(*x)) + fold(poison)
 }
 
+/// v minus its parts along orthonormal vectors, all taken at once.
+pub fn without(v: &mut [f64], space: &[Vec<f64>]) {
+    let parts: Vec<f64> = overlaps(space, v).iter().map(|o| -o).collect();
+    add_all(v, &parts, space);
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

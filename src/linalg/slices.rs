@@ -148,8 +148,8 @@ impl<'a> Slices<'a> {
             quotient = slab::dot(&x, &image);
             slab::add_scaled(&mut image, -quotient, &x);
             // what the vectors found before lack in accuracy is not this one's
-            without(&mut image, self.known);
-            without(&mut image, &self.vectors);
+            slab::without(&mut image, self.known);
+            slab::without(&mut image, &self.vectors);
             let noise = 32.0 * f64::EPSILON * self.scale;
             if slab::norm(&image) <= (RESIDUAL * quotient.abs()).max(noise) {
                 self.found.push(quotient);
@@ -168,8 +168,8 @@ impl<'a> Slices<'a> {
                 return None;
             }
             slab::scale(x, 1.0 / largest);
-            without(x, self.known);
-            without(x, &self.vectors);
+            slab::without(x, self.known);
+            slab::without(x, &self.vectors);
             let size = slab::norm(x);
             if size == 0.0 {
                 return None;
@@ -178,10 +178,4 @@ impl<'a> Slices<'a> {
         }
         Some(())
     }
-}
-
-/// v minus its parts along orthonormal vectors.
-fn without(v: &mut [f64], space: &[Vec<f64>]) {
-    let overlaps: Vec<f64> = slab::overlaps(space, v).iter().map(|o| -o).collect();
-    slab::add_all(v, &overlaps, space);
 }

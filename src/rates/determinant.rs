@@ -18,7 +18,7 @@
 
 use super::Unstable;
 use crate::linalg::{Banded, Ldl, slab};
-use crate::saddle::pin;
+use crate::saddle::{accurate, pin, remove};
 
 /// A Hessian whose zero modes are pinned, factorised; without its descending mode, if it has one.
 #[derive(Debug)]
@@ -68,7 +68,7 @@ impl PinnedHessian {
     }
 
     fn leave_out(&mut self, columns: [Vec<f64>; 2], kappa: f64) {
-        let solved = [self.pinned_solution(&columns[0]), self.pinned_solution(&columns[1])];
+        let solved = [0, 1].map(|k| accurate(&self.matrix, &self.factors, &columns[k]));
         let mut schur = [[0.0, 0.0], [0.0, 1.0 / kappa]];
         for i in 0..2 {
             for j in 0..2 {
@@ -83,18 +83,6 @@ impl PinnedHessian {
     /// ln|det'H|, energies in meV; without the descending mode's factor, if that was given.
     pub fn log_determinant(&self) -> f64 {
         self.log_determinant
-    }
-
-    /// The pinned matrix' solution, with one step of refinement.
-    fn pinned_solution(&self, b: &[f64]) -> Vec<f64> {
-        let mut x = b.to_vec();
-        self.factors.solve(&mut x, 1);
-        let mut r = vec![0.0; b.len()];
-        self.matrix.multiply(&x, &mut r);
-        r.iter_mut().zip(b).for_each(|(r, b)| *r = b - *r);
-        self.factors.solve(&mut r, 1);
-        slab::add_scaled(&mut x, 1.0, &r);
-        x
     }
 
     /// The solution of Hx = b in the space orthogonal to the zero modes and the descending one, for the part of b in that space.
@@ -114,14 +102,6 @@ impl PinnedHessian {
 /// ln|det'H| (energies in meV) of a Hessian with these orthonormal zero modes; κ is any stiffness of the Hessian's size (meV).
 pub fn log_determinant(hessian: &Banded, zeros: &[Vec<f64>], kappa: f64) -> f64 {
     PinnedHessian::new(hessian, zeros, None, kappa).log_determinant()
-}
-
-/// v without its parts along orthonormal directions.
-pub(super) fn remove(v: &mut [f64], directions: &[Vec<f64>]) {
-    for d in directions {
-        let overlap = slab::dot(d, v);
-        slab::add_scaled(v, -overlap, d);
-    }
 }
 
 /// The determinant of an n × n matrix of a few rows, by elimination with row exchanges.

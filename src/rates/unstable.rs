@@ -1,10 +1,9 @@
 //! The descending mode of a saddle, and how fast the spins cross the plane normal to it.
 
-use super::determinant::remove;
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::vector;
 use crate::linalg::{lowest_modes, slab};
-use crate::saddle::State;
+use crate::saddle::{State, remove};
 
 /// Most factorisations of a search.
 const ROUNDS: usize = 30;

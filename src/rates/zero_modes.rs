@@ -8,14 +8,13 @@
 //! Rotations are exact zero modes. A translation is one where the lattice is so fine that the energy changes by less than
 //! [`PINNING`] k_BT while the state moves by a site; its eigenvalue ε gives that energy, ε Σ|dm/dx|²/2π² (a cosine).
 
-use super::determinant::remove;
 use super::symmetry::{is_translation_symmetric, period};
 use super::unstable::nearest_mode;
 use crate::energy::Hamiltonian;
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Vector, vector};
 use crate::linalg::{eigen_symmetric, slab};
-use crate::saddle::State;
+use crate::saddle::{State, remove};
 use std::f64::consts::PI;
 
 /// A state that moves freely feels its lattice with less than this part of k_BT.

@@ -157,7 +157,7 @@ pub(crate) fn pin(matrix: &mut Banded, mode: &[f64], used: &mut Vec<usize>, kapp
 }
 
 /// A⁻¹ b with one step of iterative refinement.
-fn accurate(matrix: &Banded, factors: &Ldl, b: &[f64]) -> Vec<f64> {
+pub(crate) fn accurate(matrix: &Banded, factors: &Ldl, b: &[f64]) -> Vec<f64> {
     let mut x = b.to_vec();
     factors.solve(&mut x, 1);
     let mut r = vec![0.0; b.len()];
