@@ -37,7 +37,7 @@ impl<'a> Progress<'a> {
     }
 
     /// What says a line without disturbing the bar.
-    pub fn speaker(&self) -> Box<dyn FnMut(&str)> {
+    pub fn speaker(&self) -> Box<dyn FnMut(&str) + Send> {
         let (name, quiet, bar) = (self.name.to_string(), self.quiet, self.bar.clone());
         Box::new(move |words| {
             let line = format!("{name}: {words}");

@@ -58,12 +58,11 @@ pub fn run(arguments: &Run) -> Result<u8> {
     Ok(code)
 }
 
-/// As many threads as asked for.
+/// As many threads as asked for, else one for each core. This one is among them: it does not wait for the others to begin.
 pub(super) fn start_threads(count: Option<NonZeroUsize>) -> Result<()> {
-    if let Some(n) = count {
-        rayon::ThreadPoolBuilder::new().num_threads(n.get()).build_global().context("the threads cannot be started")?;
-    }
-    Ok(())
+    let count = count.map_or(0, NonZeroUsize::get);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(count).use_current_thread();
+    pool.build_global().context("the threads cannot be started")
 }
 
 /// Where the results of a config go.

@@ -36,7 +36,7 @@ pub use stop::Stop;
 pub use top::{Top, tops};
 
 /// Watches a run.
-pub trait Observer {
+pub trait Observer: Send {
     /// A band was evaluated.
     fn iteration(&mut self, row: &HistoryRow);
 

@@ -17,7 +17,7 @@ use crate::error::{Error, Result};
 use crate::path::Path;
 
 /// Where the record of a run is kept. Calls are counted from 0.
-pub trait Keep {
+pub trait Keep: Send {
     /// The record of call `k` of the interrupted run, if it finished.
     fn finished(&mut self, k: usize) -> Option<Vec<u8>>;
 

@@ -58,7 +58,8 @@ pub fn run(problem: &Problem, observer: &mut dyn Observer) -> Result<Outcome> {
 /// outcome that it would have had.
 pub fn run_recorded(problem: &Problem, observer: &mut dyn Observer, recorder: &mut Recorder) -> Result<Outcome> {
     recorder.begin(problem);
-    Run::prepare(problem, observer, recorder)?.finish()
+    // on a thread of the pool, so that it is not left and entered again for every band
+    rayon::scope(|_| Run::prepare(problem, observer, recorder)?.finish())
 }
 
 /// A path with what is known of it.

@@ -81,7 +81,7 @@ pub struct Checkpoint {
     identity: Option<Identity>,
     interval: Duration,
     saved: Instant,
-    say: Box<dyn FnMut(&str)>,
+    say: Box<dyn FnMut(&str) + Send>,
     journal: Option<File>,
     /// Where the frames of the finished computations are in the journal, and their ends.
     frames: Vec<(u64, u64)>,
@@ -102,7 +102,7 @@ impl Checkpoint {
         version: &str,
         config_sha256: &str,
         interval: Duration,
-        say: Box<dyn FnMut(&str)>,
+        say: Box<dyn FnMut(&str) + Send>,
     ) -> Checkpoint {
         Checkpoint {
             folder: directory.join(FOLDER),
