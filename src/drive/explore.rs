@@ -5,7 +5,8 @@
 
 use super::Problem;
 use crate::geometry::{Direction, vector};
-use crate::path::guess::{Edge, Geodesic, GuessContext, GuessSpec, NoiseSpec, Rotation, Sweep, best_turn};
+use crate::path::Path;
+use crate::path::guess::{Edge, Geodesic, GuessContext, GuessSpec, NoiseSpec, Rotation, Sweep, Ways, best_turn};
 use crate::spins::Spins;
 use crate::units::Angle;
 
@@ -18,10 +19,47 @@ const DIFFERENT: f64 = 1e-6;
 /// Walls whose energies differ by this part are alike.
 const ALIKE: f64 = 1e-2;
 /// Images of the way on which alike walls are compared.
-const WAY: usize = 17;
+const WAY: usize = 9;
 
 /// Turns by less (rad) are no rotation of the whole.
 const TURNS: f64 = 0.3;
+
+/// A guess that only needs an axis.
+#[derive(Clone, Copy)]
+enum Natural {
+    Geodesic,
+    Sweep(Edge),
+}
+
+impl Natural {
+    fn geodesic(axis: Direction) -> Geodesic {
+        Geodesic { axis: Some(axis) }
+    }
+
+    fn sweep(from: Edge, axis: Direction) -> Sweep {
+        Sweep { from, width: None, axis: Some(axis) }
+    }
+
+    fn about(self, axis: Direction) -> GuessSpec {
+        match self {
+            Natural::Geodesic => GuessSpec::Geodesic(Self::geodesic(axis)),
+            Natural::Sweep(from) => GuessSpec::Sweep(Self::sweep(from, axis)),
+        }
+    }
+
+    /// Its highest energy between the ends (meV); with 3 images that halfway.
+    fn highest_mev(self, problem: &Problem, ways: &Ways, context: &GuessContext, axis: Direction, images: usize) -> f64 {
+        let path = match self {
+            Natural::Geodesic => Ok(Self::geodesic(axis).along(ways, images, context)),
+            Natural::Sweep(from) => Self::sweep(from, axis).along(ways, images, context),
+        };
+        let energy = |path: Path| {
+            let inner = (1..images - 1).map(|k| problem.hamiltonian.energy_mev(path.image(k)));
+            inner.fold(f64::MIN, f64::max)
+        };
+        path.map_or(f64::INFINITY, energy)
+    }
+}
 
 /// The geodesic; rigid rotations in both senses, where one brings the states together; a wall that enters from either end
 /// (from the middle of a ring): each with the noise it starts with. Opposite spins turn about the axis whose configuration
@@ -34,55 +72,39 @@ pub fn natural_guesses(
     context: &GuessContext,
 ) -> Vec<(GuessSpec, Option<NoiseSpec>)> {
     let mut guesses = Vec::new();
-    let geodesic = |axis| GuessSpec::Geodesic(Geodesic { axis: Some(axis) });
-    guesses.extend(both_senses(problem, a, b, context, &geodesic, None).into_iter().map(|g| (g, None)));
+    let ways = Ways::between(a, b);
+    guesses.extend(both_senses(problem, &ways, context, Natural::Geodesic, None).into_iter().map(|g| (g, None)));
     for axis in rotation_axes(problem, a, b) {
         guesses.push((GuessSpec::Rotation(Rotation { axis: Some(axis) }), None));
     }
     if problem.chain.sites > 1 {
         let edges = if problem.chain.periodic { [Edge::Center, Edge::Left] } else { [Edge::Left, Edge::Right] };
         for from in edges {
-            let sweep = |axis| GuessSpec::Sweep(Sweep { from, width: None, axis: Some(axis) });
             let noise = NoiseSpec { amplitude: Angle(NOISE), seed: 5 };
             // the axis of a wall from the left is that of the context already
             let axis = (from == Edge::Left).then_some(context.default_axis);
-            guesses.extend(both_senses(problem, a, b, context, &sweep, axis).into_iter().map(|g| (g, Some(noise))));
+            let sweeps = both_senses(problem, &ways, context, Natural::Sweep(from), axis);
+            guesses.extend(sweeps.into_iter().map(|g| (g, Some(noise))));
         }
     }
     guesses
 }
 
-/// A guess about its best axis (`axis`, if that is known), and about the same axis the other way round if its image halfway has another energy there.
+/// A guess about its best axis (`axis`, if that is known), and about the same axis the other way round if its image halfway
+/// has another energy there.
 fn both_senses(
     problem: &Problem,
-    a: &Spins,
-    b: &Spins,
+    ways: &Ways,
     context: &GuessContext,
-    guess: &dyn Fn(Direction) -> GuessSpec,
+    guess: Natural,
     axis: Option<Direction>,
 ) -> Vec<GuessSpec> {
-    let cost = |axis: Direction, images: usize| highest_mev(problem, a, b, context, &guess(axis), images);
-    let axis = axis.unwrap_or_else(|| best_axis(problem, a, b, cost));
+    let cost = |axis: Direction, images: usize| guess.highest_mev(problem, ways, context, axis, images);
+    let axis = axis.unwrap_or_else(|| best_axis(problem, ways, cost));
     let other = axis.reversed();
-    let differ = match (cost(axis, 3), cost(other, 3)) {
-        (Some(e), Some(f)) => (e - f).abs() > DIFFERENT * problem.hamiltonian.stiffness_mev(),
-        _ => false,
-    };
-    if differ { vec![guess(axis), guess(other)] } else { vec![guess(axis)] }
-}
-
-/// Highest energy of a guess between its ends (meV); with 3 images that halfway.
-fn highest_mev(
-    problem: &Problem,
-    a: &Spins,
-    b: &Spins,
-    context: &GuessContext,
-    guess: &GuessSpec,
-    images: usize,
-) -> Option<f64> {
-    let path = guess.member().path(a, b, images, context).ok()?;
-    let energy = |k: usize| problem.hamiltonian.energy_mev(path.image(k));
-    Some((1..images - 1).map(energy).fold(f64::MIN, f64::max))
+    let least = DIFFERENT * problem.hamiltonian.stiffness_mev();
+    let differ = ways.have_a_choice() && (cost(axis, 3) - cost(other, 3)).abs() > least;
+    if differ { vec![guess.about(axis), guess.about(other)] } else { vec![guess.about(axis)] }
 }
 
 /// Axes (x, y, z and the symmetry axes, both senses of a half turn) about which a rigid turn brings a to b, all spins to a
@@ -111,29 +133,33 @@ fn rotation_axes(problem: &Problem, a: &Spins, b: &Spins) -> Vec<Direction> {
 /// The axis about which opposite spins turn: of ±x, ±y, ±z and the symmetry axes, the one whose wall halfway is lowest; see
 /// [`best_axis`] for walls that move.
 pub fn turning_axis(problem: &Problem, a: &Spins, b: &Spins, context: &GuessContext) -> Direction {
-    let wall = |axis| GuessSpec::Sweep(Sweep { from: Edge::Left, width: None, axis: Some(axis) });
-    best_axis(problem, a, b, |axis, images| highest_mev(problem, a, b, context, &wall(axis), images))
+    let ways = Ways::between(a, b);
+    let wall = Natural::Sweep(Edge::Left);
+    best_axis(problem, &ways, |axis, images| wall.highest_mev(problem, &ways, context, axis, images))
 }
 
 /// Of ±x, ±y, ±z and the symmetry axes the one of least cost halfway (meV); of equal ones the first. Where that hardly tells and
 /// an end holds a wall (which moves as it is if its spins turn in one sense, and is turned over in the other), the one on whose
 /// way the highest energy is lowest. The cost is asked for with a number of images.
-fn best_axis(problem: &Problem, a: &Spins, b: &Spins, cost: impl Fn(Direction, usize) -> Option<f64>) -> Direction {
+fn best_axis(problem: &Problem, ways: &Ways, cost: impl Fn(Direction, usize) -> f64) -> Direction {
     let h = &problem.hamiltonian;
+    if !ways.have_a_choice() {
+        return Direction::X;
+    }
     let cartesian = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let oblique = h.symmetry_axes().iter().filter(|v| v.iter().all(|c| c.abs() < 1.0));
     let candidates = cartesian.iter().chain(oblique).flat_map(|v| [*v, v.map(|c| -c)]);
     let axes = candidates.filter_map(|axis| Direction::new(axis).ok());
-    let halfway: Vec<(f64, Direction)> = axes.filter_map(|axis| Some((cost(axis, 3)?, axis))).collect();
+    let halfway: Vec<(f64, Direction)> = axes.map(|axis| (cost(axis, 3), axis)).collect();
     let Some((least, first)) = lowest(&halfway, h.stiffness_mev()) else { return Direction::X };
-    let above = (least - h.energy_mev(a.as_slice())).abs();
+    let above = (least - h.energy_mev(ways.a.as_slice())).abs();
     let near = least + ALIKE * above + 1e-9 * h.stiffness_mev();
     let alike: Vec<Direction> = halfway.iter().filter(|(e, _)| *e <= near).map(|(_, axis)| *axis).collect();
-    if alike.len() < 2 || !(holds_wall(a) || holds_wall(b)) {
+    if alike.len() < 2 || !(holds_wall(ways.a) || holds_wall(ways.b)) {
         return first;
     }
-    let ways: Vec<(f64, Direction)> = alike.iter().filter_map(|axis| Some((cost(*axis, WAY)?, *axis))).collect();
-    lowest(&ways, h.stiffness_mev()).map_or(first, |(_, axis)| axis)
+    let along: Vec<(f64, Direction)> = alike.iter().map(|axis| (cost(*axis, WAY), *axis)).collect();
+    lowest(&along, h.stiffness_mev()).map_or(first, |(_, axis)| axis)
 }
 
 /// The first of the lowest (meV).

@@ -228,11 +228,22 @@ impl<'a, 'o> Run<'a, 'o> {
             let before = c.band.images();
             self.resolve(c, more)?;
             let images = c.band.images();
+            self.seat_top(c);
             self.relax(c, Goal::Tight, c.band.evaluations().saturating_add(more))?;
             let finer = self.is_coarse(c) && images > before && images < MOST_IMAGES;
             if !finer || !c.stop.is_converged() || more < usize::MAX {
                 return Ok(());
             }
+        }
+    }
+
+    /// Puts the refined top in the place of its image: then the rest of the path need not be relaxed around it once more.
+    fn seat_top(&self, c: &mut Candidate<'a>) {
+        let scale = self.scales.stiffness_mev;
+        if self.problem.neb.climb
+            && let Some(top) = c.found.as_ref().filter(|f| f.is_saddle(scale))
+        {
+            seat(&mut c.band, std::slice::from_ref(top));
         }
     }
 
@@ -472,7 +483,10 @@ impl<'a, 'o> Run<'a, 'o> {
         let h = &self.problem.hamiltonian;
         let mut found: Vec<Found> = Vec::new();
         for top in tops(&c.band, WINDOW * height(&c.band)) {
-            let f = Found::recorded(h, top, scale, self.scales.half_site_rad(), self.recorder)?;
+            let f = match c.found.as_ref().filter(|f| is_seated(&c.band, top.image, f)) {
+                Some(f) => Found { top, refined: f.refined.clone() },
+                None => Found::recorded(h, top, scale, self.scales.half_site_rad(), self.recorder)?,
+            };
             if f.is_saddle(scale) && !found.iter().any(|g| same(&g.refined.state.m, &f.refined.state.m)) {
                 found.push(f);
             }
@@ -545,6 +559,13 @@ impl<'a, 'o> Run<'a, 'o> {
         c.stop = stop?;
         Ok(())
     }
+}
+
+/// Whether a saddle is image k of a band, and higher than its neighbours.
+fn is_seated(band: &Band, k: usize, saddle: &Found) -> bool {
+    let e = band.energies_mev();
+    let highest = e[k] >= e[k - 1] && e[k] >= e[k + 1];
+    highest && band.is_held(k) && band.path().image(k) == saddle.refined.state.m
 }
 
 /// Puts refined saddles in the place of the images nearest to them, where they fit between the neighbours; says whether any did.

@@ -33,7 +33,7 @@ impl Way {
         if p == q {
             return Way::Rest(p);
         }
-        if angle(p, q) < NEARLY_OPPOSITE {
+        if !are_nearly_opposite(p, q) {
             return Way::Direct(Arc::new(p, q, axis));
         }
         let line = line(p, q);
@@ -68,32 +68,77 @@ fn line(p: Vector, q: Vector) -> Vector {
 
 /// The ways of all spins, the nearly opposite ones about one axis: [`common_axis`].
 pub fn ways(a: &Spins, b: &Spins, axis: Direction) -> Vec<Way> {
-    let axis = common_axis(a, b, axis);
-    (0..a.sites()).into_par_iter().map(|i| Way::new(a.get(i), b.get(i), axis)).collect()
+    Ways::between(a, b).about(axis)
 }
 
 /// The axis about which all nearly opposite spins turn: the given one, unless one of these spins lies along it. Then it is the
 /// next Cartesian axis (x → y → z → x) across all of them, or else the one that stays farthest from them.
 pub fn common_axis(a: &Spins, b: &Spins, axis: Direction) -> Direction {
-    let opposite = |i: &usize| angle(a.get(*i), b.get(*i)) >= NEARLY_OPPOSITE;
-    let lines: Vec<Vector> =
-        (0..a.sites()).into_par_iter().filter(opposite).map(|i| line(a.get(i), b.get(i))).collect();
-    let closest = |k: Direction| {
-        let sine = |l: &Vector| vector::norm(vector::cross(*l, k.vector()));
-        lines.iter().map(sine).fold(f64::INFINITY, f64::min)
-    };
-    let candidates = [axis, next_axis(axis), next_axis(next_axis(axis))];
-    let mut best = (axis, closest(axis));
-    for k in candidates {
-        let sine = closest(k);
-        if sine >= ACROSS {
-            return k;
-        }
-        if sine > best.1 {
-            best = (k, sine);
-        }
+    Ways::between(a, b).common_axis(axis)
+}
+
+/// The ways between two states about any axis: what does not depend on the axis is worked out once.
+#[derive(Clone, Debug)]
+pub struct Ways<'a> {
+    /// From here
+    pub a: &'a Spins,
+    /// to here.
+    pub b: &'a Spins,
+    /// The ways, those of the nearly opposite ones still to be filled in.
+    direct: Vec<Way>,
+    opposite: Vec<usize>,
+}
+
+impl<'a> Ways<'a> {
+    /// From state a to state b of as many spins.
+    pub fn between(a: &'a Spins, b: &'a Spins) -> Ways<'a> {
+        let sites = 0..a.sites();
+        let opposite: Vec<usize> = sites.clone().filter(|&i| are_nearly_opposite(a.get(i), b.get(i))).collect();
+        let direct = sites.into_par_iter().map(|i| match opposite.binary_search(&i) {
+            Ok(_) => Way::Rest(a.get(i)),
+            Err(_) => Way::new(a.get(i), b.get(i), Direction::X),
+        });
+        Ways { a, b, direct: direct.collect(), opposite }
     }
-    best.0
+
+    /// Whether some spin's way depends on the axis.
+    pub fn have_a_choice(&self) -> bool {
+        !self.opposite.is_empty()
+    }
+
+    /// The ways of all spins, the nearly opposite ones about one axis: [`common_axis`].
+    pub fn about(&self, axis: Direction) -> Vec<Way> {
+        let axis = self.common_axis(axis);
+        let mut ways = self.direct.clone();
+        for &i in &self.opposite {
+            ways[i] = Way::new(self.a.get(i), self.b.get(i), axis);
+        }
+        ways
+    }
+
+    fn common_axis(&self, axis: Direction) -> Direction {
+        let closest = |k: Direction| {
+            let sine = |&i: &usize| vector::norm(vector::cross(line(self.a.get(i), self.b.get(i)), k.vector()));
+            self.opposite.iter().map(sine).fold(f64::INFINITY, f64::min)
+        };
+        let candidates = [axis, next_axis(axis), next_axis(next_axis(axis))];
+        let mut best = (axis, 0.0);
+        for (n, k) in candidates.into_iter().enumerate() {
+            let sine = closest(k);
+            if sine >= ACROSS {
+                return k;
+            }
+            if n == 0 || sine > best.1 {
+                best = (k, sine);
+            }
+        }
+        best.0
+    }
+}
+
+/// Whether two spins are farther apart than [`NEARLY_OPPOSITE`].
+fn are_nearly_opposite(p: Vector, q: Vector) -> bool {
+    vector::dot(p, q) < -0.9 && angle(p, q) >= NEARLY_OPPOSITE
 }
 
 /// The Cartesian axis after the one the given axis is nearest to, with its sign.

@@ -2,7 +2,7 @@
 //! √Σθ². K. Shoemake, SIGGRAPH 1985, doi:10.1145/325334.325242. Nearly opposite spins (3 rad apart or more) turn about one
 //! axis, which makes their way longer by 2(π − θ) at the most.
 
-use super::clock::{clocked, fraction, ways};
+use super::clock::{Ways, clocked, fraction};
 use super::{FirstGuess, GuessContext};
 use crate::error::Result;
 use crate::geometry::Direction;
@@ -29,7 +29,14 @@ impl Described for Geodesic {
 
 impl FirstGuess for Geodesic {
     fn path(&self, a: &Spins, b: &Spins, images: usize, context: &GuessContext) -> Result<Path> {
-        let ways = ways(a, b, self.axis.unwrap_or(context.default_axis));
-        Ok(clocked(a, b, images, &ways, |k, _| fraction(k, images)))
+        Ok(self.along(&Ways::between(a, b), images, context))
+    }
+}
+
+impl Geodesic {
+    /// The path along ways that are known.
+    pub(crate) fn along(&self, ways: &Ways, images: usize, context: &GuessContext) -> Path {
+        let about = ways.about(self.axis.unwrap_or(context.default_axis));
+        clocked(ways.a, ways.b, images, &about, |k, _| fraction(k, images))
     }
 }

@@ -13,7 +13,7 @@ mod smooth;
 mod sweep;
 mod waypoints;
 
-pub use clock::{NEARLY_OPPOSITE, Way, common_axis, ways};
+pub use clock::{NEARLY_OPPOSITE, Way, Ways, common_axis, ways};
 pub use file::PathFile;
 pub use geodesic::Geodesic;
 pub use nlerp::{Nlerp, component_sag};

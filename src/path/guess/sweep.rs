@@ -5,10 +5,10 @@
 //! ```
 //! at times T of equal distances √Σ(θ_i Δu_i)². Only sites that move by more than 0.3 rad count for the x_i.
 
-use super::clock::{Way, clocked, fraction, ways};
+use super::clock::{Way, Ways, clocked, fraction};
 use super::{FirstGuess, GuessContext};
 use crate::error::{Error, Result};
-use crate::geometry::{Direction, angle};
+use crate::geometry::Direction;
 use crate::linalg::slab;
 use crate::path::Path;
 use crate::registry::Described;
@@ -74,10 +74,18 @@ impl Described for Sweep {
 
 impl FirstGuess for Sweep {
     fn path(&self, a: &Spins, b: &Spins, images: usize, context: &GuessContext) -> Result<Path> {
-        let sites = a.sites();
-        let moving: Vec<usize> = (0..sites).filter(|&i| angle(a.get(i), b.get(i)) > MOVES).collect();
-        let (first, last) =
-            (moving.first().copied().unwrap_or(0) as f64, moving.last().copied().unwrap_or(sites - 1) as f64);
+        self.along(&Ways::between(a, b), images, context)
+    }
+}
+
+impl Sweep {
+    /// The path along ways that are known.
+    pub(crate) fn along(&self, ways: &Ways, images: usize, context: &GuessContext) -> Result<Path> {
+        let sites = ways.a.sites();
+        let about = ways.about(self.axis.unwrap_or(context.default_axis));
+        let lengths: Vec<f64> = about.iter().map(Way::length).collect();
+        let first = lengths.iter().position(|l| *l > MOVES).unwrap_or(0) as f64;
+        let last = lengths.iter().rposition(|l| *l > MOVES).unwrap_or(sites - 1) as f64;
         let n = last - first + 1.0;
         let width = self.width.unwrap_or((4.0 * context.states.wall_width_sites).clamp(2.0, n.max(2.0)));
         if !(width.is_finite() && width > 0.0) {
@@ -96,9 +104,8 @@ impl FirstGuess for Sweep {
             }
         };
         let entries: Vec<f64> = (0..sites).map(entry).collect();
-        let ways = ways(a, b, self.axis.unwrap_or(context.default_axis));
-        let times = even_times(&entries, &ways, width, images);
-        Ok(clocked(a, b, images, &ways, |k, i| reached(times[k], entries[i], width)))
+        let times = even_times(&entries, &lengths, width, images);
+        Ok(clocked(ways.a, ways.b, images, &about, |k, i| reached(times[k], entries[i], width)))
     }
 }
 
@@ -108,13 +115,12 @@ fn reached(time: f64, entry: f64, width: f64) -> f64 {
 }
 
 /// Times at which neighbouring images are equally far apart: equal steps, stretched and squeezed until the distances agree.
-fn even_times(entries: &[f64], ways: &[Way], width: f64, images: usize) -> Vec<f64> {
+fn even_times(entries: &[f64], lengths: &[f64], width: f64, images: usize) -> Vec<f64> {
     let end = entries.iter().copied().fold(0.0, f64::max) + width;
-    let lengths: Vec<f64> = ways.iter().map(Way::length).collect();
     let mut times: Vec<f64> = (0..images).map(|k| end * fraction(k, images)).collect();
     for _ in 0..ROUNDS {
         let distance = |pair: &[f64]| {
-            let squares: Vec<f64> = (entries.iter().zip(&lengths))
+            let squares: Vec<f64> = (entries.iter().zip(lengths))
                 .map(|(x, l)| (l * (reached(pair[1], *x, width) - reached(pair[0], *x, width))).powi(2))
                 .collect();
             slab::sum(&squares).sqrt()
