@@ -56,8 +56,7 @@ impl Linearised {
         for tries in 1.. {
             self.tries = tries;
             let matrix = self.matrix(band, k);
-            self.factors = matrix.factor();
-            self.solve_border();
+            self.factor(matrix);
             let columns = self.border.len();
             let positive = eigenvalues_symmetric(&self.schur, columns).iter().filter(|e| **e > 0.0).count();
             if self.factors.negatives() + positive <= columns || tries >= SHIFT_TRIES {
@@ -89,11 +88,14 @@ impl Linearised {
             let mut z = memory.next().unwrap_or_default();
             self.basis.write_rotation(*axis, &mut z);
             let size = slab::norm(&z);
+            let mut left = size * size;
             for b in &columns {
                 let overlap = slab::dot(b, &z);
                 slab::add_scaled(&mut z, -overlap, b);
+                left -= overlap * overlap;
             }
-            let rest = slab::norm(&z);
+            // by Pythagoras, unless that loses digits
+            let rest = if left > 0.1 * size * size { left.sqrt() } else { slab::norm(&z) };
             if rest > 1e-6 * size.max(1e-6) {
                 slab::scale(&mut z, 1.0 / rest);
                 columns.push(z);
@@ -102,26 +104,31 @@ impl Linearised {
         self.border = columns;
     }
 
-    /// A⁻¹ C and CᵀA⁻¹C.
-    fn solve_border(&mut self) {
+    /// The factors of A, A⁻¹ C and CᵀA⁻¹C.
+    fn factor(&mut self, matrix: Banded) {
         let columns = self.border.len();
         self.solved.resize(columns, Vec::new());
-        for (s, b) in self.solved.chunks_mut(2).zip(self.border.chunks(2)) {
-            match (s, b) {
-                ([s, t], [b, c]) => self.factors.solve_two(b, c, &mut self.interleaved, s, t),
-                ([s], [b]) => {
-                    s.clone_from(b);
-                    self.factors.solve(s, 1);
-                }
-                _ => {}
+        let (first, rest) = self.solved.split_at_mut(columns.min(2));
+        match (first, &self.border[..]) {
+            ([s, t], [b, c, ..]) => {
+                slab::interleave(b, c, &mut self.interleaved);
+                self.factors = Ldl::solving(matrix, &mut self.interleaved, 2);
+                slab::deinterleave(&self.interleaved, s, t);
             }
+            (first, border) => {
+                let Some((s, b)) = first.first_mut().zip(border.first()) else { return };
+                s.clone_from(b);
+                self.factors = Ldl::solving(matrix, s, 1);
+            }
+        }
+        for (s, b) in rest.iter_mut().zip(&self.border[columns.min(2)..]) {
+            s.clone_from(b);
+            self.factors.solve(s, 1);
         }
         self.schur.resize(columns * columns, 0.0);
         for i in 0..columns {
             for j in 0..=i {
-                let (b, s) = (&self.border, &self.solved);
-                let product = slab::dot(&b[i], &s[j]);
-                let v = if i == j { product } else { 0.5 * (product + slab::dot(&b[j], &s[i])) };
+                let v = slab::dot(&self.border[i], &self.solved[j]);
                 (self.schur[i * columns + j], self.schur[j * columns + i]) = (v, v);
             }
         }

@@ -12,20 +12,90 @@
 //! H is the banded Riemannian Hessian of the image. μ starts at a small part of the stiffness scale c and grows while A has a
 //! negative direction in the complement of C; the count is exact (inertia of the bordered matrix).
 //!
-//! Images that wait for none go first, then those that wait for them, and so on: the images of one such level are solved
-//! side by side, and only as many factorisations are kept as there are threads to make them.
+//! Images that wait for none go first, side by side; the slopes that hang on them after that, each from its top down.
 
 use super::Band;
 use super::linearised::{Linearised, Move, SHIFT_FLOOR};
 use crate::geometry::Vector;
 use rayon::prelude::*;
+use std::collections::VecDeque;
+use std::mem::take;
+use std::sync::{Mutex, PoisonError};
 
 /// The sweep's memory between evaluations: the shifts μ, and room for the linear algebra.
 #[derive(Debug)]
 pub struct Sweep {
     stiffness: f64,
     shifts: Vec<f64>,
-    room: Vec<Linearised>,
+    rooms: Rooms,
+}
+
+/// Room for the linear algebra of as many images as are worked on at a time.
+#[derive(Debug, Default)]
+struct Rooms(Mutex<Vec<Linearised>>);
+
+impl Rooms {
+    fn take(&self) -> Linearised {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_default()
+    }
+
+    fn give_back(&self, room: Linearised) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).push(room);
+    }
+}
+
+/// Images one below the other, each waiting for the one before it.
+struct Slope<'m> {
+    images: Vec<usize>,
+    moves: Vec<&'m mut [f64]>,
+    /// The move that the first one waits for.
+    above: Option<&'m [f64]>,
+    /// The first one, if it is prepared already.
+    ahead: Option<Linearised>,
+}
+
+/// What all images of a sweep need.
+#[derive(Clone, Copy)]
+struct Task<'a> {
+    band: &'a Band<'a>,
+    axes: &'a [Vector],
+    stiffness: f64,
+    shifts: &'a [f64],
+    rooms: &'a Rooms,
+}
+
+impl Task<'_> {
+    fn prepared(&self, k: usize) -> Linearised {
+        let mut room = self.rooms.take();
+        room.prepare(self.band, k, self.axes, self.stiffness, self.shifts[k]);
+        room
+    }
+
+    fn relax(&self, mut room: Linearised, k: usize, above: Option<&[f64]>, y: &mut [f64]) -> (usize, Move) {
+        let done = room.relax(self.band, k, above, y);
+        self.rooms.give_back(room);
+        (k, done)
+    }
+
+    /// Relaxes the images of a slope, `side_by_side` of them prepared at a time.
+    fn descend(&self, slope: Slope, side_by_side: usize) -> Vec<(usize, Move)> {
+        let mut above = slope.above;
+        let mut ready: VecDeque<Linearised> = slope.ahead.into_iter().collect();
+        let mut done = Vec::with_capacity(slope.images.len());
+        for (i, y) in slope.moves.into_iter().enumerate() {
+            if ready.is_empty() {
+                let next = &slope.images[i..slope.images.len().min(i + side_by_side)];
+                ready = match next {
+                    [k] => [self.prepared(*k)].into(),
+                    _ => next.par_iter().map(|k| self.prepared(*k)).collect::<Vec<_>>().into(),
+                };
+            }
+            let room = ready.pop_front().unwrap_or_else(|| self.prepared(slope.images[i]));
+            done.push(self.relax(room, slope.images[i], above, y));
+            above = Some(y);
+        }
+        done
+    }
 }
 
 /// What one sweep amounts to.
@@ -40,7 +110,7 @@ pub struct SweepStep {
 impl Sweep {
     /// With stiffness scale c (meV).
     pub fn new(stiffness: f64) -> Sweep {
-        Sweep { stiffness, shifts: Vec::new(), room: Vec::new() }
+        Sweep { stiffness, shifts: Vec::new(), rooms: Rooms::default() }
     }
 
     /// The shift μ of every image (meV), all that one evaluation tells the next; empty before the first.
@@ -55,61 +125,73 @@ impl Sweep {
 
     /// Writes the tangent moves (rad) of the images between the ends, slab after slab, of an evaluated band.
     pub fn step(&mut self, band: &Band, axes: &[Vector], moves: &mut [f64]) -> SweepStep {
-        let (images, c) = (band.images(), self.stiffness);
-        self.shifts.resize(images, SHIFT_FLOOR * c);
-        let order = by_level(band);
-        let side_by_side = (2 * rayon::current_num_threads()).min(order.len());
-        if self.room.len() < side_by_side {
-            self.room.resize_with(side_by_side, Linearised::default);
-        }
+        self.shifts.resize(band.images(), SHIFT_FLOOR * self.stiffness);
+        let task = Task { band, axes, stiffness: self.stiffness, shifts: &self.shifts, rooms: &self.rooms };
         let mut slabs: Vec<&mut [f64]> = moves.chunks_mut(3 * band.path().sites()).collect();
         slabs.iter_mut().enumerate().filter(|(k, _)| band.is_held(k + 1)).for_each(|(_, y)| y.fill(0.0));
+        let (tops, slopes) = tops_and_slopes(band);
+        let threads = rayon::current_num_threads();
+        let mut at_top: Vec<&mut [f64]> = tops.iter().map(|k| take(&mut slabs[k - 1])).collect();
+        // who has no top to relax prepares what comes next
+        let idle = if tops.is_empty() { 0 } else { threads.saturating_sub(tops.len()) };
+        let firsts: Vec<usize> = slopes.iter().map(|slope| slope[0]).take(idle).collect();
+        let relax_tops = || {
+            let images = tops.par_iter().zip(&mut at_top).with_max_len(1);
+            images.map(|(&k, y)| task.relax(task.prepared(k), k, None, y)).collect::<Vec<_>>()
+        };
+        let prepare_firsts = || firsts.par_iter().with_max_len(1).map(|&k| task.prepared(k)).collect::<Vec<_>>();
+        let (mut done, ahead) = rayon::join(relax_tops, prepare_firsts);
+        let mut ahead = ahead.into_iter();
+        let mut above: Vec<Option<&[f64]>> = vec![None; band.images()];
+        for (k, y) in tops.into_iter().zip(at_top) {
+            above[k] = Some(y);
+        }
+        let mut slope = |images: Vec<usize>| Slope {
+            above: waits_for(band, images[0]).and_then(|k| above[k]),
+            moves: images.iter().map(|k| take(&mut slabs[k - 1])).collect(),
+            ahead: ahead.next(),
+            images,
+        };
+        let side_by_side = threads.div_ceil(slopes.len().max(1));
+        let slopes: Vec<Slope> = slopes.into_iter().map(&mut slope).collect();
+        let descents = slopes.into_par_iter().with_max_len(1);
+        done.extend(descents.flat_map_iter(|slope| task.descend(slope, side_by_side)).collect::<Vec<_>>());
+        self.settle(&done)
+    }
+
+    fn settle(&mut self, done: &[(usize, Move)]) -> SweepStep {
         let mut step = SweepStep { rotation: 0.0, factorisations: 0 };
-        for some in order.chunks(side_by_side.max(1)) {
-            let room = &mut self.room[..some.len()];
-            let shifts = &self.shifts;
-            room.par_iter_mut().zip(some).for_each(|(r, &(_, k))| r.prepare(band, k, axes, c, shifts[k]));
-            let mut first = 0;
-            for level in some.chunk_by(|a, b| a.0 == b.0) {
-                let room = &mut room[first..first + level.len()];
-                first += level.len();
-                for (&(_, k), done) in level.iter().zip(relax(band, room, level, &mut slabs)) {
-                    self.shifts[k] = done.shift;
-                    step.rotation = if done.rotation.is_nan() { f64::NAN } else { done.rotation.max(step.rotation) };
-                    step.factorisations += done.factorisations;
-                }
-                if step.rotation.is_nan() {
-                    return step;
-                }
-            }
+        for (k, image) in done {
+            self.shifts[*k] = image.shift;
+            step.rotation =
+                if (step.rotation + image.rotation).is_nan() { f64::NAN } else { image.rotation.max(step.rotation) };
+            step.factorisations += image.factorisations;
         }
         step
     }
 }
 
-/// The moves of one level, side by side.
-fn relax(band: &Band, room: &mut [Linearised], level: &[(usize, usize)], slabs: &mut [&mut [f64]]) -> Vec<Move> {
-    let mut own: Vec<&mut [f64]> = level.iter().map(|&(_, k)| std::mem::take(&mut slabs[k - 1])).collect();
-    let uphill = |k: usize| band.uphill(k).filter(|u| (1..band.images() - 1).contains(u)).map(|u| &*slabs[u - 1]);
-    let work = room.par_iter_mut().zip(level).zip(&mut own);
-    let moves = work.map(|((r, &(_, k)), y)| r.relax(band, k, uphill(k), y)).collect();
-    for (&(_, k), y) in level.iter().zip(own) {
-        slabs[k - 1] = y;
-    }
-    moves
+/// The image that moves and that image k waits for.
+fn waits_for(band: &Band, k: usize) -> Option<usize> {
+    band.uphill(k).filter(|&u| (1..band.images() - 1).contains(&u) && !band.is_held(u))
 }
 
-/// (level, image) of the images that move: level 0 waits for no other, the others for one of the level before.
-fn by_level(band: &Band) -> Vec<(usize, usize)> {
+/// The images that two others wait for, and the slopes: images that wait for one of those or for none, with those that wait for
+/// them, one after the other. Longest slopes first.
+fn tops_and_slopes(band: &Band) -> (Vec<usize>, Vec<Vec<usize>>) {
     let last = band.images() - 1;
-    let level = |k: usize| {
-        let (mut k, mut steps) = (k, 0);
-        while let Some(u) = band.uphill(k).filter(|u| (1..last).contains(u)) {
-            (k, steps) = (u, steps + 1);
+    let moves = |k: &usize| !band.is_held(*k);
+    let (mut tops, mut slopes) = (Vec::new(), Vec::new());
+    for k in (1..last).filter(moves).filter(|&k| waits_for(band, k).is_none()) {
+        let on: Vec<usize> = (k + 1..last).filter(moves).take_while(|&j| waits_for(band, j) == Some(j - 1)).collect();
+        let back: Vec<usize> = (1..k).rev().filter(moves).take_while(|&j| waits_for(band, j) == Some(j + 1)).collect();
+        if on.is_empty() || back.is_empty() {
+            slopes.push([vec![k], on, back].concat());
+        } else {
+            tops.push(k);
+            slopes.extend([on, back]);
         }
-        steps
-    };
-    let mut order: Vec<(usize, usize)> = (1..last).filter(|&k| !band.is_held(k)).map(|k| (level(k), k)).collect();
-    order.sort_unstable();
-    order
+    }
+    slopes.sort_by_key(|slope| std::cmp::Reverse(slope.len()));
+    (tops, slopes)
 }

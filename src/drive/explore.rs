@@ -48,7 +48,14 @@ impl Natural {
     }
 
     /// Its highest energy between the ends (meV); with 3 images that halfway.
-    fn highest_mev(self, problem: &Problem, ways: &Ways, context: &GuessContext, axis: Direction, images: usize) -> f64 {
+    fn highest_mev(
+        self,
+        problem: &Problem,
+        ways: &Ways,
+        context: &GuessContext,
+        axis: Direction,
+        images: usize,
+    ) -> f64 {
         let path = match self {
             Natural::Geodesic => Ok(Self::geodesic(axis).along(ways, images, context)),
             Natural::Sweep(from) => Self::sweep(from, axis).along(ways, images, context),

@@ -61,9 +61,8 @@ impl TangentBasis {
 
     /// [`coordinates`](Self::coordinates) into the memory of `t`.
     pub fn write_coordinates(&self, v: &[f64], t: &mut Vec<f64>) {
-        t.clear();
         t.resize(2 * v.len() / 3, 0.0);
-        self.add_coordinates(1.0, v, t);
+        write_coordinates(Components::new(&self.first), Components::new(&self.second), Components::new(v), t);
     }
 
     /// Tangent coordinates (2N) of a rotation of all spins about `axis`: a direction in which the energy does not change,
@@ -113,6 +112,19 @@ fn write_basis(
         let (e, f) = tangent_basis([x[i], y[i], z[i]]);
         (ex[i], ey[i], ez[i]) = (e[0], e[1], e[2]);
         (fx[i], fy[i], fz[i]) = (f[0], f[1], f[2]);
+    }
+}
+
+#[multiversion(targets("x86_64+avx2"))]
+fn write_coordinates(e: Components, f: Components, v: Components, t: &mut [f64]) {
+    let n = v.x.len();
+    let (vx, vy, vz) = (&v.x[..n], &v.y[..n], &v.z[..n]);
+    let (ex, ey, ez) = (&e.x[..n], &e.y[..n], &e.z[..n]);
+    let (fx, fy, fz) = (&f.x[..n], &f.y[..n], &f.z[..n]);
+    let t = &mut t[..2 * n];
+    for i in 0..n {
+        t[2 * i] = ex[i] * vx[i] + ey[i] * vy[i] + ez[i] * vz[i];
+        t[2 * i + 1] = fx[i] * vx[i] + fy[i] * vy[i] + fz[i] * vz[i];
     }
 }
 
@@ -171,7 +183,8 @@ fn fill(h: &Hamiltonian, m: &[f64], g: &[f64], basis: &TangentBasis, shift: f64,
         (false, false) => 0,
     };
     let width = if dense { 1 } else { 2 * h.reach() + 1 };
-    matrix.reset(2 * (h.sites() - rim), width, 2 * rim);
+    let plain = if h.has_frozen() { 0 } else { (h.sites() - rim).saturating_sub(h.reach()) };
+    matrix.reset(2 * (h.sites() - rim), width, 2 * rim, 2 * plain);
     let own = h.varying_blocks(Components::new(m));
     let parts = Parts {
         h,
@@ -181,7 +194,6 @@ fn fill(h: &Hamiltonian, m: &[f64], g: &[f64], basis: &TangentBasis, shift: f64,
         basis,
         shift,
     };
-    let plain = if h.has_frozen() { 0 } else { (h.sites() - rim).saturating_sub(h.reach()) };
     parts.write_plain(plain, matrix);
     for i in plain..h.sites() {
         parts.add_site(i, matrix);
@@ -281,8 +293,8 @@ impl Parts<'_> {
             diagonals(self, here.clone(), &mut entries);
             let [ee, fe, ff, _] = &entries;
             for ((_, i), pair) in columns().zip(matrix.column_pairs(first)) {
-                let second = pair.len() / 2;
-                (pair[0], pair[1], pair[second]) = (ee[i], fe[i], ff[i]);
+                let (second, last) = (pair.len() / 2, pair.len() - 1);
+                (pair[0], pair[1], pair[second], pair[last]) = (ee[i], fe[i], ff[i], 0.0);
             }
             for (k, bonds) in self.blocks.bond.iter().enumerate() {
                 couplings(self, bonds, k + 1, here.clone(), &mut entries);

@@ -38,11 +38,13 @@ impl Banded {
         }
     }
 
-    /// Makes it a zero matrix of the given shape, in the memory it has.
-    pub fn reset(&mut self, inner: usize, width: usize, border: usize) {
+    /// Makes it a zero matrix of the given shape, in the memory it has, but for the first `written` columns of the band: all
+    /// their entries are to be written.
+    pub fn reset(&mut self, inner: usize, width: usize, border: usize, written: usize) {
         (self.inner, self.width, self.border) = (inner, width, border);
-        let lengths = [(inner + width) * (width + 1), inner * border, border * border];
-        for (entries, length) in [&mut self.band, &mut self.rim, &mut self.corner].into_iter().zip(lengths) {
+        self.band.resize((inner + width) * (width + 1), 0.0);
+        self.band[written * (width + 1)..].fill(0.0);
+        for (entries, length) in [(&mut self.rim, inner * border), (&mut self.corner, border * border)] {
             entries.clear();
             entries.resize(length, 0.0);
         }
@@ -190,9 +192,9 @@ impl Banded {
         Ldl::of(self)
     }
 
-    /// The largest entry.
+    /// The largest entry; those that are no numbers do not count.
     pub(super) fn size(&self) -> f64 {
-        let entries = slab::max_abs(&self.band).max(slab::max_abs(&self.rim)).max(slab::max_abs(&self.corner));
+        let entries = slab::largest(&self.band).max(slab::largest(&self.rim)).max(slab::largest(&self.corner));
         entries.max(self.tail.as_ref().map_or(0.0, |t| t.norm))
     }
 }
@@ -260,7 +262,10 @@ mod tests {
                 assert_eq!(f.negatives(), eigen.iter().filter(|l| **l < 0.0).count());
                 let log: f64 = eigen.iter().map(|l| l.abs().ln()).sum();
                 assert!((f.log_abs_determinant() - log).abs() < 1e-8 * (1.0 + log.abs()));
+                let mut on_the_way = b.clone();
+                let g = Ldl::solving(a.clone(), &mut on_the_way, columns);
                 f.solve(&mut b, columns);
+                assert_eq!((&on_the_way, g.negatives()), (&b, f.negatives()));
                 let smallest = eigen.iter().fold(f64::MAX, |s, l| s.min(l.abs()));
                 for (p, q) in b.iter().zip(&x) {
                     assert!((p - q).abs() < 1e-11 / smallest, "{p} {q} {smallest}");

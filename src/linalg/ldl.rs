@@ -17,17 +17,37 @@ pub struct Ldl {
 impl Ldl {
     /// The factors of a matrix, in its memory. A pivot smaller than the rounding error of the matrix is replaced by that
     /// error's size, sign kept.
-    pub fn of(mut a: Banded) -> Ldl {
+    pub fn of(a: Banded) -> Ldl {
+        Ldl::solving(a, &mut [], 0)
+    }
+
+    /// The factors of A, and on the way the solution of A X = B as by [`solve`](Self::solve).
+    pub fn solving(mut a: Banded, x: &mut [f64], columns: usize) -> Ldl {
         let floor = 4.0 * f64::EPSILON * a.size().max(1e-280);
-        if a.tail.is_some() {
-            let tail = Some(TailLdl::of(&a, floor));
-            return Ldl { a, tail };
-        }
-        match twisted::width(&a) {
-            Some(1) => twisted::eliminate::<1, 2>(&mut a, floor),
-            Some(3) => twisted::eliminate::<3, 4>(&mut a, floor),
-            Some(5) => twisted::eliminate::<5, 6>(&mut a, floor),
-            _ => eliminate(&mut a, floor),
+        match (twisted::width(&a), columns) {
+            (Some(1), 0) => twisted::eliminate::<1, 2, 0>(&mut a, floor, x),
+            (Some(3), 0) => twisted::eliminate::<3, 4, 0>(&mut a, floor, x),
+            (Some(5), 0) => twisted::eliminate::<5, 6, 0>(&mut a, floor, x),
+            (Some(3), 1) => solving_from_both_ends::<3, 4, 1>(&mut a, floor, x),
+            (Some(3), 2) => solving_from_both_ends::<3, 4, 2>(&mut a, floor, x),
+            (Some(5), 1) => solving_from_both_ends::<5, 6, 1>(&mut a, floor, x),
+            (Some(5), 2) => solving_from_both_ends::<5, 6, 2>(&mut a, floor, x),
+            (Some(_), _) => {
+                let factors = Ldl::of(a);
+                factors.solve(x, columns);
+                return factors;
+            }
+            (None, _) => {
+                let tail = a.tail.is_some().then(|| TailLdl::of(&a, floor));
+                if tail.is_none() {
+                    eliminate(&mut a, floor);
+                }
+                let factors = Ldl { a, tail };
+                if columns > 0 {
+                    factors.solve(x, columns);
+                }
+                return factors;
+            }
         }
         Ldl { a, tail: None }
     }
@@ -37,15 +57,6 @@ impl Ldl {
         self.a
     }
 
-    /// D, or the eigenvalues of its blocks.
-    fn pivots(&self) -> impl Iterator<Item = f64> + '_ {
-        let (s, b) = (self.a.width + 1, self.a.border);
-        let inner = if self.tail.is_some() { 0 } else { self.a.inner };
-        let band = (0..inner).map(move |j| self.a.band[j * s]);
-        let tail = self.tail.iter().flat_map(|t| t.pivots().iter().copied());
-        band.chain((0..b).map(move |r| self.a.corner[r * b + r])).chain(tail)
-    }
-
     /// Number of unknowns.
     pub fn order(&self) -> usize {
         self.a.order()
@@ -53,12 +64,25 @@ impl Ldl {
 
     /// Number of negative eigenvalues of A.
     pub fn negatives(&self) -> usize {
-        self.pivots().filter(|d| *d < 0.0).count()
+        let (band, rest) = self.pivots();
+        let count = |sum: usize, d: &f64| sum + usize::from(*d < 0.0);
+        rest.fold(band.fold(0, count), count)
     }
 
     /// ln|det A|.
     pub fn log_abs_determinant(&self) -> f64 {
-        slab::sum(&self.pivots().map(|d| libm::log(d.abs())).collect::<Vec<f64>>())
+        let (band, rest) = self.pivots();
+        let logs = band.map(|inverse| -libm::log(inverse.abs())).chain(rest.map(|d| libm::log(d.abs())));
+        slab::sum(&logs.collect::<Vec<f64>>())
+    }
+
+    /// 1/D of the band, and the rest of D, or the eigenvalues of its blocks.
+    fn pivots(&self) -> (impl Iterator<Item = &f64>, impl Iterator<Item = &f64>) {
+        let (s, b) = (self.a.width + 1, self.a.border);
+        let inner = if self.tail.is_some() { 0 } else { self.a.inner };
+        let tail = self.tail.iter().flat_map(|t| t.pivots());
+        let corner = (0..b).map(move |r| &self.a.corner[r * b + r]);
+        (self.a.band[..inner * s].iter().step_by(s), corner.chain(tail))
     }
 
     /// Any number of interleaved right-hand sides, one by one.
@@ -68,20 +92,6 @@ impl Ldl {
             one.iter_mut().zip(x[c..].iter().step_by(columns)).for_each(|(o, x)| *o = *x);
             self.solve(&mut one, 1);
             x[c..].iter_mut().step_by(columns).zip(&one).for_each(|(x, o)| *x = *o);
-        }
-    }
-
-    /// x = A⁻¹ a and y = A⁻¹ b, in one pass over the factors; `room` is room to work in.
-    pub fn solve_two(&self, a: &[f64], b: &[f64], room: &mut Vec<f64>, x: &mut Vec<f64>, y: &mut Vec<f64>) {
-        room.resize(2 * a.len(), 0.0);
-        for ((pair, a), b) in room.chunks_exact_mut(2).zip(a).zip(b) {
-            (pair[0], pair[1]) = (*a, *b);
-        }
-        self.solve(room, 2);
-        x.resize(a.len(), 0.0);
-        y.resize(a.len(), 0.0);
-        for ((pair, x), y) in room.chunks_exact(2).zip(x).zip(y) {
-            (*x, *y) = (pair[0], pair[1]);
         }
     }
 
@@ -103,16 +113,20 @@ impl Ldl {
     }
 }
 
-/// Right-looking elimination in place, of any shape.
+fn solving_from_both_ends<const W: usize, const S: usize, const C: usize>(a: &mut Banded, floor: f64, x: &mut [f64]) {
+    twisted::eliminate::<W, S, C>(a, floor, x);
+    twisted::substitute_back::<W, S, C>(a, x);
+}
+
+/// Right-looking elimination in place, of any shape. The inverse pivots stand on the diagonal of the band.
 fn eliminate(m: &mut Banded, floor: f64) {
     let (w, b) = (m.width, m.border);
     let stride = w + 1;
     for j in 0..m.inner {
         let (head, tail) = m.band.split_at_mut((j + 1) * stride);
         let column = &mut head[j * stride..];
-        let d = guarded(column[0], floor);
-        column[0] = d;
-        let inverse = 1.0 / d;
+        let inverse = 1.0 / guarded(column[0], floor);
+        column[0] = inverse;
         for k in 1..=w {
             let l = column[k] * inverse;
             let target = &mut tail[(k - 1) * stride..k * stride];
@@ -215,9 +229,8 @@ fn substitute(m: &Banded, c: usize, x: &mut [f64]) {
         let l = &m.band[j * stride..(j + 1) * stride];
         let (head, tail) = x.split_at_mut((j + 1) * c);
         let xj = &mut head[j * c..];
-        let inverse = 1.0 / l[0];
         for q in 0..c {
-            xj[q] *= inverse;
+            xj[q] *= l[0];
         }
         for k in 1..=w.min(n - 1 - j) {
             for q in 0..c {

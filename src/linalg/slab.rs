@@ -124,10 +124,41 @@ pub fn max_abs(a: &[f64]) -> f64 {
     largest.iter().fold(0.0, |m: f64, x| m.max(*x)) + fold(poison)
 }
 
+/// The largest |a_k|; entries that are no numbers do not count.
+#[multiversion(targets("x86_64+avx2"))]
+pub fn largest(a: &[f64]) -> f64 {
+    let mut largest = [0.0; 16];
+    let chunks = a.chunks_exact(16);
+    let rest = chunks.remainder();
+    for c in chunks {
+        for l in 0..16 {
+            largest[l] = if c[l].abs() > largest[l] { c[l].abs() } else { largest[l] };
+        }
+    }
+    largest.iter().chain(rest).fold(0.0, |m: f64, x| m.max(x.abs()))
+}
+
 /// v minus its parts along orthonormal vectors, all taken at once.
 pub fn without(v: &mut [f64], space: &[Vec<f64>]) {
     let parts: Vec<f64> = overlaps(space, v).iter().map(|o| -o).collect();
     add_all(v, &parts, space);
+}
+
+/// Two columns side by side: a_0, b_0, a_1, b_1, …
+pub fn interleave(a: &[f64], b: &[f64], both: &mut Vec<f64>) {
+    both.resize(2 * a.len(), 0.0);
+    for ((pair, a), b) in both.chunks_exact_mut(2).zip(a).zip(b) {
+        (pair[0], pair[1]) = (*a, *b);
+    }
+}
+
+/// The two columns of [`interleave`].
+pub fn deinterleave(both: &[f64], a: &mut Vec<f64>, b: &mut Vec<f64>) {
+    a.resize(both.len() / 2, 0.0);
+    b.resize(both.len() / 2, 0.0);
+    for ((pair, a), b) in both.chunks_exact(2).zip(a).zip(b) {
+        (*a, *b) = (pair[0], pair[1]);
+    }
 }
 
 #[cfg(test)]
@@ -145,6 +176,7 @@ mod tests {
         }
         assert!(max_abs(&[1.0, f64::NAN, 2.0]).is_nan());
         assert_eq!(max_abs(&[1.0, -3.0]), 3.0);
+        assert_eq!(largest(&[[1.0; 20], [-3.0; 20], [f64::NAN; 20]].concat()), 3.0);
         let (mut v, columns) = (vec![1.0; 5000], [vec![2.0; 5000], (0..5000).map(f64::from).collect()]);
         let sums = overlaps(&columns, &v);
         assert_eq!(sums, [10_000.0, 12_497_500.0]);

@@ -11,13 +11,15 @@
 
 use super::Banded;
 use super::ldl::guarded;
+use wide::f64x2;
 
 /// The two ends.
-type Lanes = [f64; 2];
+type Lanes = f64x2;
 
 /// The half-bandwidth, if a matrix of this shape is eliminated from both ends.
 pub fn width(m: &Banded) -> Option<usize> {
-    ([1, 3, 5].contains(&m.width) && m.border == 0 && m.inner >= 8 * (m.width + 1)).then_some(m.width)
+    let plain = m.border == 0 && m.tail.is_none();
+    (plain && [1, 3, 5].contains(&m.width) && m.inner >= 8 * (m.width + 1)).then_some(m.width)
 }
 
 /// Number of unknowns in each half.
@@ -28,79 +30,100 @@ fn half(m: &Banded) -> usize {
 /// Entries of the i-th unknowns from both ends: the diagonal, then the couplings to the k-th unknowns further in.
 #[inline(always)]
 fn column<const S: usize>(band: &[f64], n: usize, i: usize) -> [Lanes; S] {
-    let (top, bottom) = (&band[i * S..(i + 1) * S], &band[(n - i - S) * S..(n - i) * S]);
-    let mut c = [[0.0; 2]; S];
+    // lengths that are plain to the compiler, so that it need not check each index
+    let (top, bottom) = (&band[i * S..][..S], &band[(n - i - S) * S..][..S * S]);
+    let mut c = [Lanes::ZERO; S];
     for k in 0..S {
-        c[k] = [top[k], bottom[(S - 1 - k) * S + k]];
+        c[k] = Lanes::new([top[k], bottom[(S - 1 - k) * S + k]]);
     }
     c
 }
 
-/// Elimination in place; W is the half-bandwidth, S = W + 1.
-pub fn eliminate<const W: usize, const S: usize>(m: &mut Banded, floor: f64) {
+/// Writes [`column`].
+#[inline(always)]
+fn set_column<const S: usize>(band: &mut [f64], n: usize, i: usize, c: [Lanes; S]) {
+    let top = &mut band[i * S..][..S];
+    for k in 0..S {
+        top[k] = c[k].as_array()[0];
+    }
+    let bottom = &mut band[(n - i - S) * S..][..S * S];
+    for k in 0..S {
+        bottom[(S - 1 - k) * S + k] = c[k].as_array()[1];
+    }
+}
+
+/// Elimination in place, with the forward half of the substitution for C interleaved right-hand sides on the way: it fits into
+/// the time that the pivots take. W is the half-bandwidth, S = W + 1. The inverse pivots stand on the diagonal.
+pub fn eliminate<const W: usize, const S: usize, const C: usize>(m: &mut Banded, floor: f64, x: &mut [f64]) {
     let (n, h) = (m.inner, half(m));
     let band = &mut m.band[..];
-    let mut window = [[[0.0; 2]; S]; S];
+    let mut window = [[Lanes::ZERO; S]; S];
+    let mut rows = [[Lanes::ZERO; C]; S];
     for k in 0..W {
         window[k] = column::<S>(band, n, k);
+        rows[k] = row::<C>(x, n, k);
     }
     for i in 0..h {
         window[W] = column::<S>(band, n, i + W);
-        let c = window[0];
-        let d = [guarded(c[0][0], floor), guarded(c[0][1], floor)];
-        let inverse = [1.0 / d[0], 1.0 / d[1]];
+        rows[W] = row::<C>(x, n, i + W);
+        let (c, here) = (window[0], rows[0]);
+        let inverse = inverses(c[0], floor);
+        let mut l = [inverse; S];
         for k in 1..S {
+            l[k] = c[k] * inverse;
             for q in k..S {
-                for l in 0..2 {
-                    window[k][q - k][l] -= c[k][l] * c[q][l] * inverse[l];
-                }
+                window[k][q - k] -= c[k] * c[q] * inverse;
             }
         }
-        let top = &mut band[i * S..(i + 1) * S];
-        top[0] = d[0];
-        for k in 1..S {
-            top[k] = c[k][0] * inverse[0];
-        }
-        let bottom = &mut band[(n - i - S) * S..(n - i) * S];
-        bottom[(S - 1) * S] = d[1];
-        for k in 1..S {
-            bottom[(S - 1 - k) * S + k] = c[k][1] * inverse[1];
-        }
+        set_column(band, n, i, l);
         for k in 1..S {
             window[k - 1] = window[k];
         }
+        advance(&mut rows, &l);
+        set_row(x, n, i, here);
     }
     // what the two ends have taken from the middle
     let middle = n - 2 * h;
     for p in 0..W {
         for q in 0..W - p {
             let (top, bottom) = ((h + p) * S + q, (n - 1 - h - p - q) * S + q);
-            let taken = [window[p][q][0] - band[top], window[p][q][1] - band[bottom]];
-            window[p][q] = taken;
+            window[p][q] -= Lanes::new([band[top], band[bottom]]);
         }
     }
     for p in 0..W {
         for q in 0..W - p {
-            band[(h + p) * S + q] += window[p][q][0];
-            band[(n - 1 - h - p - q) * S + q] += window[p][q][1];
+            let [top, bottom] = window[p][q].to_array();
+            band[(h + p) * S + q] += top;
+            band[(n - 1 - h - p - q) * S + q] += bottom;
         }
     }
     eliminate_middle::<S>(band, h, middle, floor);
+    take_from_middle::<W, S, C>(x, n, h, rows);
+}
+
+/// 1/d; a pivot below the floor is replaced by that.
+#[inline(always)]
+fn inverses(d: Lanes, floor: f64) -> Lanes {
+    let [top, bottom] = d.to_array();
+    if top.abs() < floor || bottom.abs() < floor {
+        return Lanes::ONE / Lanes::new([guarded(top, floor), guarded(bottom, floor)]);
+    }
+    Lanes::ONE / d
 }
 
 /// Dense elimination of the `middle` unknowns from h on, which are all within the band.
 fn eliminate_middle<const S: usize>(band: &mut [f64], h: usize, middle: usize, floor: f64) {
     for j in 0..middle {
-        let d = guarded(band[(h + j) * S], floor);
-        band[(h + j) * S] = d;
+        let inverse = 1.0 / guarded(band[(h + j) * S], floor);
+        band[(h + j) * S] = inverse;
         for b in j + 1..middle {
             for a in b..middle {
                 let (cb, ca) = (band[(h + j) * S + b - j], band[(h + j) * S + a - j]);
-                band[(h + b) * S + a - b] -= cb * ca / d;
+                band[(h + b) * S + a - b] -= cb * ca * inverse;
             }
         }
         for a in j + 1..middle {
-            band[(h + j) * S + a - j] /= d;
+            band[(h + j) * S + a - j] *= inverse;
         }
     }
 }
@@ -108,69 +131,99 @@ fn eliminate_middle<const S: usize>(band: &mut [f64], h: usize, middle: usize, f
 /// Rows of C interleaved right-hand sides, the i-th from both ends.
 #[inline(always)]
 fn row<const C: usize>(x: &[f64], n: usize, i: usize) -> [Lanes; C] {
-    let (top, bottom) = (&x[i * C..(i + 1) * C], &x[(n - 1 - i) * C..(n - i) * C]);
-    let mut r = [[0.0; 2]; C];
+    let (top, bottom) = (&x[i * C..][..C], &x[(n - 1 - i) * C..][..C]);
+    let mut r = [Lanes::ZERO; C];
     for q in 0..C {
-        r[q] = [top[q], bottom[q]];
+        r[q] = Lanes::new([top[q], bottom[q]]);
     }
     r
+}
+
+/// Writes [`row`].
+#[inline(always)]
+fn set_row<const C: usize>(x: &mut [f64], n: usize, i: usize, r: [Lanes; C]) {
+    let top = &mut x[i * C..][..C];
+    for q in 0..C {
+        top[q] = r[q].as_array()[0];
+    }
+    let bottom = &mut x[(n - 1 - i) * C..][..C];
+    for q in 0..C {
+        bottom[q] = r[q].as_array()[1];
+    }
+}
+
+/// Takes the first row of a window from the others, and moves on by one.
+#[inline(always)]
+fn advance<const S: usize, const C: usize>(rows: &mut [[Lanes; C]; S], l: &[Lanes; S]) {
+    let here = rows[0];
+    for k in 1..S {
+        for q in 0..C {
+            rows[k - 1][q] = rows[k][q] - l[k] * here[q];
+        }
+    }
 }
 
 /// Substitution for C interleaved right-hand sides.
 pub fn substitute<const W: usize, const S: usize, const C: usize>(m: &Banded, x: &mut [f64]) {
     let (n, h, band) = (m.inner, half(m), &m.band[..]);
-    let mut window = [[[0.0; 2]; C]; S];
+    let mut rows = [[Lanes::ZERO; C]; S];
     for k in 0..W {
-        window[k] = row::<C>(x, n, k);
+        rows[k] = row::<C>(x, n, k);
     }
     for i in 0..h {
-        window[W] = row::<C>(x, n, i + W);
-        let (here, l) = (window[0], column::<S>(band, n, i));
-        for k in 1..S {
-            for q in 0..C {
-                for e in 0..2 {
-                    window[k - 1][q][e] = window[k][q][e] - l[k][e] * here[q][e];
-                }
-            }
-        }
-        for q in 0..C {
-            (x[i * C + q], x[(n - 1 - i) * C + q]) = (here[q][0], here[q][1]);
-        }
+        rows[W] = row::<C>(x, n, i + W);
+        let here = rows[0];
+        advance(&mut rows, &column::<S>(band, n, i));
+        set_row(x, n, i, here);
     }
+    take_from_middle::<W, S, C>(x, n, h, rows);
+    substitute_back::<W, S, C>(m, x);
+}
+
+/// Adds to the middle rows what the two ends have made of them.
+#[inline(always)]
+fn take_from_middle<const W: usize, const S: usize, const C: usize>(
+    x: &mut [f64],
+    n: usize,
+    h: usize,
+    mut rows: [[Lanes; C]; S],
+) {
     for p in 0..W {
         let before = row::<C>(x, n, h + p);
         for q in 0..C {
-            window[p][q] = [window[p][q][0] - before[q][0], window[p][q][1] - before[q][1]];
+            rows[p][q] -= before[q];
         }
     }
     for p in 0..W {
         for q in 0..C {
-            x[(h + p) * C + q] += window[p][q][0];
-            x[(n - 1 - h - p) * C + q] += window[p][q][1];
+            let [top, bottom] = rows[p][q].to_array();
+            x[(h + p) * C + q] += top;
+            x[(n - 1 - h - p) * C + q] += bottom;
         }
     }
+}
+
+/// The rest of the substitution: the middle, and from there to both ends.
+pub fn substitute_back<const W: usize, const S: usize, const C: usize>(m: &Banded, x: &mut [f64]) {
+    let (n, h, band) = (m.inner, half(m), &m.band[..]);
     substitute_middle::<S, C>(band, h, n - 2 * h, x);
+    let mut rows = [[Lanes::ZERO; C]; S];
     for k in 0..W {
-        window[k + 1] = row::<C>(x, n, h + k);
+        rows[k + 1] = row::<C>(x, n, h + k);
     }
     for i in (0..h).rev() {
         let (mut here, l) = (row::<C>(x, n, i), column::<S>(band, n, i));
-        let inverse = [1.0 / l[0][0], 1.0 / l[0][1]];
         for q in 0..C {
-            for e in 0..2 {
-                here[q][e] *= inverse[e];
-                for k in (1..S).rev() {
-                    here[q][e] -= l[k][e] * window[k][q][e];
-                }
+            here[q] *= l[0];
+            for k in (1..S).rev() {
+                here[q] -= l[k] * rows[k][q];
             }
         }
         for k in (1..W).rev() {
-            window[k + 1] = window[k];
+            rows[k + 1] = rows[k];
         }
-        window[1] = here;
-        for q in 0..C {
-            (x[i * C + q], x[(n - 1 - i) * C + q]) = (here[q][0], here[q][1]);
-        }
+        rows[1] = here;
+        set_row(x, n, i, here);
     }
 }
 
@@ -186,7 +239,7 @@ fn substitute_middle<const S: usize, const C: usize>(band: &[f64], h: usize, mid
         }
         for b in (0..middle).rev() {
             let later: f64 = (b + 1..middle).map(|a| l(a, b) * x[at(a)]).sum();
-            x[at(b)] = x[at(b)] / l(b, b) - later;
+            x[at(b)] = x[at(b)] * l(b, b) - later;
         }
     }
 }

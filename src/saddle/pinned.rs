@@ -66,14 +66,10 @@ impl Pinned {
         let size = slab::norm(&soft);
         slab::scale(&mut soft, 1.0 / size.max(f64::MIN_POSITIVE));
         let e = pin(&mut matrix, &soft, &mut used, kappa);
-        let factors = matrix.clone().factor();
         let mut minus_e = e;
         slab::scale(&mut minus_e, -1.0);
         let columns = [soft.clone(), minus_e];
-        let solved = match refined {
-            true => [accurate(&matrix, &factors, &columns[0]), accurate(&matrix, &factors, &columns[1])],
-            false => two(&factors, &columns),
-        };
+        let (factors, solved) = two(&matrix, &columns, refined);
         let mut schur = [[0.0; 2]; 2];
         for i in 0..2 {
             for j in 0..2 {
@@ -170,11 +166,26 @@ pub(crate) fn accurate(matrix: &Banded, factors: &Ldl, b: &[f64]) -> Vec<f64> {
     x
 }
 
-/// A⁻¹ of two columns at once.
-fn two(factors: &Ldl, columns: &[Vec<f64>; 2]) -> [Vec<f64>; 2] {
-    let (mut x, mut y) = (Vec::new(), Vec::new());
-    factors.solve_two(&columns[0], &columns[1], &mut Vec::new(), &mut x, &mut y);
-    [x, y]
+/// The factors of A, and A⁻¹ of two columns; `refined` as by [`accurate`].
+fn two(matrix: &Banded, columns: &[Vec<f64>; 2], refined: bool) -> (Ldl, [Vec<f64>; 2]) {
+    let (mut both, mut solved) = (Vec::new(), [Vec::new(), Vec::new()]);
+    slab::interleave(&columns[0], &columns[1], &mut both);
+    let factors = Ldl::solving(matrix.clone(), &mut both, 2);
+    let [x, y] = &mut solved;
+    slab::deinterleave(&both, x, y);
+    if refined {
+        let mut rest = [vec![0.0; x.len()], vec![0.0; x.len()]];
+        for ((rest, x), b) in rest.iter_mut().zip(&solved).zip(columns) {
+            matrix.multiply(x, rest);
+            rest.iter_mut().zip(b).for_each(|(r, b)| *r = b - *r);
+        }
+        slab::interleave(&rest[0], &rest[1], &mut both);
+        factors.solve(&mut both, 2);
+        let [r, s] = &mut rest;
+        slab::deinterleave(&both, r, s);
+        solved.iter_mut().zip(&rest).for_each(|(x, r)| slab::add_scaled(x, 1.0, r));
+    }
+    (factors, solved)
 }
 
 /// Negative eigenvalues of a symmetric 2 × 2 matrix.
