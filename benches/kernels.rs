@@ -22,16 +22,17 @@ fn main() {
     let bandwidth = one.install(triad_gb_per_s);
     println!("memory bandwidth (triad, one thread): {bandwidth:.1} GB per CPU second");
     println!("million spin-image evaluations per CPU second, {} images between the ends:", IMAGES - 2);
-    println!("{:>8} {:>10} {:>10} {:>10} {:>12}", "sites", "gradient", "GB/s", "band", "iteration");
+    println!("{:>8} {:>10} {:>8} {:>10} {:>12} {:>8}", "sites", "gradient", "GB/s", "band", "iteration", "GB/s");
     for sites in SIZES {
         let (h, path) = problem(sites);
         let [g, b, i] = one.install(|| [gradient(&h, &path), band(&h, &path), iteration(&h, &path)]);
         println!(
-            "{sites:>8} {:>10.1} {:>10.1} {:>10.1} {:>12.1}",
+            "{sites:>8} {:>10.1} {:>8.1} {:>10.1} {:>12.1} {:>8.1}",
             g.per_cpu(),
             g.per_cpu() * BYTES * 1e-3,
             b.per_cpu(),
-            i.per_cpu()
+            i.per_cpu(),
+            i.per_cpu() * iteration_bytes() * 1e-3
         );
     }
     let two = pool(2);
@@ -50,6 +51,27 @@ fn main() {
 
 /// Numbers that must pass for one spin of one image: m read, g written, the coefficients read (J, K, K₂), 8 bytes each.
 const BYTES: f64 = 8.0 * (3.0 + 3.0 + 3.0);
+
+/// Numbers that pass for one spin of one image in a whole iteration, read and written, one symmetry axis: every pass over an
+/// array counts once, what stays in the first cache between two passes over a tile does not.
+const ITERATION: [(&str, f64); 12] = [
+    ("energy and gradient", 9.0),
+    ("tangent, force across, spacing: two passes", 30.0),
+    ("tangent bases", 9.0),
+    ("tangent and rotation in them, orthonormal; distance to the uphill image", 41.0),
+    ("Hessian", 33.0),
+    ("its largest entry", 8.0),
+    ("elimination with the forward substitution of two columns", 24.0),
+    ("their backward substitution", 16.0),
+    ("the two columns put side by side, taken apart, and their products", 28.0),
+    ("right-hand side and its projection", 38.0),
+    ("its two substitutions, the part along the border, the move as a field", 51.0),
+    ("the move", 12.0),
+];
+
+fn iteration_bytes() -> f64 {
+    8.0 * ITERATION.iter().map(|(_, numbers)| numbers).sum::<f64>()
+}
 
 fn pool(threads: usize) -> rayon::ThreadPool {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads to measure with")

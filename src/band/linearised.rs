@@ -144,10 +144,7 @@ impl Linearised {
         if self.along != 0.0 {
             slab::add_scaled(&mut self.x, -self.along, &self.pulled);
         }
-        for b in &self.border {
-            let overlap = slab::dot(b, &self.x);
-            slab::add_scaled(&mut self.x, -overlap, b);
-        }
+        slab::without(&mut self.x, &self.border);
         self.solve_bordered();
         let rotation = largest_pair(&self.x);
         if self.along != 0.0 {
@@ -160,11 +157,10 @@ impl Linearised {
     /// x ← the x of [A C; Cᵀ 0] (x, ·) = (x, 0): the solution orthogonal to C.
     fn solve_bordered(&mut self) {
         self.factors.solve(&mut self.x, 1);
-        let rhs: Vec<f64> = self.border.iter().map(|b| slab::dot(b, &self.x)).collect();
-        let nu = solve_dense(&self.schur, &rhs, rhs.len()).unwrap_or_else(|| vec![0.0; rhs.len()]);
-        for (z, n) in self.solved.iter().zip(&nu) {
-            slab::add_scaled(&mut self.x, -n, z);
-        }
+        let rhs = slab::overlaps(&self.border, &self.x);
+        let mut nu = solve_dense(&self.schur, &rhs, rhs.len()).unwrap_or_else(|| vec![0.0; rhs.len()]);
+        slab::scale(&mut nu, -1.0);
+        slab::add_all(&mut self.x, &nu, &self.solved);
     }
 }
 

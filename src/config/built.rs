@@ -1,7 +1,7 @@
 //! From a config to the problem that the drive is given, with every check on the way.
 
 use super::{Loaded, memory};
-use crate::drive::{Images, Outcome, Problem, Scales};
+use crate::drive::{FEWEST_IMAGES, Images, Outcome, Problem, Scales};
 use crate::energy::{EnergyTerm, Hamiltonian, Medium, TermSpec, symmetry_axes};
 use crate::error::{Error, Result};
 use crate::field::{Components, ComponentsMut};
@@ -10,7 +10,7 @@ use crate::lattice::{Chain, Lattice};
 use crate::linalg::slab;
 use crate::output::RunReport;
 use crate::output::canvas::Look;
-use crate::path::guess::GuessContext;
+use crate::path::guess::{GuessContext, moving_sites};
 use crate::path::largest_angle;
 use crate::rates::RateSettings;
 use crate::spins::Spins;
@@ -206,7 +206,10 @@ impl Loaded {
 pub fn expected_images(problem: &Problem, scales: &Scales) -> usize {
     match problem.images {
         Images::Count(n) => n,
-        Images::Auto => scales.images_between(problem.chain.sites) + 2,
+        Images::Auto => {
+            let moving = moving_sites(&problem.initial, &problem.final_state);
+            FEWEST_IMAGES.max(scales.images_between(problem.chain.sites, moving) + 2)
+        }
     }
 }
 

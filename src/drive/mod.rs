@@ -30,7 +30,7 @@ pub use recorder::{Keep, Partial, Recorder};
 pub use relaxation::{Goal, Relaxation, image_levels, prominent_maxima, refined};
 pub use relaxed::{RelaxedState, relaxed_state};
 pub use report::partial;
-pub use run::{run, run_recorded};
+pub use run::{FEWEST_IMAGES, run, run_recorded};
 pub use scales::Scales;
 pub use stop::Stop;
 pub use top::{Top, tops};

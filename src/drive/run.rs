@@ -15,7 +15,7 @@ use super::{Images, Observer, Problem, Recorder, Scales, Silent, Stop};
 use crate::band::{Band, Laplacian, align_rotations};
 use crate::error::Result;
 use crate::geometry::{Direction, Vector};
-use crate::path::guess::{FirstGuess, GuessContext, GuessSpec, NoiseSpec, Rotation, add_noise, smooth};
+use crate::path::guess::{FirstGuess, GuessContext, GuessSpec, NoiseSpec, Rotation, add_noise, moving_sites, smooth};
 use crate::path::{Path, distance};
 use crate::spins::Spins;
 use crate::state::StateContext;
@@ -25,6 +25,8 @@ use std::time::Instant;
 const RESOLVED: f64 = 1.0;
 /// Neighbours of a band to start from are at most this far apart, any spin (rad).
 const COARSEST: f64 = 2.0;
+/// Fewest images of an automatic path in the end.
+pub const FEWEST_IMAGES: usize = 17;
 /// Most images of an automatic path.
 const MOST_IMAGES: usize = 2001;
 /// Evaluations after which first paths are compared.
@@ -379,7 +381,7 @@ impl<'a, 'o> Run<'a, 'o> {
         }
         let images = match self.problem.images {
             Images::Count(n) => n,
-            Images::Auto => 17,
+            Images::Auto => FEWEST_IMAGES,
         };
         let path = Rotation { axis: None }.path(&self.ends[0].spins, &self.ends[1].spins, images, &self.context())?;
         let mut band = Band::new(h, path);
@@ -516,7 +518,7 @@ impl<'a, 'o> Run<'a, 'o> {
             })
         };
         let coarsest = match self.problem.images {
-            Images::Auto => self.scales.images_between(self.problem.chain.sites) + 2,
+            Images::Auto => self.scales.images_between(self.problem.chain.sites, moving_sites(a, b)) + 2,
             Images::Count(n) => image_levels(n, |n| make(n).is_ok_and(|p| p.largest_rotation() <= COARSEST))[0],
         };
         let band = Band::new(&self.problem.hamiltonian, make(coarsest)?);
@@ -535,12 +537,13 @@ impl<'a, 'o> Run<'a, 'o> {
             let now = c.band.images();
             // steps over minima stay as long as they are, however many images there are
             let before = std::mem::replace(&mut apart, c.band.path().largest_rotation());
-            if (more < usize::MAX || now > 257) && self.problem.images == Images::Auto && apart > 0.8 * before {
+            let many = now >= FEWEST_IMAGES && (more < usize::MAX || now > 257);
+            if many && self.problem.images == Images::Auto && apart > 0.8 * before {
                 return Ok(());
             }
             let next = match self.problem.images {
                 Images::Count(n) if now < n => image_levels(n, |_| true).into_iter().find(|l| *l > now).unwrap_or(n),
-                Images::Auto if c.band.path().largest_rotation() > RESOLVED && now < MOST_IMAGES => 2 * now - 1,
+                Images::Auto if now < FEWEST_IMAGES || self.is_coarse(c) && now < MOST_IMAGES => 2 * now - 1,
                 _ => return Ok(()),
             };
             self.observer.stage(&format!("{next} images"));

@@ -41,11 +41,12 @@ impl Scales {
         0.5 / self.wall_width_sites.max(0.5)
     }
 
-    /// Images between the ends that resolve a wall sweeping through `sites` sites: 2 rad a spin between neighbours.
-    pub fn images_between(&self, sites: usize) -> usize {
-        let n = sites as f64;
-        let w = self.sweep_width(sites);
-        ((std::f64::consts::PI * (n + w) / (2.0 * w)).ceil() as usize).max(15)
+    /// Images between the ends that resolve a wall sweeping through `moving` of `sites` sites: 2 rad a spin between neighbours,
+    /// and at least 15, or 7 where a wall in the middle of a chain only moves by a few times its width.
+    pub fn images_between(&self, sites: usize, moving: usize) -> usize {
+        let (n, w) = (moving as f64, self.sweep_width(sites));
+        let least = if 2 * moving < sites && n < 3.0 * w { 7 } else { 15 };
+        ((std::f64::consts::PI * (n + w) / (2.0 * w)).ceil() as usize).max(least)
     }
 
     /// Width of a wall that enters: 4δ, at least two sites, at most the chain.

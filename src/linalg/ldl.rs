@@ -12,6 +12,7 @@ pub struct Ldl {
     a: Banded,
     /// The factors, where the matrix has a tail: then `a` is the matrix as it was.
     tail: Option<TailLdl>,
+    negatives: usize,
 }
 
 impl Ldl {
@@ -24,32 +25,38 @@ impl Ldl {
     /// The factors of A, and on the way the solution of A X = B as by [`solve`](Self::solve).
     pub fn solving(mut a: Banded, x: &mut [f64], columns: usize) -> Ldl {
         let floor = 4.0 * f64::EPSILON * a.size().max(1e-280);
-        match (twisted::width(&a), columns) {
-            (Some(1), 0) => twisted::eliminate::<1, 2, 0>(&mut a, floor, x),
-            (Some(3), 0) => twisted::eliminate::<3, 4, 0>(&mut a, floor, x),
-            (Some(5), 0) => twisted::eliminate::<5, 6, 0>(&mut a, floor, x),
-            (Some(3), 1) => solving_from_both_ends::<3, 4, 1>(&mut a, floor, x),
-            (Some(3), 2) => solving_from_both_ends::<3, 4, 2>(&mut a, floor, x),
-            (Some(5), 1) => solving_from_both_ends::<5, 6, 1>(&mut a, floor, x),
-            (Some(5), 2) => solving_from_both_ends::<5, 6, 2>(&mut a, floor, x),
-            (Some(_), _) => {
-                let factors = Ldl::of(a);
-                factors.solve(x, columns);
-                return factors;
-            }
-            (None, _) => {
-                let tail = a.tail.is_some().then(|| TailLdl::of(&a, floor));
-                if tail.is_none() {
-                    eliminate(&mut a, floor);
-                }
-                let factors = Ldl { a, tail };
-                if columns > 0 {
-                    factors.solve(x, columns);
-                }
-                return factors;
-            }
+        let done = match (twisted::width(&a), columns) {
+            (Some(1), 0) => Some(twisted::eliminate::<1, 2, 0>(&mut a, floor, x)),
+            (Some(3), 0) => Some(twisted::eliminate::<3, 4, 0>(&mut a, floor, x)),
+            (Some(5), 0) => Some(twisted::eliminate::<5, 6, 0>(&mut a, floor, x)),
+            (Some(3), 1) => Some(from_both_ends::<3, 4, 1>(&mut a, floor, x)),
+            (Some(3), 2) => Some(from_both_ends::<3, 4, 2>(&mut a, floor, x)),
+            (Some(5), 1) => Some(from_both_ends::<5, 6, 1>(&mut a, floor, x)),
+            (Some(5), 2) => Some(from_both_ends::<5, 6, 2>(&mut a, floor, x)),
+            _ => None,
+        };
+        if let Some(negatives) = done {
+            return Ldl { a, tail: None, negatives };
         }
-        Ldl { a, tail: None }
+        let factors = match twisted::width(&a) {
+            Some(_) => Ldl::of(a),
+            None => Ldl::of_any_shape(a, floor),
+        };
+        if columns > 0 {
+            factors.solve(x, columns);
+        }
+        factors
+    }
+
+    fn of_any_shape(mut a: Banded, floor: f64) -> Ldl {
+        let tail = a.tail.is_some().then(|| TailLdl::of(&a, floor));
+        if tail.is_none() {
+            eliminate(&mut a, floor);
+        }
+        let mut factors = Ldl { a, tail, negatives: 0 };
+        let (band, rest) = factors.pivots();
+        factors.negatives = band.chain(rest).filter(|d| **d < 0.0).count();
+        factors
     }
 
     /// The memory, to be filled anew.
@@ -64,9 +71,7 @@ impl Ldl {
 
     /// Number of negative eigenvalues of A.
     pub fn negatives(&self) -> usize {
-        let (band, rest) = self.pivots();
-        let count = |sum: usize, d: &f64| sum + usize::from(*d < 0.0);
-        rest.fold(band.fold(0, count), count)
+        self.negatives
     }
 
     /// ln|det A|.
@@ -113,9 +118,11 @@ impl Ldl {
     }
 }
 
-fn solving_from_both_ends<const W: usize, const S: usize, const C: usize>(a: &mut Banded, floor: f64, x: &mut [f64]) {
-    twisted::eliminate::<W, S, C>(a, floor, x);
+/// Eliminates and solves; the number of negative pivots.
+fn from_both_ends<const W: usize, const S: usize, const C: usize>(a: &mut Banded, floor: f64, x: &mut [f64]) -> usize {
+    let negatives = twisted::eliminate::<W, S, C>(a, floor, x);
     twisted::substitute_back::<W, S, C>(a, x);
+    negatives
 }
 
 /// Right-looking elimination in place, of any shape. The inverse pivots stand on the diagonal of the band.

@@ -53,12 +53,14 @@ fn set_column<const S: usize>(band: &mut [f64], n: usize, i: usize, c: [Lanes; S
 }
 
 /// Elimination in place, with the forward half of the substitution for C interleaved right-hand sides on the way: it fits into
-/// the time that the pivots take. W is the half-bandwidth, S = W + 1. The inverse pivots stand on the diagonal.
-pub fn eliminate<const W: usize, const S: usize, const C: usize>(m: &mut Banded, floor: f64, x: &mut [f64]) {
+/// the time that the pivots take. W is the half-bandwidth, S = W + 1. The inverse pivots stand on the diagonal; returns how many
+/// of them are negative.
+pub fn eliminate<const W: usize, const S: usize, const C: usize>(m: &mut Banded, floor: f64, x: &mut [f64]) -> usize {
     let (n, h) = (m.inner, half(m));
     let band = &mut m.band[..];
     let mut window = [[Lanes::ZERO; S]; S];
     let mut rows = [[Lanes::ZERO; C]; S];
+    let mut negatives = 0;
     for k in 0..W {
         window[k] = column::<S>(band, n, k);
         rows[k] = row::<C>(x, n, k);
@@ -68,6 +70,7 @@ pub fn eliminate<const W: usize, const S: usize, const C: usize>(m: &mut Banded,
         rows[W] = row::<C>(x, n, i + W);
         let (c, here) = (window[0], rows[0]);
         let inverse = inverses(c[0], floor);
+        negatives += inverse.as_array().iter().filter(|p| **p < 0.0).count();
         let mut l = [inverse; S];
         for k in 1..S {
             l[k] = c[k] * inverse;
@@ -97,8 +100,9 @@ pub fn eliminate<const W: usize, const S: usize, const C: usize>(m: &mut Banded,
             band[(n - 1 - h - p - q) * S + q] += bottom;
         }
     }
-    eliminate_middle::<S>(band, h, middle, floor);
+    negatives += eliminate_middle::<S>(band, h, middle, floor);
     take_from_middle::<W, S, C>(x, n, h, rows);
+    negatives
 }
 
 /// 1/d; a pivot below the floor is replaced by that.
@@ -112,9 +116,11 @@ fn inverses(d: Lanes, floor: f64) -> Lanes {
 }
 
 /// Dense elimination of the `middle` unknowns from h on, which are all within the band.
-fn eliminate_middle<const S: usize>(band: &mut [f64], h: usize, middle: usize, floor: f64) {
+fn eliminate_middle<const S: usize>(band: &mut [f64], h: usize, middle: usize, floor: f64) -> usize {
+    let mut negatives = 0;
     for j in 0..middle {
         let inverse = 1.0 / guarded(band[(h + j) * S], floor);
+        negatives += usize::from(inverse < 0.0);
         band[(h + j) * S] = inverse;
         for b in j + 1..middle {
             for a in b..middle {
@@ -126,6 +132,7 @@ fn eliminate_middle<const S: usize>(band: &mut [f64], h: usize, middle: usize, f
             band[(h + j) * S + a - j] *= inverse;
         }
     }
+    negatives
 }
 
 /// Rows of C interleaved right-hand sides, the i-th from both ends.

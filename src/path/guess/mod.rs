@@ -20,7 +20,7 @@ pub use nlerp::{Nlerp, component_sag};
 pub use noise::{NoiseSpec, add_noise};
 pub use rotation::{Rotation, best_turn};
 pub use smooth::smooth;
-pub use sweep::{Edge, Sweep};
+pub use sweep::{Edge, Sweep, moving_sites};
 pub use waypoints::Waypoints;
 
 use super::Path;

@@ -8,7 +8,7 @@
 use super::clock::{Way, Ways, clocked, fraction};
 use super::{FirstGuess, GuessContext};
 use crate::error::{Error, Result};
-use crate::geometry::Direction;
+use crate::geometry::{Direction, angle};
 use crate::linalg::slab;
 use crate::path::Path;
 use crate::registry::Described;
@@ -107,6 +107,13 @@ impl Sweep {
         let times = even_times(&entries, &lengths, width, images);
         Ok(clocked(ways.a, ways.b, images, &about, |k, i| reached(times[k], entries[i], width)))
     }
+}
+
+/// Number of sites from the first to the last one that moves from a to b; all of them if none does.
+pub fn moving_sites(a: &Spins, b: &Spins) -> usize {
+    let moves = |i: &usize| angle(a.get(*i), b.get(*i)) > MOVES;
+    let ends = (0..a.sites()).find(moves).zip((0..a.sites()).rfind(moves));
+    ends.map_or(a.sites(), |(first, last)| last - first + 1)
 }
 
 /// The fraction of its way a spin has gone at time T.
