@@ -4,6 +4,7 @@
 //! given. Everything is a default but the guess (a wall enters from the left) and the number of images (17). Band
 //! evaluations count all levels; solves are the factorisations of the saddle's refinement; the error is against a Newton's
 //! method of this file, in one angle a spin, that shares nothing with the library.
+//! Times are those of the quickest of up to nine runs, on all cores.
 
 use spinneb::band::Band;
 use spinneb::drive::{Images, Outcome, Problem, Silent, run, tops};
@@ -27,7 +28,7 @@ fn main() {
     );
     for sites in sizes {
         let problem = problem(sites);
-        let outcome = run(&problem, &mut Silent).expect("a valid problem");
+        let outcome = quickest(&problem);
         let solves = saddle_solves(&problem, &outcome);
         let barrier = outcome.barrier.map_or(f64::NAN, |b| b.forward_mev);
         let exact = wall_energy(sites);
@@ -45,6 +46,14 @@ fn main() {
             println!("{:>8} {warning}", "");
         }
     }
+}
+
+/// A run; of short ones the quickest of several.
+fn quickest(problem: &Problem) -> Outcome {
+    let once = || run(problem, &mut Silent).expect("a valid problem");
+    let repetitions = (100_000 / problem.chain.sites).clamp(1, 9);
+    let runs = (0..repetitions).map(|_| once());
+    runs.min_by(|a, b| a.work.seconds.total_cmp(&b.work.seconds)).expect("at least one")
 }
 
 /// K (meV): walls are √10 sites wide on 50 sites, and as wide in comparison on any other number.

@@ -22,6 +22,9 @@ use std::collections::VecDeque;
 use std::mem::take;
 use std::sync::{Mutex, PoisonError};
 
+/// Fewer spins, of all images together, are not worth waking another thread for.
+const WORTH: usize = 2048;
+
 /// The sweep's memory between evaluations: the shifts μ, and room for the linear algebra.
 #[derive(Debug)]
 pub struct Sweep {
@@ -130,17 +133,20 @@ impl Sweep {
         let mut slabs: Vec<&mut [f64]> = moves.chunks_mut(3 * band.path().sites()).collect();
         slabs.iter_mut().enumerate().filter(|(k, _)| band.is_held(k + 1)).for_each(|(_, y)| y.fill(0.0));
         let (tops, slopes) = tops_and_slopes(band);
-        let threads = rayon::current_num_threads();
+        let small = slabs.len() * band.path().sites() < WORTH;
+        let threads = if small { 1 } else { rayon::current_num_threads() };
+        let apiece = if small { usize::MAX } else { 1 };
         let mut at_top: Vec<&mut [f64]> = tops.iter().map(|k| take(&mut slabs[k - 1])).collect();
         // who has no top to relax prepares what comes next
         let idle = if tops.is_empty() { 0 } else { threads.saturating_sub(tops.len()) };
         let firsts: Vec<usize> = slopes.iter().map(|slope| slope[0]).take(idle).collect();
-        let relax_tops = || {
-            let images = tops.par_iter().zip(&mut at_top).with_max_len(1);
+        let mut relax_tops = || {
+            let images = tops.par_iter().zip(&mut at_top).with_min_len(apiece).with_max_len(apiece);
             images.map(|(&k, y)| task.relax(task.prepared(k), k, None, y)).collect::<Vec<_>>()
         };
         let prepare_firsts = || firsts.par_iter().with_max_len(1).map(|&k| task.prepared(k)).collect::<Vec<_>>();
-        let (mut done, ahead) = rayon::join(relax_tops, prepare_firsts);
+        let (mut done, ahead) =
+            if firsts.is_empty() { (relax_tops(), Vec::new()) } else { rayon::join(relax_tops, prepare_firsts) };
         let mut ahead = ahead.into_iter();
         let mut above: Vec<Option<&[f64]>> = vec![None; band.images()];
         for (k, y) in tops.into_iter().zip(at_top) {
@@ -154,7 +160,7 @@ impl Sweep {
         };
         let side_by_side = threads.div_ceil(slopes.len().max(1));
         let slopes: Vec<Slope> = slopes.into_iter().map(&mut slope).collect();
-        let descents = slopes.into_par_iter().with_max_len(1);
+        let descents = slopes.into_par_iter().with_min_len(apiece).with_max_len(apiece);
         done.extend(descents.flat_map_iter(|slope| task.descend(slope, side_by_side)).collect::<Vec<_>>());
         self.settle(&done)
     }

@@ -9,6 +9,8 @@ use serde::Deserialize;
 
 /// Largest rotation of a spin in one step (rad).
 const CAP: f64 = 0.3;
+/// Numbers to be moved that are worth waking another thread for.
+const WORTH: usize = 3 * 4096;
 
 /// `{"implicit": {}}`.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
@@ -34,7 +36,8 @@ impl Method for Implicit {
 
 impl Optimiser for Implicit {
     fn advance(&mut self, points: &mut [f64], slab: usize, direction: &[f64]) {
-        points.par_chunks_mut(slab).zip(direction.par_chunks(slab)).for_each(|(m, v)| {
+        let images = points.par_chunks_mut(slab).zip(direction.par_chunks(slab)).with_min_len(WORTH.div_ceil(slab));
+        images.for_each(|(m, v)| {
             let rotation = rotation_of(v);
             move_points(m, v, slab, if rotation > CAP { CAP / rotation } else { 1.0 });
         });
