@@ -65,6 +65,8 @@ struct Task<'a> {
     stiffness: f64,
     shifts: &'a [f64],
     rooms: &'a Rooms,
+    /// How many threads are worth waking.
+    threads: usize,
 }
 
 impl Task<'_> {
@@ -78,6 +80,34 @@ impl Task<'_> {
         let done = room.relax(self.band, k, above, y);
         self.rooms.give_back(room);
         (k, done)
+    }
+
+    /// Relaxes the tops; threads without a top prepare the first images of the slopes, longest slopes first.
+    fn relax_tops(
+        &self,
+        tops: &[usize],
+        moves: &mut [&mut [f64]],
+        slopes: &[Vec<usize>],
+    ) -> (Vec<(usize, Move)>, Vec<Linearised>) {
+        let idle = if tops.is_empty() { 0 } else { self.threads.saturating_sub(tops.len()) };
+        let firsts: Vec<usize> = slopes.iter().map(|slope| slope[0]).take(idle).collect();
+        let images = tops.par_iter().zip(moves).with_min_len(self.apiece()).with_max_len(self.apiece());
+        let relax = || images.map(|(&k, y)| self.relax(self.prepared(k), k, None, y)).collect();
+        if firsts.is_empty() {
+            return (relax(), Vec::new());
+        }
+        rayon::join(relax, || firsts.par_iter().with_max_len(1).map(|&k| self.prepared(k)).collect())
+    }
+
+    fn relax_slopes(&self, slopes: Vec<Slope>) -> Vec<(usize, Move)> {
+        let side_by_side = self.threads.div_ceil(slopes.len().max(1));
+        let slopes = slopes.into_par_iter().with_min_len(self.apiece()).with_max_len(self.apiece());
+        slopes.flat_map_iter(|slope| self.descend(slope, side_by_side)).collect()
+    }
+
+    /// How many tops or slopes make a piece of work.
+    fn apiece(&self) -> usize {
+        if self.threads == 1 { usize::MAX } else { 1 }
     }
 
     /// Relaxes the images of a slope, `side_by_side` of them prepared at a time.
@@ -129,39 +159,27 @@ impl Sweep {
     /// Writes the tangent moves (rad) of the images between the ends, slab after slab, of an evaluated band.
     pub fn step(&mut self, band: &Band, axes: &[Vector], moves: &mut [f64]) -> SweepStep {
         self.shifts.resize(band.images(), SHIFT_FLOOR * self.stiffness);
-        let task = Task { band, axes, stiffness: self.stiffness, shifts: &self.shifts, rooms: &self.rooms };
         let mut slabs: Vec<&mut [f64]> = moves.chunks_mut(3 * band.path().sites()).collect();
         slabs.iter_mut().enumerate().filter(|(k, _)| band.is_held(k + 1)).for_each(|(_, y)| y.fill(0.0));
-        let (tops, slopes) = tops_and_slopes(band);
         let small = slabs.len() * band.path().sites() < WORTH;
         let threads = if small { 1 } else { rayon::current_num_threads() };
-        let apiece = if small { usize::MAX } else { 1 };
+        let (shifts, rooms) = (&self.shifts[..], &self.rooms);
+        let task = Task { band, axes, stiffness: self.stiffness, shifts, rooms, threads };
+        let (tops, slopes) = tops_and_slopes(band);
         let mut at_top: Vec<&mut [f64]> = tops.iter().map(|k| take(&mut slabs[k - 1])).collect();
-        // who has no top to relax prepares what comes next
-        let idle = if tops.is_empty() { 0 } else { threads.saturating_sub(tops.len()) };
-        let firsts: Vec<usize> = slopes.iter().map(|slope| slope[0]).take(idle).collect();
-        let mut relax_tops = || {
-            let images = tops.par_iter().zip(&mut at_top).with_min_len(apiece).with_max_len(apiece);
-            images.map(|(&k, y)| task.relax(task.prepared(k), k, None, y)).collect::<Vec<_>>()
-        };
-        let prepare_firsts = || firsts.par_iter().with_max_len(1).map(|&k| task.prepared(k)).collect::<Vec<_>>();
-        let (mut done, ahead) =
-            if firsts.is_empty() { (relax_tops(), Vec::new()) } else { rayon::join(relax_tops, prepare_firsts) };
-        let mut ahead = ahead.into_iter();
+        let (mut done, ahead) = task.relax_tops(&tops, &mut at_top, &slopes);
         let mut above: Vec<Option<&[f64]>> = vec![None; band.images()];
         for (k, y) in tops.into_iter().zip(at_top) {
             above[k] = Some(y);
         }
-        let mut slope = |images: Vec<usize>| Slope {
+        let mut ahead = ahead.into_iter();
+        let slopes = slopes.into_iter().map(|images| Slope {
             above: waits_for(band, images[0]).and_then(|k| above[k]),
             moves: images.iter().map(|k| take(&mut slabs[k - 1])).collect(),
             ahead: ahead.next(),
             images,
-        };
-        let side_by_side = threads.div_ceil(slopes.len().max(1));
-        let slopes: Vec<Slope> = slopes.into_iter().map(&mut slope).collect();
-        let descents = slopes.into_par_iter().with_min_len(apiece).with_max_len(apiece);
-        done.extend(descents.flat_map_iter(|slope| task.descend(slope, side_by_side)).collect::<Vec<_>>());
+        });
+        done.extend(task.relax_slopes(slopes.collect()));
         self.settle(&done)
     }
 
