@@ -289,9 +289,11 @@ mod tests {
 
     #[test]
     fn a_singular_matrix_gives_finite_numbers() {
-        let f = Banded::zeros(4, 1, 0).factor();
-        let mut x = vec![1.0; 4];
-        f.solve(&mut x, 1);
-        assert!(x.iter().all(|v| !v.is_nan()));
+        for (inner, width, border) in [(4, 1, 0), (40, 3, 0), (6, 3, 2)] {
+            let f = Banded::zeros(inner, width, border).factor();
+            let mut x = vec![1.0; f.order()];
+            f.solve(&mut x, 1);
+            assert!(x.iter().all(|v| !v.is_nan()));
+        }
     }
 }
