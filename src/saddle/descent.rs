@@ -11,7 +11,7 @@ use super::spectrum::Spectrum;
 use super::state::State;
 use super::trail::Trail;
 use crate::energy::Hamiltonian;
-use crate::linalg::slab;
+use crate::linalg::{Ldl, slab};
 use crate::sphere::rotation_of;
 
 /// Largest rotation of a spin in one step (rad).
@@ -187,10 +187,9 @@ fn euler(h: &Hamiltonian, state: &State, rate: &mut f64, scale: f64) -> Option<(
     while *rate < 1e6 * scale {
         let mut matrix = state.hessian.clone();
         matrix.shift(*rate + smallest);
-        let factors = matrix.factor();
+        let mut x = state.downhill();
+        let factors = Ldl::solving(matrix, &mut x, 1);
         if factors.negatives() == 0 {
-            let mut x = state.downhill();
-            factors.solve(&mut x, 1);
             let mut v = state.field(&x);
             let rotation = rotation_of(&v);
             if rotation > CAP {

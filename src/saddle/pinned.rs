@@ -12,10 +12,12 @@
 
 use super::state::State;
 use crate::linalg::{Banded, Ldl, slab};
+use std::mem::take;
 
 /// A factorised, pinned Hessian.
 #[derive(Debug)]
 pub struct Pinned {
+    /// Kept where solutions are refined.
     matrix: Banded,
     factors: Ldl,
     /// Solutions get a step of iterative refinement.
@@ -69,7 +71,10 @@ impl Pinned {
         let mut minus_e = e;
         slab::scale(&mut minus_e, -1.0);
         let columns = [soft.clone(), minus_e];
-        let (factors, solved) = two(&matrix, &columns, refined);
+        let (factors, solved) = match refined {
+            true => two_refined(&matrix, &columns),
+            false => two(take(&mut matrix), &columns),
+        };
         let mut schur = [[0.0; 2]; 2];
         for i in 0..2 {
             for j in 0..2 {
@@ -166,25 +171,29 @@ pub(crate) fn accurate(matrix: &Banded, factors: &Ldl, b: &[f64]) -> Vec<f64> {
     x
 }
 
-/// The factors of A, and A⁻¹ of two columns; `refined` as by [`accurate`].
-fn two(matrix: &Banded, columns: &[Vec<f64>; 2], refined: bool) -> (Ldl, [Vec<f64>; 2]) {
+/// The factors of A, and A⁻¹ of two columns.
+fn two(matrix: Banded, columns: &[Vec<f64>; 2]) -> (Ldl, [Vec<f64>; 2]) {
     let (mut both, mut solved) = (Vec::new(), [Vec::new(), Vec::new()]);
     slab::interleave(&columns[0], &columns[1], &mut both);
-    let factors = Ldl::solving(matrix.clone(), &mut both, 2);
+    let factors = Ldl::solving(matrix, &mut both, 2);
     let [x, y] = &mut solved;
     slab::deinterleave(&both, x, y);
-    if refined {
-        let mut rest = [vec![0.0; x.len()], vec![0.0; x.len()]];
-        for ((rest, x), b) in rest.iter_mut().zip(&solved).zip(columns) {
-            matrix.multiply(x, rest);
-            rest.iter_mut().zip(b).for_each(|(r, b)| *r = b - *r);
-        }
-        slab::interleave(&rest[0], &rest[1], &mut both);
-        factors.solve(&mut both, 2);
-        let [r, s] = &mut rest;
-        slab::deinterleave(&both, r, s);
-        solved.iter_mut().zip(&rest).for_each(|(x, r)| slab::add_scaled(x, 1.0, r));
+    (factors, solved)
+}
+
+/// The same with a step of iterative refinement.
+fn two_refined(matrix: &Banded, columns: &[Vec<f64>; 2]) -> (Ldl, [Vec<f64>; 2]) {
+    let (factors, mut solved) = two(matrix.clone(), columns);
+    let (mut both, mut rest) = (Vec::new(), [vec![0.0; solved[0].len()], vec![0.0; solved[1].len()]]);
+    for ((rest, x), b) in rest.iter_mut().zip(&solved).zip(columns) {
+        matrix.multiply(x, rest);
+        rest.iter_mut().zip(b).for_each(|(r, b)| *r = b - *r);
     }
+    slab::interleave(&rest[0], &rest[1], &mut both);
+    factors.solve(&mut both, 2);
+    let [r, s] = &mut rest;
+    slab::deinterleave(&both, r, s);
+    solved.iter_mut().zip(&rest).for_each(|(x, r)| slab::add_scaled(x, 1.0, r));
     (factors, solved)
 }
 
