@@ -17,6 +17,7 @@ use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::fmt;
+use std::ops::Range;
 
 /// Spins that move by less (rad) do not make a wall.
 const MOVES: f64 = 0.3;
@@ -84,9 +85,8 @@ impl Sweep {
         let sites = ways.a.sites();
         let about = ways.about(self.axis.unwrap_or(context.default_axis));
         let lengths: Vec<f64> = about.iter().map(Way::length).collect();
-        let first = lengths.iter().position(|l| *l > MOVES).unwrap_or(0) as f64;
-        let last = lengths.iter().rposition(|l| *l > MOVES).unwrap_or(sites - 1) as f64;
-        let n = last - first + 1.0;
+        let moving = moving(sites, |i| lengths[i]);
+        let (first, n) = (moving.start as f64, moving.len() as f64);
         let width = self.width.unwrap_or((4.0 * context.states.wall_width_sites).clamp(2.0, n.max(2.0)));
         if !(width.is_finite() && width > 0.0) {
             return Err(Error::invalid(
@@ -111,9 +111,14 @@ impl Sweep {
 
 /// Number of sites from the first to the last one that moves from a to b; all of them if none does.
 pub fn moving_sites(a: &Spins, b: &Spins) -> usize {
-    let moves = |i: &usize| angle(a.get(*i), b.get(*i)) > MOVES;
-    let ends = (0..a.sites()).find(moves).zip((0..a.sites()).rfind(moves));
-    ends.map_or(a.sites(), |(first, last)| last - first + 1)
+    moving(a.sites(), |i| angle(a.get(i), b.get(i))).len()
+}
+
+/// From the first to the last site that moves, where `far` tells by how much (rad); all of them if none does.
+fn moving(sites: usize, far: impl Fn(usize) -> f64) -> Range<usize> {
+    let moves = |i: &usize| far(*i) > MOVES;
+    let ends = (0..sites).find(moves).zip((0..sites).rfind(moves));
+    ends.map_or(0..sites, |(first, last)| first..last + 1)
 }
 
 /// The fraction of its way a spin has gone at time T.
