@@ -64,6 +64,18 @@ impl<'a> ComponentsMut<'a> {
         ComponentsMut { x, y, z }
     }
 
+    /// The sites of `range` alone.
+    #[inline]
+    pub fn into_range(self, range: std::ops::Range<usize>) -> ComponentsMut<'a> {
+        ComponentsMut { x: &mut self.x[range.clone()], y: &mut self.y[range.clone()], z: &mut self.z[range] }
+    }
+
+    /// The field, to be read.
+    #[inline]
+    pub fn as_read(&self) -> Components<'_> {
+        Components { x: self.x, y: self.y, z: self.z }
+    }
+
     /// The same field again, for a shorter time.
     #[inline]
     pub fn reborrow(&mut self) -> ComponentsMut<'_> {

@@ -48,6 +48,7 @@ pub struct Band<'h> {
     tangent: Vec<f64>,
     perpendicular: Vec<f64>,
     along: Vec<f64>,
+    chord: Vec<f64>,
     largest: Vec<f64>,
     uphill: Vec<Option<usize>>,
     spacing: Vec<f64>,
@@ -66,6 +67,7 @@ impl<'h> Band<'h> {
             tangent: vec![0.0; images * slab],
             perpendicular: vec![0.0; images * slab],
             along: vec![0.0; images],
+            chord: vec![0.0; images],
             largest: vec![0.0; images],
             uphill: vec![None; images],
             spacing: vec![0.0; images - 1],
@@ -121,6 +123,7 @@ impl<'h> Band<'h> {
         self.spacing[0] = crate::path::distance(path.image(0), path.image(1));
         for (k, s) in split.iter().enumerate() {
             (self.along[k + 1], self.largest[k + 1], self.spacing[k + 1]) = (s.along, s.largest, s.after);
+            self.chord[k + 1] = s.chord;
         }
         for k in (1..last).filter(|&k| held[k]) {
             self.perpendicular[k * slab..(k + 1) * slab].fill(0.0);
@@ -201,6 +204,11 @@ impl<'h> Band<'h> {
     /// Force along the tangent at image k (meV/rad).
     pub fn along(&self, k: usize) -> f64 {
         self.along[k]
+    }
+
+    /// Straight distance (rad) from image k on a slope to its neighbour uphill.
+    pub fn chord(&self, k: usize) -> f64 {
+        self.chord[k]
     }
 
     /// The neighbour uphill of image k on a monotone slope; none at an extremum.

@@ -15,6 +15,8 @@ pub struct Split {
     pub largest: f64,
     /// Distance to the next image (rad).
     pub after: f64,
+    /// |τ| before it is projected and scaled: on a slope the straight distance to the neighbour uphill.
+    pub chord: f64,
 }
 
 /// Writes the unit tangent `t` and the force across it `f` of the image in the middle of `images`, where the Euclidean
@@ -29,7 +31,7 @@ pub fn image(
 ) -> Split {
     let [before, here, after] = images.map(Components::new);
     let g = Components::new(g);
-    let (mut tt, mut ft, mut squares) = (0.0, 0.0, 0.0);
+    let (mut tt, mut ft, mut squares, mut raw) = (0.0, 0.0, 0.0, 0.0);
     for ((first, mut t), (_, mut f)) in tiles(t).zip(tiles(f)) {
         let range = first..first + t.x.len();
         let [before, here, after] = [before, here, after].map(|m| m.range(range.clone()));
@@ -37,6 +39,7 @@ pub fn image(
         chord(weights, before.x, here.x, after.x, t.x);
         chord(weights, before.y, here.y, after.y, t.y);
         chord(weights, before.z, here.z, after.z, t.z);
+        raw += slab::dot(t.x, t.x) + slab::dot(t.y, t.y) + slab::dot(t.z, t.z);
         negate(g.x, f.x);
         negate(g.y, f.y);
         negate(g.z, f.z);
@@ -51,7 +54,7 @@ pub fn image(
     let shrink = 1.0 / tt.sqrt().max(f64::MIN_POSITIVE);
     let along = ft * shrink;
     let largest = take_apart(t, f, shrink, along);
-    Split { along, largest, after: squares.sqrt() }
+    Split { along, largest, after: squares.sqrt(), chord: raw.sqrt() }
 }
 
 /// t = w⁺ (after − here) + w⁻ (here − before), one component.

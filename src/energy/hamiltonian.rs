@@ -2,17 +2,20 @@
 
 use super::{Blocks, EnergyTerm, Magnetostatics};
 use crate::error::{Error, Result};
-use crate::field::{Components, ComponentsMut, TILE, tiles};
+use crate::field::{Components, ComponentsMut, TILE, project_row, tiles};
 use crate::geometry::{Direction, Vector, vector};
 use crate::lattice::Chain;
 use crate::linalg::slab;
 use crate::spins::Spins;
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// From this many sites on, the tiles of one image are shared among threads.
 const LONG: usize = 32 * 1024;
+/// Sites in one pass where gradients are not kept.
+const ROW: usize = 64;
 
 /// The energy of a chain: named terms, their sum, its derivatives and its symmetry.
 #[derive(Debug)]
@@ -148,32 +151,68 @@ impl Hamiltonian {
     /// Energy above the reference (meV), and the Euclidean gradient ∂E/∂m (meV) in `g`.
     pub fn energy_gradient(&self, m: &[f64], g: &mut [f64]) -> f64 {
         self.evaluations.fetch_add(1, Ordering::Relaxed);
-        let m = Components::new(m);
-        let far = self.long_range().map_or(0.0, |long| {
-            g.fill(0.0);
-            let mut density = vec![0.0; self.sites];
-            long.add_gradient(m, ComponentsMut::new(g), &mut density, 0..self.sites);
-            slab::sum(&density)
-        });
-        let tile = |(first, mut g): (usize, ComponentsMut)| -> f64 {
-            let range = first..first + g.x.len();
-            if self.long.is_none() {
-                g.x.fill(0.0);
-                g.y.fill(0.0);
-                g.z.fill(0.0);
-            }
+        let far = self.add_far(m, g);
+        let tile = |(first, g): (usize, ComponentsMut)| -> f64 {
             let mut density = [0.0; TILE];
-            for (_, t) in self.terms.iter().enumerate().filter(|(k, _)| self.long != Some(*k)) {
-                t.add_gradient(m, g.reborrow(), &mut density[..range.len()], range.clone());
-            }
-            slab::sum(&density[..range.len()])
+            let density = &mut density[..g.x.len()];
+            self.near_tile(m, first, g, density);
+            slab::sum(density)
         };
         let sums: Vec<f64> = if self.sites >= LONG {
             tiles(g).collect::<Vec<_>>().into_par_iter().map(tile).collect()
         } else {
             tiles(g).map(tile).collect()
         };
-        far + slab::sum(&sums)
+        far.map_or(0.0, |density| slab::sum(&density)) + slab::sum(&sums)
+    }
+
+    /// The same, and the energy density of every site above the reference (meV). `each` is called for one row of sites after the
+    /// other, with their gradient, as soon as that is known.
+    pub fn density_gradient(
+        &self,
+        m: &[f64],
+        g: &mut [f64],
+        density: &mut [f64],
+        mut each: impl FnMut(Range<usize>, Components),
+    ) -> f64 {
+        self.evaluations.fetch_add(1, Ordering::Relaxed);
+        let far = self.add_far(m, g);
+        density.fill(0.0);
+        let mut sums = Vec::with_capacity(self.sites.div_ceil(TILE));
+        for ((first, mut g), density) in tiles(g).zip(density.chunks_mut(TILE)) {
+            self.near_tile(m, first, g.reborrow(), density);
+            let row = first..first + density.len();
+            if let Some(far) = &far {
+                slab::add_scaled(density, 1.0, &far[row.clone()]);
+            }
+            sums.push(slab::sum(density));
+            each(row, g.as_read());
+        }
+        slab::sum(&sums)
+    }
+
+    /// What a long-ranged term adds: its gradient in `g`, and its density.
+    fn add_far(&self, m: &[f64], g: &mut [f64]) -> Option<Vec<f64>> {
+        self.long_range().map(|long| {
+            g.fill(0.0);
+            let mut density = vec![0.0; self.sites];
+            long.add_gradient(Components::new(m), ComponentsMut::new(g), &mut density, 0..self.sites);
+            density
+        })
+    }
+
+    /// The other terms on the sites from `first` on: their gradient, added to that of a long-ranged one, and their densities,
+    /// added to `density`.
+    fn near_tile(&self, m: &[f64], first: usize, mut g: ComponentsMut, density: &mut [f64]) {
+        let range = first..first + g.x.len();
+        if self.long.is_none() {
+            g.x.fill(0.0);
+            g.y.fill(0.0);
+            g.z.fill(0.0);
+        }
+        for (_, t) in self.terms.iter().enumerate().filter(|(k, _)| self.long != Some(*k)) {
+            t.add_gradient(Components::new(m), g.reborrow(), density, range.clone());
+        }
     }
 
     /// Gradients computed so far.
@@ -204,11 +243,17 @@ impl Hamiltonian {
 
     /// −∂E/∂m on the tangent planes (meV), zero on frozen sites, from the Euclidean gradient.
     pub fn force(&self, m: &[f64], g: &[f64], force: &mut [f64]) {
-        for (f, g) in force.iter_mut().zip(g) {
-            *f = -g;
-        }
-        crate::field::project(m, force);
-        self.hold_frozen(force);
+        self.force_row(0, Components::new(m), Components::new(g), ComponentsMut::new(force));
+    }
+
+    /// [`force`](Self::force) on a row of sites, from site `first` on.
+    pub fn force_row(&self, first: usize, m: Components, g: Components, mut force: ComponentsMut) {
+        let negate = |f: &mut [f64], g: &[f64]| f.iter_mut().zip(g).for_each(|(f, g)| *f = -g);
+        negate(force.x, g.x);
+        negate(force.y, g.y);
+        negate(force.z, g.z);
+        project_row(m, force.reborrow());
+        self.hold_frozen_row(first, force);
     }
 
     /// Clears a vector field on the frozen sites.
@@ -228,8 +273,13 @@ impl Hamiltonian {
     /// Energy density of every site above the reference (meV).
     pub fn density(&self, m: &[f64]) -> Vec<f64> {
         let mut density = vec![0.0; self.sites];
-        for t in &self.terms {
-            super::add_density(t.as_ref(), m, &mut density);
+        let mut gradient = [0.0; 3 * ROW];
+        for (k, density) in density.chunks_mut(ROW).enumerate() {
+            let gradient = ComponentsMut::new(&mut gradient[..3 * density.len()]);
+            self.near_tile(m, k * ROW, gradient, density);
+        }
+        if let Some(k) = self.long {
+            super::add_density(self.terms[k].as_ref(), m, &mut density);
         }
         density
     }
@@ -255,9 +305,7 @@ impl Hamiltonian {
     /// E(a) − E(b) (meV), summed from differences of densities.
     pub fn difference_mev(&self, a: &[f64], b: &[f64]) -> f64 {
         let mut d = self.density(a);
-        for (d, e) in d.iter_mut().zip(self.density(b)) {
-            *d -= e;
-        }
+        slab::add_scaled(&mut d, -1.0, &self.density(b));
         slab::sum(&d)
     }
 

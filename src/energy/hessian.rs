@@ -32,10 +32,21 @@ impl TangentBasis {
 
     /// Makes it the basis at `m`, in the memory it has.
     pub fn set(&mut self, m: &[f64]) {
-        self.first.resize(m.len(), 0.0);
-        self.second.resize(m.len(), 0.0);
-        let (e, f) = (ComponentsMut::new(&mut self.first), ComponentsMut::new(&mut self.second));
-        write_basis(Components::new(m), e.x, e.y, e.z, f.x, f.y, f.z);
+        self.resize(m.len() / 3);
+        self.set_row(0..m.len() / 3, m);
+    }
+
+    /// Makes it a basis of so many sites, all rows of which are to be set.
+    pub fn resize(&mut self, sites: usize) {
+        self.first.resize(3 * sites, 0.0);
+        self.second.resize(3 * sites, 0.0);
+    }
+
+    /// Makes it the basis at `m` on a row of sites.
+    pub fn set_row(&mut self, row: Range<usize>, m: &[f64]) {
+        let e = ComponentsMut::new(&mut self.first).into_range(row.clone());
+        let f = ComponentsMut::new(&mut self.second).into_range(row.clone());
+        write_basis(Components::new(m).range(row), e.x, e.y, e.z, f.x, f.y, f.z);
     }
 
     /// The two vectors at site i.
@@ -65,6 +76,32 @@ impl TangentBasis {
         write_coordinates(Components::new(&self.first), Components::new(&self.second), Components::new(v), t);
     }
 
+    /// Tangent coordinates of a vector field on a row of sites alone.
+    pub fn write_row_coordinates(&self, row: Range<usize>, v: Components, t: &mut [f64]) {
+        let (e, f) = self.range(row);
+        write_coordinates(e, f, v, t);
+    }
+
+    /// Tangent coordinates of u + s v on a row of sites alone.
+    pub fn write_row_sum(&self, row: Range<usize>, u: Components, s: f64, v: Components, t: &mut [f64]) {
+        let (e, f) = self.range(row);
+        write_sum(e, f, u, s, v, t);
+    }
+
+    /// On a row of sites alone, the tangent coordinates of a vector field and of a rotation about `axis`, side by side.
+    pub fn write_row_pair(&self, row: Range<usize>, v: Components, axis: Vector, both: &mut [f64]) {
+        let (e, f) = self.range(row);
+        write_pair(e, f, v, axis, both);
+    }
+
+    /// Writes the vector field of tangent coordinates on a row of sites alone.
+    pub fn row_field(&self, row: Range<usize>, t: &[f64], v: ComponentsMut) {
+        let (e, f) = self.range(row);
+        write_component(t, e.x, f.x, v.x);
+        write_component(t, e.y, f.y, v.y);
+        write_component(t, e.z, f.z, v.z);
+    }
+
     /// Tangent coordinates (2N) of a rotation of all spins about `axis`: a direction in which the energy does not change,
     /// where the axis is one of symmetry.
     pub fn rotation(&self, axis: Vector) -> Vec<f64> {
@@ -79,18 +116,9 @@ impl TangentBasis {
         write_rotation(axis, Components::new(&self.first), Components::new(&self.second), t);
     }
 
-    /// Adds s times the tangent coordinates (2N) of a vector field (3N) to `t`.
-    pub fn add_coordinates(&self, s: f64, v: &[f64], t: &mut [f64]) {
-        add_coordinates(s, Components::new(&self.first), Components::new(&self.second), Components::new(v), t);
-    }
-
     /// Writes the vector field (3N) of tangent coordinates (2N).
     pub fn field(&self, t: &[f64], v: &mut [f64]) {
-        let v = ComponentsMut::new(v);
-        let (e, f) = (Components::new(&self.first), Components::new(&self.second));
-        write_component(t, e.x, f.x, v.x);
-        write_component(t, e.y, f.y, v.y);
-        write_component(t, e.z, f.z, v.z);
+        self.row_field(0..v.len() / 3, t, ComponentsMut::new(v));
     }
 }
 
@@ -129,15 +157,32 @@ fn write_coordinates(e: Components, f: Components, v: Components, t: &mut [f64])
 }
 
 #[multiversion(targets("x86_64+avx2"))]
-fn add_coordinates(s: f64, e: Components, f: Components, v: Components, t: &mut [f64]) {
+fn write_sum(e: Components, f: Components, u: Components, s: f64, v: Components, t: &mut [f64]) {
     let n = v.x.len();
+    let (ux, uy, uz) = (&u.x[..n], &u.y[..n], &u.z[..n]);
     let (vx, vy, vz) = (&v.x[..n], &v.y[..n], &v.z[..n]);
     let (ex, ey, ez) = (&e.x[..n], &e.y[..n], &e.z[..n]);
     let (fx, fy, fz) = (&f.x[..n], &f.y[..n], &f.z[..n]);
     let t = &mut t[..2 * n];
     for i in 0..n {
-        t[2 * i] += s * (ex[i] * vx[i] + ey[i] * vy[i] + ez[i] * vz[i]);
-        t[2 * i + 1] += s * (fx[i] * vx[i] + fy[i] * vy[i] + fz[i] * vz[i]);
+        let (x, y, z) = (ux[i] + s * vx[i], uy[i] + s * vy[i], uz[i] + s * vz[i]);
+        t[2 * i] = ex[i] * x + ey[i] * y + ez[i] * z;
+        t[2 * i + 1] = fx[i] * x + fy[i] * y + fz[i] * z;
+    }
+}
+
+#[multiversion(targets("x86_64+avx2"))]
+fn write_pair(e: Components, f: Components, v: Components, axis: Vector, both: &mut [f64]) {
+    let n = v.x.len();
+    let (vx, vy, vz) = (&v.x[..n], &v.y[..n], &v.z[..n]);
+    let (ex, ey, ez) = (&e.x[..n], &e.y[..n], &e.z[..n]);
+    let (fx, fy, fz) = (&f.x[..n], &f.y[..n], &f.z[..n]);
+    let both = &mut both[..4 * n];
+    for i in 0..n {
+        both[4 * i] = ex[i] * vx[i] + ey[i] * vy[i] + ez[i] * vz[i];
+        both[4 * i + 1] = axis[0] * fx[i] + axis[1] * fy[i] + axis[2] * fz[i];
+        both[4 * i + 2] = fx[i] * vx[i] + fy[i] * vy[i] + fz[i] * vz[i];
+        both[4 * i + 3] = -(axis[0] * ex[i] + axis[1] * ey[i] + axis[2] * ez[i]);
     }
 }
 
@@ -165,46 +210,87 @@ fn write_component(t: &[f64], e: &[f64], f: &[f64], v: &mut [f64]) {
 /// The Riemannian Hessian at `m`, where the Euclidean gradient is `g`. A frozen site has a stiff diagonal and no couplings.
 pub fn assemble(h: &Hamiltonian, m: &[f64], g: &[f64], basis: &TangentBasis) -> Banded {
     let mut matrix = Banded::default();
-    fill(h, m, g, basis, 0.0, true, &mut matrix);
+    assemble_into(h, m, g, basis, 0.0, &mut matrix);
     matrix
 }
 
-/// [`assemble`] of H + shift·1 into the memory of `matrix`. What a long-ranged term does to distant sites is there to six digits
-/// only: enough to steer, and quicker.
+/// [`assemble`] of H + shift·1 into the memory of `matrix`.
+pub fn assemble_into(h: &Hamiltonian, m: &[f64], g: &[f64], basis: &TangentBasis, shift: f64, matrix: &mut Banded) {
+    fill(h, m, g, basis, shift, true, matrix);
+}
+
+/// [`assemble_into`], quicker: what a long-ranged term does to distant sites is there to six digits only, enough
+/// to steer.
 pub fn assemble_shifted(h: &Hamiltonian, m: &[f64], g: &[f64], basis: &TangentBasis, shift: f64, matrix: &mut Banded) {
     fill(h, m, g, basis, shift, false, matrix);
 }
 
 fn fill(h: &Hamiltonian, m: &[f64], g: &[f64], basis: &TangentBasis, shift: f64, precise: bool, matrix: &mut Banded) {
-    let dense = h.long_range().is_some_and(|long| long.exponentials(precise).is_none());
-    let rim = match (dense, h.periodic()) {
-        (true, _) => h.sites(),
-        (false, true) => h.reach(),
-        (false, false) => 0,
-    };
-    let width = if dense { 1 } else { 2 * h.reach() + 1 };
-    let plain = if h.has_frozen() { 0 } else { (h.sites() - rim).saturating_sub(h.reach()) };
-    matrix.reset(2 * (h.sites() - rim), width, 2 * rim, 2 * plain);
-    let own = h.varying_blocks(Components::new(m));
-    let parts = Parts {
-        h,
-        m: Components::new(m),
-        g: Components::new(g),
-        blocks: own.as_ref().unwrap_or(h.constant_blocks()),
-        basis,
-        shift,
-    };
-    parts.write_plain(plain, matrix);
-    for i in plain..h.sites() {
-        parts.add_site(i, matrix);
+    let assembly = Assembly::begin(h, m, g, shift, precise, matrix);
+    assembly.write_rows(basis, 0..h.sites(), matrix);
+    assembly.finish(basis, matrix);
+}
+
+/// A Hessian that is written row by row of sites.
+#[derive(Debug)]
+pub struct Assembly<'a> {
+    h: &'a Hamiltonian,
+    m: Components<'a>,
+    g: Components<'a>,
+    /// The blocks, where they are not the constant ones.
+    own: Option<Blocks>,
+    shift: f64,
+    precise: bool,
+    /// So many sites have all their later partners after them in the band.
+    plain: usize,
+}
+
+impl<'a> Assembly<'a> {
+    /// Gives `matrix` its shape; all rows are to be written then, and at the end [`finish`](Self::finish)ed.
+    pub fn begin(
+        h: &'a Hamiltonian,
+        m: &'a [f64],
+        g: &'a [f64],
+        shift: f64,
+        precise: bool,
+        matrix: &mut Banded,
+    ) -> Assembly<'a> {
+        let dense = h.long_range().is_some_and(|long| long.exponentials(precise).is_none());
+        let rim = match (dense, h.periodic()) {
+            (true, _) => h.sites(),
+            (false, true) => h.reach(),
+            (false, false) => 0,
+        };
+        let width = if dense { 1 } else { 2 * h.reach() + 1 };
+        let plain = if h.has_frozen() { 0 } else { (h.sites() - rim).saturating_sub(h.reach()) };
+        matrix.reset(2 * (h.sites() - rim), width, 2 * rim, 2 * plain);
+        let own = h.varying_blocks(Components::new(m));
+        Assembly { h, m: Components::new(m), g: Components::new(g), own, shift, precise, plain }
     }
-    if let Some(long) = h.long_range() {
-        far::add(h, long, basis, precise, matrix);
+
+    /// Writes a row of sites, with the basis there and as many sites on as the bonds reach.
+    pub fn write_rows(&self, basis: &TangentBasis, row: Range<usize>, matrix: &mut Banded) {
+        self.parts(basis).write_plain(row.start..row.end.min(self.plain), matrix);
+    }
+
+    /// Adds all that [`write_rows`](Self::write_rows) has not written, whatever rows it was given.
+    pub fn finish(&self, basis: &TangentBasis, matrix: &mut Banded) {
+        for i in self.plain..self.h.sites() {
+            self.parts(basis).add_site(i, matrix);
+        }
+        if let Some(long) = self.h.long_range() {
+            far::add(self.h, long, basis, self.precise, matrix);
+        }
+    }
+
+    fn parts<'b>(&'b self, basis: &'b TangentBasis) -> Parts<'b> {
+        let blocks = self.own.as_ref().unwrap_or(self.h.constant_blocks());
+        Parts { h: self.h, m: self.m, g: self.g, blocks, basis, shift: self.shift }
     }
 }
 
 /// Sites in one pass of the kernels.
-const ROW: usize = 256;
+const ROW: usize = 64;
 
 /// (ee, fe, ff) of a row of sites.
 #[multiversion(targets("x86_64+avx2"))]
@@ -283,12 +369,12 @@ impl Parts<'_> {
         [[vector::dot(e, ap), vector::dot(f, ap)], [vector::dot(e, aq), vector::dot(f, aq)]]
     }
 
-    /// Writes the columns of the sites before `end`, all of whose later partners come after them in the band: the entries
-    /// from the diagonal down, row after row of sites.
-    fn write_plain(&self, end: usize, matrix: &mut Banded) {
+    /// Writes the columns of sites all of whose later partners come after them in the band: the entries from the diagonal
+    /// down, row after row of sites.
+    fn write_plain(&self, sites: Range<usize>, matrix: &mut Banded) {
         let mut entries = [[0.0; ROW]; 4];
-        for first in (0..end).step_by(ROW) {
-            let here = first..end.min(first + ROW);
+        for first in sites.clone().step_by(ROW) {
+            let here = first..sites.end.min(first + ROW);
             let columns = || here.clone().zip(0..);
             diagonals(self, here.clone(), &mut entries);
             let [ee, fe, ff, _] = &entries;

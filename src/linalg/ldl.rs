@@ -23,8 +23,14 @@ impl Ldl {
     }
 
     /// The factors of A, and on the way the solution of A X = B as by [`solve`](Self::solve).
-    pub fn solving(mut a: Banded, x: &mut [f64], columns: usize) -> Ldl {
-        let floor = 4.0 * f64::EPSILON * a.size().max(1e-280);
+    pub fn solving(a: Banded, x: &mut [f64], columns: usize) -> Ldl {
+        let size = a.size();
+        Ldl::solving_sized(a, size, x, columns)
+    }
+
+    /// The same of a matrix whose largest entry, roughly, is known.
+    pub fn solving_sized(mut a: Banded, size: f64, x: &mut [f64], columns: usize) -> Ldl {
+        let floor = 4.0 * f64::EPSILON * size.max(1e-280);
         let done = match (twisted::width(&a), columns) {
             (Some(1), 0) => Some(twisted::eliminate::<1, 2, 0>(&mut a, floor, x)),
             (Some(3), 0) => Some(twisted::eliminate::<3, 4, 0>(&mut a, floor, x)),

@@ -77,19 +77,6 @@ pub fn add_all(v: &mut [f64], weights: &[f64], vectors: &[Vec<f64>]) {
 /// Numbers in a tile that stays in the first cache.
 const WORK: usize = 2048;
 
-/// |a − b|, the straight distance.
-pub fn distance(a: &[f64], b: &[f64]) -> f64 {
-    let tile = |(a, b): (&[f64], &[f64])| {
-        let mut difference = [0.0; 256];
-        for (d, (a, b)) in difference.iter_mut().zip(a.iter().zip(b)) {
-            *d = a - b;
-        }
-        dot(&difference, &difference)
-    };
-    let squares: f64 = a.chunks(256).zip(b.chunks(256)).map(tile).sum();
-    squares.sqrt()
-}
-
 /// y ← y + s x.
 #[multiversion(targets("x86_64+avx2"))]
 pub fn add_scaled(y: &mut [f64], s: f64, x: &[f64]) {
@@ -144,21 +131,142 @@ pub fn without(v: &mut [f64], space: &[Vec<f64>]) {
     add_all(v, &parts, space);
 }
 
-/// Two columns side by side: a_0, b_0, a_1, b_1, …
-pub fn interleave(a: &[f64], b: &[f64], both: &mut Vec<f64>) {
-    both.resize(2 * a.len(), 0.0);
-    for ((pair, a), b) in both.chunks_exact_mut(2).zip(a).zip(b) {
-        (pair[0], pair[1]) = (*a, *b);
+/// Columns side by side: a_0, b_0, …, a_1, b_1, …
+pub fn interleave(columns: &[Vec<f64>], together: &mut Vec<f64>) {
+    let k = columns.len();
+    together.resize(columns.iter().map(|c| c.len()).sum(), 0.0);
+    for (j, column) in columns.iter().enumerate() {
+        together[j..].iter_mut().step_by(k).zip(column).for_each(|(t, c)| *t = *c);
     }
 }
 
-/// The two columns of [`interleave`].
-pub fn deinterleave(both: &[f64], a: &mut Vec<f64>, b: &mut Vec<f64>) {
-    a.resize(both.len() / 2, 0.0);
-    b.resize(both.len() / 2, 0.0);
-    for ((pair, a), b) in both.chunks_exact(2).zip(a).zip(b) {
-        (*a, *b) = (pair[0], pair[1]);
+/// A column beside one of zeros: a_0, 0, a_1, 0, …
+pub fn spread(a: &[f64], both: &mut Vec<f64>) {
+    both.resize(2 * a.len(), 0.0);
+    for (pair, a) in both.chunks_exact_mut(2).zip(a) {
+        (pair[0], pair[1]) = (*a, 0.0);
     }
+}
+
+/// Column j of k columns side by side.
+pub fn one_of(together: &[f64], k: usize, j: usize, column: &mut Vec<f64>) {
+    column.clear();
+    column.extend(together.chunks_exact(k).map(|row| row[j]));
+}
+
+/// The products of `a` with two columns side by side.
+pub fn dot_pairs(a: &[f64], both: &[f64]) -> [f64; 2] {
+    if a.len() > 4096 {
+        let half = (a.len() / 2).next_multiple_of(8);
+        let [p, q] = dot_pairs(&a[..half], &both[..2 * half]);
+        let [r, s] = dot_pairs(&a[half..], &both[2 * half..]);
+        return [p + r, q + s];
+    }
+    dot_pairs_short(a, both)
+}
+
+#[multiversion(targets("x86_64+avx2"))]
+fn dot_pairs_short(a: &[f64], both: &[f64]) -> [f64; 2] {
+    let mut sums = [0.0; 16];
+    let (a8, both8) = (a.chunks_exact(8), both.chunks_exact(16));
+    let (a_rest, both_rest) = (a8.remainder(), both8.remainder());
+    for (a, both) in a8.zip(both8) {
+        for l in 0..16 {
+            sums[l] += a[l / 2] * both[l];
+        }
+    }
+    for (a, pair) in a_rest.iter().zip(both_rest.chunks_exact(2)) {
+        sums[0] += a * pair[0];
+        sums[1] += a * pair[1];
+    }
+    [0, 1].map(|c| fold([0, 1, 2, 3, 4, 5, 6, 7].map(|l| sums[2 * l + c])))
+}
+
+/// Adds the products of `a` with k columns side by side to `sums`.
+pub fn add_dots(a: &[f64], together: &[f64], sums: &mut [f64]) {
+    match sums {
+        [] => {}
+        [sum] => *sum += dot(a, together),
+        [first, second] => {
+            let [p, q] = dot_pairs(a, together);
+            (*first, *second) = (*first + p, *second + q);
+        }
+        _ => {
+            for (a, row) in a.iter().zip(together.chunks_exact(sums.len())) {
+                sums.iter_mut().zip(row).for_each(|(sum, x)| *sum += a * x);
+            }
+        }
+    }
+}
+
+/// x ← x + s_0 a + s_1 b of two columns side by side.
+#[multiversion(targets("x86_64+avx2"))]
+pub fn add_pairs(x: &mut [f64], s: [f64; 2], both: &[f64]) {
+    for (x, pair) in x.iter_mut().zip(both.chunks_exact(2)) {
+        *x += s[0] * pair[0] + s[1] * pair[1];
+    }
+}
+
+/// The same for any number of columns.
+pub fn add_columns(x: &mut [f64], s: &[f64], together: &[f64]) {
+    match *s {
+        [] => {}
+        [s] => add_scaled(x, s, together),
+        [s, t] => add_pairs(x, [s, t], together),
+        _ => {
+            for (x, row) in x.iter_mut().zip(together.chunks_exact(s.len())) {
+                *x += s.iter().zip(row).map(|(s, c)| s * c).sum::<f64>();
+            }
+        }
+    }
+}
+
+/// Of two columns side by side and two others: a·c, b·c and b·d.
+#[multiversion(targets("x86_64+avx2"))]
+pub fn cross_pairs(ab: &[f64], cd: &[f64]) -> [f64; 3] {
+    let (mut straight, mut crossed) = ([0.0; 16], [0.0; 16]);
+    let (ab16, cd16) = (ab.chunks_exact(16), cd.chunks_exact(16));
+    let rest = ab16.remainder().chunks_exact(2).zip(cd16.remainder().chunks_exact(2));
+    for (ab, cd) in ab16.zip(cd16) {
+        for l in 0..16 {
+            straight[l] += ab[l] * cd[l];
+            crossed[l] += ab[l] * cd[l ^ 1];
+        }
+    }
+    for (ab, cd) in rest {
+        for l in 0..2 {
+            straight[l] += ab[l] * cd[l];
+            crossed[l] += ab[l] * cd[l ^ 1];
+        }
+    }
+    let every_second = |sums: &[f64; 16], c: usize| fold([0, 1, 2, 3, 4, 5, 6, 7].map(|l| sums[2 * l + c]));
+    [every_second(&straight, 0), every_second(&crossed, 1), every_second(&straight, 1)]
+}
+
+/// Of two columns side by side, the second ← s times it plus t times the first; and a copy of both.
+#[multiversion(targets("x86_64+avx2"))]
+pub fn turn_second(both: &mut [f64], s: f64, t: f64, copy: &mut [f64]) {
+    let (own, other) = ([1.0, s, 1.0, s, 1.0, s, 1.0, s], [0.0, t, 0.0, t, 0.0, t, 0.0, t]);
+    let turn = |both: &mut [f64], copy: &mut [f64]| {
+        for l in 0..both.len().min(8) {
+            copy[l] = own[l] * both[l] + other[l] * both[l & !1];
+        }
+        both.copy_from_slice(copy);
+    };
+    let (eights, copies) = (both.chunks_exact_mut(8), copy.chunks_exact_mut(8));
+    eights.zip(copies).for_each(|(both, copy)| turn(both, copy));
+    let done = both.len() / 8 * 8;
+    turn(&mut both[done..], &mut copy[done..]);
+}
+
+/// Σ (a − b).
+pub fn sum_of_differences(a: &[f64], b: &[f64]) -> f64 {
+    let mut room = [0.0; 256];
+    let sums = a.chunks(256).zip(b.chunks(256)).map(|(a, b)| {
+        room[..a.len()].iter_mut().zip(a.iter().zip(b)).for_each(|(d, (a, b))| *d = a - b);
+        sum(&room[..a.len()])
+    });
+    sum(&sums.collect::<Vec<f64>>())
 }
 
 #[cfg(test)]
@@ -182,8 +290,36 @@ mod tests {
         assert_eq!(sums, [10_000.0, 12_497_500.0]);
         add_all(&mut v, &[0.5, -1.0], &columns);
         assert_eq!((v[0], v[4999]), (2.0, -4997.0));
+        for n in [1, 7, 8, 29, 5000] {
+            let a: Vec<f64> = (0..n).map(|k| (k % 5) as f64).collect();
+            let columns: Vec<Vec<f64>> = (1..4).map(|c| (0..n).map(|k| ((k * c) % 7) as f64).collect()).collect();
+            let dots: Vec<f64> = columns.iter().map(|c| dot(&a, c)).collect();
+            for k in 1..4 {
+                let (mut together, mut sums, mut one) = (Vec::new(), vec![0.0; k], Vec::new());
+                interleave(&columns[..k], &mut together);
+                add_dots(&a, &together, &mut sums);
+                assert_eq!(sums, dots[..k]);
+                one_of(&together, k, k - 1, &mut one);
+                assert_eq!(one, columns[k - 1]);
+                let (mut x, mut expected) = (a.clone(), a.clone());
+                add_columns(&mut x, &[1.0, -2.0, 3.0][..k], &together);
+                (0..k).for_each(|c| add_scaled(&mut expected, [1.0, -2.0, 3.0][c], &columns[c]));
+                assert_eq!(x, expected);
+                if k == 2 {
+                    let ([p, q], mut copy) = ([&columns[0], &columns[1]], vec![0.0; 2 * n]);
+                    assert_eq!(cross_pairs(&together, &together), [dot(p, p), dot(p, q), dot(q, q)]);
+                    turn_second(&mut together, 3.0, -1.0, &mut copy);
+                    let turned: Vec<f64> = p.iter().zip(q).flat_map(|(p, q)| [*p, 3.0 * q - p]).collect();
+                    assert_eq!((&together, &copy), (&turned, &turned));
+                }
+            }
+            let mut pairs = Vec::new();
+            spread(&a, &mut pairs);
+            assert_eq!(dot_pairs(&columns[0], &pairs), [dots[0], 0.0]);
+            assert_eq!(sum_of_differences(&a, &columns[0]), sum(&a) - sum(&columns[0]));
+        }
         let mut many: Vec<f64> = (0..99).map(|k| -k as f64).collect();
-        assert_eq!((max_abs(&many), distance(&many, &[0.0; 99])), (98.0, norm(&many)));
+        assert_eq!(max_abs(&many), 98.0);
         many[17] = f64::NAN;
         assert!(max_abs(&many).is_nan());
     }

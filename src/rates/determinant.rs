@@ -17,30 +17,22 @@
 //! ```
 
 use super::Unstable;
-use crate::linalg::{Banded, Ldl, slab};
-use crate::saddle::{accurate, pin, remove};
+use crate::linalg::{Banded, Ldl};
+use crate::saddle::{Border, Pin, pin, remove};
 
 /// A Hessian whose zero modes are pinned, factorised; without its descending mode, if it has one.
 #[derive(Debug)]
 pub struct PinnedHessian {
-    matrix: Banded,
     factors: Ldl,
     /// Modes that are left out as they are: zero modes, and a stiff descending one.
     zeros: Vec<Vec<f64>>,
-    descending: Option<Descending>,
+    /// Leaves a flat descending mode out.
+    border: Option<Border>,
     log_determinant: f64,
 }
 
 /// From this part of ‖H‖₁ on an eigenvalue is no small number. (A pin on a stiff mode could make the matrix singular.)
 const STIFF: f64 = 1e-5;
-
-/// The border that leaves a flat descending mode out.
-#[derive(Debug)]
-struct Descending {
-    columns: [Vec<f64>; 2],
-    solved: [Vec<f64>; 2],
-    schur: [[f64; 2]; 2],
-}
 
 impl PinnedHessian {
     /// Of a Hessian (meV) with these orthonormal zero modes and, at a saddle, its descending mode (unit, orthogonal to them); κ is
@@ -48,36 +40,25 @@ impl PinnedHessian {
     pub fn new(hessian: &Banded, zeros: &[Vec<f64>], descending: Option<&Unstable>, kappa: f64) -> PinnedHessian {
         let mut matrix = hessian.clone();
         let mut used = Vec::new();
-        let columns: Vec<Vec<f64>> = zeros.iter().map(|z| pin(&mut matrix, z, &mut used, kappa)).collect();
-        let flat = descending.filter(|u| -u.eigenvalue_mev < STIFF * hessian.norm1());
-        let soft = flat.map(|u| (u.mode.clone(), pin(&mut matrix, &u.mode, &mut used, kappa)));
-        let factors = matrix.clone().factor();
-        let overlaps: Vec<f64> = columns.iter().flat_map(|e| zeros.iter().map(move |z| slab::dot(e, z))).collect();
+        let pins: Vec<Pin> = zeros.iter().map(|z| pin(&mut matrix, z, &mut used, kappa)).collect();
+        let overlaps: Vec<f64> = pins.iter().flat_map(|e| zeros.iter().map(|z| e.dot(z))).collect();
         let added = zeros.len() as f64 * libm::log(kappa) + 2.0 * libm::log(determinant(&overlaps, zeros.len()).abs());
-        let log_determinant = factors.log_abs_determinant() - added;
-        let mut pinned = PinnedHessian { matrix, factors, zeros: zeros.to_vec(), descending: None, log_determinant };
-        if let Some(u) = descending.filter(|_| soft.is_none()) {
-            pinned.log_determinant -= libm::log(-u.eigenvalue_mev);
-            pinned.zeros.push(u.mode.clone());
-        }
-        if let Some((t, mut e)) = soft {
-            slab::scale(&mut e, -1.0);
-            pinned.leave_out([t, e], kappa);
-        }
-        pinned
-    }
-
-    fn leave_out(&mut self, columns: [Vec<f64>; 2], kappa: f64) {
-        let solved = [0, 1].map(|k| accurate(&self.matrix, &self.factors, &columns[k]));
-        let mut schur = [[0.0, 0.0], [0.0, 1.0 / kappa]];
-        for i in 0..2 {
-            for j in 0..2 {
-                schur[i][j] -= 0.5 * (slab::dot(&columns[i], &solved[j]) + slab::dot(&columns[j], &solved[i]));
+        let mut zeros = zeros.to_vec();
+        let (factors, border, own) = match descending {
+            Some(u) if -u.eigenvalue_mev < STIFF * hessian.norm1() => {
+                let mut border = Border::along(u.mode.clone());
+                let (_, factors) = border.factor_refined(matrix, &mut used, kappa);
+                let [[a, b], [c, d]] = border.schur();
+                (factors, Some(border), libm::log(kappa) + libm::log((a * d - b * c).abs()))
             }
-        }
-        let [[a, b], [c, d]] = schur;
-        self.log_determinant += libm::log(kappa) + libm::log((a * d - b * c).abs());
-        self.descending = Some(Descending { columns, solved, schur });
+            Some(u) => {
+                zeros.push(u.mode.clone());
+                (matrix.factor(), None, -libm::log(-u.eigenvalue_mev))
+            }
+            None => (matrix.factor(), None, 0.0),
+        };
+        let log_determinant = factors.log_abs_determinant() - added + own;
+        PinnedHessian { factors, zeros, border, log_determinant }
     }
 
     /// ln|det'H|, energies in meV; without the descending mode's factor, if that was given.
@@ -89,11 +70,8 @@ impl PinnedHessian {
     pub fn solve(&self, b: &mut [f64]) {
         remove(b, &self.zeros);
         self.factors.solve(b, 1);
-        if let Some(Descending { columns, solved, schur: [[a, b01], [c, d]] }) = &self.descending {
-            let r = [-slab::dot(&columns[0], b), -slab::dot(&columns[1], b)];
-            let determinant = a * d - b01 * c;
-            slab::add_scaled(b, -(d * r[0] - b01 * r[1]) / determinant, &solved[0]);
-            slab::add_scaled(b, -(a * r[1] - c * r[0]) / determinant, &solved[1]);
+        if let Some(border) = &self.border {
+            border.take_back(b, 0.0);
         }
         remove(b, &self.zeros);
     }
@@ -129,6 +107,7 @@ fn determinant(matrix: &[f64], n: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linalg::slab;
     use rand::{RngExt, SeedableRng};
 
     #[test]

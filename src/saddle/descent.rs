@@ -7,12 +7,15 @@
 //! descent goes on along that direction, and ends only where the inertia counts none.
 
 use super::pinned::Pinned;
+use super::point::Point;
 use super::spectrum::Spectrum;
 use super::state::State;
 use super::trail::Trail;
 use crate::energy::Hamiltonian;
-use crate::linalg::{Ldl, slab};
+use crate::field::project;
+use crate::linalg::{Banded, Ldl, slab};
 use crate::sphere::rotation_of;
+use std::mem::{swap, take};
 
 /// Largest rotation of a spin in one step (rad).
 const CAP: f64 = 0.3;
@@ -25,6 +28,10 @@ const MARCH: usize = 600;
 /// Most Newton steps across a valley after each step along it, which end when one is less than this part of that step.
 const CORRECTIONS: usize = 3;
 const ON_THE_WAY: f64 = 0.1;
+/// A step that ends by a correction larger than this part of it, or falls by another amount than the slopes at its ends tell,
+/// to this factor, may have left its valley for the next: a shorter one is taken.
+const ASTRAY: f64 = 0.5;
+const AS_TOLD: f64 = 1.25;
 /// A valley whose slope is less than this part of the steepest has left its top behind.
 const LESS_STEEP: f64 = 0.8;
 /// Most steps down the gradient.
@@ -51,164 +58,266 @@ pub struct Descent {
 
 /// Descends from a saddle along ± its valley (a unit field of 3N numbers); c is the stiffness scale (meV).
 pub fn descend(h: &Hamiltonian, saddle: &State, valley: &[f64], c: f64) -> Descent {
-    let mut trail = Trail::from(&saddle.m);
-    let mut state = saddle.clone();
-    let mut tau = valley.to_vec();
-    let mut arrived = false;
-    let mut less_steep = LESS_STEEP;
-    for _ in 0..ROUNDS {
-        state = march(h, state, &mut tau, c, less_steep, &mut trail);
-        let end;
-        (state, end) = fall(h, state, c, &mut trail);
-        if let Fall::Crawling(v) = end {
-            tau = v;
-            crate::field::project(&state.m, &mut tau);
-            less_steep = 0.0;
-            continue;
-        }
-        less_steep = LESS_STEEP;
-        arrived = matches!(end, Fall::Arrived);
-        if Spectrum::negatives(h, &state) == 0 || h.is_stopped() {
-            break;
-        }
-        arrived = false;
-        crate::field::project(&state.m, &mut tau);
-        let Some(mode) = state.lowest_mode() else { break };
-        let mut on = state.field(&mode.vector);
-        if slab::dot(&on, &tau) < 0.0 {
-            slab::scale(&mut on, -1.0);
-        }
-        tau = on;
-    }
-    Descent { fallen_mev: h.difference_mev(&saddle.m, &state.m), arrived, m: state.m, way: trail.into_points() }
+    let mut walk = Walk {
+        h,
+        c,
+        here: saddle.point.clone(),
+        next: Point::default(),
+        tau: valley.to_vec(),
+        last: None,
+        trail: Trail::from(&saddle.m),
+        room: Room::default(),
+    };
+    let arrived = walk.down();
+    Descent { fallen_mev: saddle.above_mev(&walk.here), arrived, m: walk.here.m, way: walk.trail.into_points() }
 }
 
-/// Along the valley as long as it falls, and its slope is more than a part of the steepest.
-fn march(h: &Hamiltonian, start: State, tau: &mut Vec<f64>, c: f64, part: f64, trail: &mut Trail) -> State {
-    let noise = 64.0 * f64::EPSILON * h.stiffness_mev();
-    let mut state = start;
-    let mut steepest = 0.0f64;
-    let mut step = FIRST;
-    for _ in 0..MARCH {
-        let mut along = tau.clone();
-        slab::scale(&mut along, step / rotation_of(tau));
-        let mut next = State::at(h, state.moved(&along));
-        crate::field::project(&next.m, tau);
-        for _ in 0..CORRECTIONS {
-            let Some(rotation) = correct(h, &mut next, tau, c) else { break };
-            if rotation < ON_THE_WAY * step {
-                break;
-            }
-        }
-        if h.difference_mev(&state.m, &next.m) < -noise || h.is_stopped() {
-            break;
-        }
-        state = next;
-        trail.pass(&state.m);
-        let t = state.basis.coordinates(tau);
-        let slope = -slab::dot(&state.slope, &t) / slab::norm(&t);
-        if slope < part * steepest {
-            break;
-        }
-        steepest = steepest.max(slope);
-        step = (GROWTH * step).min(LONGEST);
-    }
-    state
+/// A descent on its way.
+struct Walk<'a> {
+    h: &'a Hamiltonian,
+    c: f64,
+    here: Point,
+    /// Where the step that is being tried leads.
+    next: Point,
+    /// The valley's direction (3N), of any length.
+    tau: Vec<f64>,
+    /// The direction at the start of the last step along the valley, a radian a unit of length, and that step's length (rad).
+    last: Option<(Vec<f64>, f64)>,
+    trail: Trail,
+    room: Room,
 }
 
-/// One Newton step across the valley, which bends away from any straight step along it, and the valley's direction there;
-/// its size (rad, any spin). None where the valley is lost: straight on, the descent will find the way.
-fn correct(h: &Hamiltonian, state: &mut State, tau: &mut Vec<f64>, c: f64) -> Option<f64> {
-    let kappa = (h.stiffness_mev() / 3.0).max(c);
-    let p = Pinned::rough(state, &state.basis.coordinates(tau), 1e-6 * c, kappa);
-    let (d, _) = p.solve(&state.downhill(), 0.0);
-    let (w, _) = p.valley();
-    if p.complement_negatives > 0 || slab::dot(&w, &p.soft).abs() < 0.05 * slab::norm(&w) {
-        return None;
-    }
-    let mut across = state.field(&d);
-    let rotation = rotation_of(&across);
-    if rotation > CAP {
-        slab::scale(&mut across, CAP / rotation);
-    }
-    *tau = state.field(&w);
-    *state = State::at(h, state.moved(&across));
-    crate::field::project(&state.m, tau);
-    Some(rotation)
+/// Memory for the linear algebra.
+#[derive(Default)]
+struct Room {
+    pinned: Pinned,
+    matrix: Banded,
+    x: Vec<f64>,
+    v: Vec<f64>,
 }
 
 /// How a fall ended.
 enum Fall {
     /// Where the gradient vanishes.
     Arrived,
-    /// On a slope where steps down the gradient are short and a valley is the quicker way; the direction of the last one.
-    Crawling(Vec<f64>),
+    /// On a slope where steps down the gradient are short and a valley is the quicker way; the last one is in `tau`.
+    Crawling,
     /// Where no step lowers the energy.
     Stuck,
 }
 
-/// Implicit Euler down the gradient, to a point where it vanishes.
-fn fall(h: &Hamiltonian, mut state: State, c: f64, trail: &mut Trail) -> (State, Fall) {
-    let scale = h.stiffness_mev();
-    let tolerance = 4e-15 * scale;
-    let mut rate = c;
-    let mut short = 0;
-    let mut refusals: usize = 0;
-    for _ in 0..STEPS {
-        if state.max_torque_mev() <= tolerance || h.is_stopped() {
-            return (state, Fall::Arrived);
+impl Walk<'_> {
+    /// To a minimum; whether it is one.
+    fn down(&mut self) -> bool {
+        let mut less_steep = LESS_STEEP;
+        for _ in 0..ROUNDS {
+            self.march(less_steep);
+            let end = self.fall();
+            if matches!(end, Fall::Crawling) {
+                less_steep = 0.0;
+                continue;
+            }
+            less_steep = LESS_STEEP;
+            if Spectrum::negatives(self.h, &self.here, &mut self.room.matrix) == 0 || self.h.is_stopped() {
+                return matches!(end, Fall::Arrived);
+            }
+            project(&self.here.m, &mut self.tau);
+            let state = State::of(self.h, self.here.clone());
+            let Some(mode) = state.lowest_mode() else { return false };
+            let mut on = state.field(&mode.vector);
+            if slab::dot(&on, &self.tau) < 0.0 {
+                slab::scale(&mut on, -1.0);
+            }
+            self.tau = on;
         }
-        let Some((next, v, refused)) = euler(h, &state, &mut rate, scale) else { return (state, Fall::Stuck) };
-        refusals = if refused { CRAWL } else { refusals.saturating_sub(1) };
-        // plain Newton steps that gain nothing: the rest is rounding
-        let settled = rate == 0.0
-            && next.max_torque_mev() < 1e-9 * c
-            && next.max_torque_mev() > 0.5 * state.max_torque_mev()
-            && h.difference_mev(&state.m, &next.m) <= 64.0 * f64::EPSILON * scale;
-        state = next;
-        trail.pass(&state.m);
-        if settled {
-            return (state, Fall::Arrived);
-        }
-        short = if refusals > 0 && rotation_of(&v) < SHORT { short + 1 } else { 0 };
-        if short >= CRAWL {
-            return (state, Fall::Crawling(v));
-        }
+        false
     }
-    (state, Fall::Stuck)
-}
 
-/// One step, its field, and whether a longer one was refused. The rate 1/Δt rises until H + rate is positive definite and the
-/// energy falls as foretold, and falls again after a step that succeeds at once.
-fn euler(h: &Hamiltonian, state: &State, rate: &mut f64, scale: f64) -> Option<(State, Vec<f64>, bool)> {
-    let noise = 256.0 * f64::EPSILON * scale;
-    let smallest = 1e-14 * scale;
-    let mut refused = false;
-    while *rate < 1e6 * scale {
-        let mut matrix = state.hessian.clone();
-        matrix.shift(*rate + smallest);
-        let mut x = state.downhill();
-        let factors = Ldl::solving(matrix, &mut x, 1);
-        if factors.negatives() == 0 {
-            let mut v = state.field(&x);
-            let rotation = rotation_of(&v);
-            if rotation > CAP {
-                slab::scale(&mut v, CAP / rotation);
-                slab::scale(&mut x, CAP / rotation);
+    /// Along the valley as long as it falls, and its slope is more than a part of the steepest.
+    fn march(&mut self, part: f64) {
+        let noise = 64.0 * f64::EPSILON * self.h.stiffness_mev();
+        let (mut slope, mut steepest) = (0.0f64, 0.0f64);
+        let mut step = FIRST;
+        self.last = None;
+        for _ in 0..MARCH {
+            let length = self.predict(step);
+            let kept = self.cross(step);
+            let fallen = self.here.above_mev(&self.next);
+            if fallen < -noise || self.h.is_stopped() {
+                break;
             }
-            let next = State::at(h, state.moved(&v));
-            let (told, fallen) = (-state.predicted_mev(&x), h.difference_mev(&state.m, &next.m));
-            // a fall that was not foretold leads over a maximum into another valley
-            let foretold = told < 16.0 * noise || (0.25 * told..4.0 * told).contains(&fallen);
-            if foretold && fallen >= -noise {
-                if !refused {
-                    *rate = if *rate < 4.0 * smallest { 0.0 } else { *rate / 4.0 };
-                }
-                return Some((next, v, refused));
+            let there = self.slope_ahead();
+            let told = 0.5 * (slope + there) * length;
+            let foretold = fallen < 1e3 * noise || (told / AS_TOLD..told * AS_TOLD).contains(&fallen);
+            if step > FIRST && !(kept && foretold) {
+                self.turn_back();
+                step /= 2.0;
+                continue;
+            }
+            slope = there;
+            swap(&mut self.here, &mut self.next);
+            self.trail.pass(&self.here.m);
+            if slope < part * steepest {
+                break;
+            }
+            steepest = steepest.max(slope);
+            step = (GROWTH * step).min(LONGEST);
+        }
+    }
+
+    /// A step along the valley, bent as the last one was: ds (t + ½ ds ∂t/∂s), the change ∂t/∂s of its direction from
+    /// the last place to this; its length in the space of all spins (rad).
+    fn predict(&mut self, step: f64) -> f64 {
+        let speed = rotation_of(&self.tau);
+        slab::scale(&mut self.tau, 1.0 / speed);
+        let along = &mut self.room.v;
+        along.clone_from(&self.tau);
+        slab::scale(along, step);
+        if let Some((before, length)) = &mut self.last {
+            project(&self.here.m, before);
+            let half = 0.5 * step * step / *length;
+            slab::add_scaled(along, half, &self.tau);
+            slab::add_scaled(along, -half, before);
+            let rotation = rotation_of(along);
+            slab::scale(along, step / rotation);
+        }
+        let (before, length) = self.last.get_or_insert_with(Default::default);
+        before.clone_from(&self.tau);
+        *length = step;
+        self.next.go(self.h, &self.here, along);
+        project(&self.next.m, &mut self.tau);
+        slab::norm(along)
+    }
+
+    /// Newton's method across the valley, after a step along it; whether it stayed near.
+    fn cross(&mut self, step: f64) -> bool {
+        for _ in 0..CORRECTIONS {
+            let Some(rotation) = self.correct() else { return false };
+            if rotation > ASTRAY * step {
+                return false;
+            }
+            if rotation < ON_THE_WAY * step {
+                break;
             }
         }
-        refused = true;
-        *rate = (4.0 * *rate).max(smallest);
+        true
     }
-    None
+
+    /// By how much the energy falls along the valley at `next` (meV/rad).
+    fn slope_ahead(&mut self) -> f64 {
+        let t = &mut self.room.x;
+        self.next.basis.write_coordinates(&self.tau, t);
+        -slab::dot(&self.next.slope, t) / slab::norm(t)
+    }
+
+    /// Back to the start of the last step.
+    fn turn_back(&mut self) {
+        if let Some((before, _)) = self.last.take() {
+            self.tau = before;
+        }
+    }
+
+    /// One Newton step across the valley, which bends away from any step along it, and the valley's direction there; its size
+    /// (rad, any spin). None where the valley is lost: straight on, the descent will find the way.
+    fn correct(&mut self) -> Option<f64> {
+        let Room { pinned: p, x, v, .. } = &mut self.room;
+        let kappa = (self.h.stiffness_mev() / 3.0).max(self.c);
+        let mut matrix = p.take_memory();
+        self.next.write_hessian(self.h, 1e-6 * self.c, &mut matrix);
+        self.next.basis.write_coordinates(&self.tau, x);
+        p.factor(matrix, &self.next.zeros, x, kappa);
+        p.write_valley(x);
+        if p.complement_negatives > 0 || slab::dot(x, p.soft()).abs() < 0.05 * slab::norm(x) {
+            return None;
+        }
+        self.next.write_field(x, &mut self.tau);
+        self.next.write_downhill(x);
+        p.solve_in_place(x);
+        self.next.write_field(x, v);
+        let rotation = rotation_of(v);
+        if rotation > CAP {
+            slab::scale(v, CAP / rotation);
+        }
+        self.next.move_by(self.h, v);
+        project(&self.next.m, &mut self.tau);
+        Some(rotation)
+    }
+
+    /// Implicit Euler down the gradient, to a point where it vanishes.
+    fn fall(&mut self) -> Fall {
+        let scale = self.h.stiffness_mev();
+        let tolerance = 4e-15 * scale;
+        let mut rate = self.c;
+        let mut short = 0;
+        let mut refusals: usize = 0;
+        for _ in 0..STEPS {
+            if self.here.max_torque_mev() <= tolerance || self.h.is_stopped() {
+                return Fall::Arrived;
+            }
+            let Some(refused) = self.euler(&mut rate, scale) else { return Fall::Stuck };
+            refusals = if refused { CRAWL } else { refusals.saturating_sub(1) };
+            // plain Newton steps that gain nothing: the rest is rounding
+            let settled = rate == 0.0
+                && self.next.max_torque_mev() < 1e-9 * self.c
+                && self.next.max_torque_mev() > 0.5 * self.here.max_torque_mev()
+                && self.here.above_mev(&self.next) <= 64.0 * f64::EPSILON * scale;
+            swap(&mut self.here, &mut self.next);
+            self.trail.pass(&self.here.m);
+            if settled {
+                return Fall::Arrived;
+            }
+            short = if refusals > 0 && rotation_of(&self.room.v) < SHORT { short + 1 } else { 0 };
+            if short >= CRAWL {
+                self.tau.clone_from(&self.room.v);
+                project(&self.here.m, &mut self.tau);
+                return Fall::Crawling;
+            }
+        }
+        Fall::Stuck
+    }
+
+    /// Takes one step to `next`; whether a longer one was refused. The rate 1/Δt rises until H + rate is positive definite and the
+    /// energy falls as foretold, and falls again after a step that succeeds at once.
+    fn euler(&mut self, rate: &mut f64, scale: f64) -> Option<bool> {
+        let noise = 256.0 * f64::EPSILON * scale;
+        let smallest = 1e-14 * scale;
+        let mut refused = false;
+        while *rate < 1e6 * scale {
+            if let Some(told) = self.leap(*rate + smallest) {
+                let fallen = self.here.above_mev(&self.next);
+                // a fall that was not foretold leads over a maximum into another valley
+                let foretold = told < 16.0 * noise || (0.25 * told..4.0 * told).contains(&fallen);
+                if foretold && fallen >= -noise {
+                    if !refused {
+                        *rate = if *rate < 4.0 * smallest { 0.0 } else { *rate / 4.0 };
+                    }
+                    return Some(refused);
+                }
+            }
+            refused = true;
+            *rate = (4.0 * *rate).max(smallest);
+        }
+        None
+    }
+
+    /// Takes the step v of (H + rate) v = −g to `next`; by how much the energy is to fall (meV): −g·v − ½ v·Hv. None where
+    /// H + rate is not positive definite.
+    fn leap(&mut self, rate: f64) -> Option<f64> {
+        let Room { matrix, x, v, .. } = &mut self.room;
+        self.here.write_hessian(self.h, rate, matrix);
+        self.here.write_downhill(x);
+        let factors = Ldl::solving(take(matrix), x, 1);
+        let positive = factors.negatives() == 0;
+        *matrix = factors.into_memory();
+        if !positive {
+            return None;
+        }
+        self.here.write_field(x, v);
+        let rotation = rotation_of(v);
+        let part = if rotation > CAP { CAP / rotation } else { 1.0 };
+        slab::scale(v, part);
+        self.next.go(self.h, &self.here, v);
+        let down = -slab::dot(&self.here.slope, x);
+        Some(part * down - 0.5 * part * part * (down - rate * slab::dot(x, x)))
+    }
 }

@@ -3,19 +3,22 @@
 //! A wall that can slide gives a chain's Hessian one eigenvalue of either sign that may be 1e-12 of the others. Plain Newton
 //! oscillates there; so the soft mode is split off (Lyapunov–Schmidt): Newton across it, a safeguarded search along it.
 
+mod border;
 mod descent;
 mod modes;
 mod pinned;
+mod point;
 mod polish;
 mod spectrum;
 mod state;
 mod trail;
 mod valley;
 
+pub(crate) use border::{Border, Pin, pin};
 pub use descent::{Descent, descend};
 pub use modes::follow_modes;
 pub use pinned::Pinned;
-pub(crate) use pinned::{accurate, pin};
+pub use point::Point;
 pub use polish::polish;
 pub use spectrum::Spectrum;
 pub(crate) use state::remove;

@@ -97,7 +97,7 @@ impl Frame {
         let others: Vec<Vec<f64>> = soft.iter().skip(1).map(|m| m.vector.clone()).collect();
         let p = Pinned::new(state, &soft.first()?.vector, 0.0, &others, kappa);
         let minus = state.downhill();
-        let (across, _) = p.solve(&minus, 0.0);
+        let (across, _) = p.solve(&minus);
         let positive = slab::dot(&across, &minus) >= 0.0 && soft.last().is_none_or(|m| count < MODES || m.value > 0.0);
         positive.then_some(Frame { soft, across })
     }

@@ -10,24 +10,19 @@
 //! soft pivot s = 1/κ − eᵀH″⁻¹e,   Morse index = n(H″) + [s < 0]
 //! ```
 
-use super::state::State;
+use super::border::{Border, pin};
+use super::state::{State, remove};
 use crate::linalg::{Banded, Ldl, slab};
 use std::mem::take;
 
 /// A factorised, pinned Hessian.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Pinned {
     /// Kept where solutions are refined.
-    matrix: Banded,
+    matrix: Option<Banded>,
     factors: Ldl,
-    /// Solutions get a step of iterative refinement.
-    refined: bool,
     zeros: Vec<Vec<f64>>,
-    /// The soft mode: unit vector, orthogonal to the zero modes.
-    pub soft: Vec<f64>,
-    columns: [Vec<f64>; 2],
-    solved: [Vec<f64>; 2],
-    schur: [[f64; 2]; 2],
+    border: Border,
     /// Negative directions in the complement of the soft mode and the zero modes.
     pub complement_negatives: usize,
     /// Its sign is that of the soft direction's curvature.
@@ -38,65 +33,77 @@ pub struct Pinned {
 
 impl Pinned {
     /// Of H + shift·1 at a state, with the soft mode `t` (tangent coordinates, any length) and `frozen` further modes that are
-    /// treated as zero modes; κ is the stiffness of the pins (meV).
+    /// treated as zero modes; κ is the stiffness of the pins (meV). Solutions get a step of iterative refinement.
     pub fn new(state: &State, t: &[f64], shift: f64, frozen: &[Vec<f64>], kappa: f64) -> Pinned {
-        Pinned::factorised(state, t, shift, frozen, kappa, true)
-    }
-
-    /// The same without further modes, whose solutions are less accurate and quicker: good enough for steps that are corrected.
-    pub fn rough(state: &State, t: &[f64], shift: f64, kappa: f64) -> Pinned {
-        Pinned::factorised(state, t, shift, &[], kappa, false)
-    }
-
-    fn factorised(state: &State, t: &[f64], shift: f64, frozen: &[Vec<f64>], kappa: f64, refined: bool) -> Pinned {
+        let mut pinned = Pinned::default();
         let mut matrix = state.hessian.clone();
         matrix.shift(shift);
+        let mut used = pinned.pin_zeros(&mut matrix, state.zeros.iter().chain(frozen), kappa);
+        pinned.aim(t);
+        let (matrix, factors) = pinned.border.factor_refined(matrix, &mut used, kappa);
+        pinned.matrix = Some(matrix);
+        pinned.count(factors);
+        pinned
+    }
+
+    /// The matrix of the last factors, to be filled for [`factor`](Self::factor).
+    pub fn take_memory(&mut self) -> Banded {
+        take(&mut self.factors).into_memory()
+    }
+
+    /// Takes any matrix with orthonormal zero modes, in the memory there is. Solutions are less accurate than those of
+    /// [`new`](Self::new), and quicker: good enough for steps that are corrected.
+    pub fn factor(&mut self, mut matrix: Banded, zeros: &[Vec<f64>], t: &[f64], kappa: f64) {
+        let mut used = self.pin_zeros(&mut matrix, zeros.iter(), kappa);
+        self.aim(t);
+        let factors = self.border.factor(matrix, &mut used, kappa);
+        self.count(factors);
+    }
+
+    /// Pins the zero modes; the sites that have pins now.
+    fn pin_zeros<'a>(
+        &mut self,
+        matrix: &mut Banded,
+        modes: impl Iterator<Item = &'a Vec<f64>>,
+        kappa: f64,
+    ) -> Vec<usize> {
         let mut used = Vec::new();
-        let mut zeros: Vec<Vec<f64>> = Vec::new();
-        for mode in state.zeros.iter().chain(frozen) {
-            let mut z = mode.clone();
-            super::state::remove(&mut z, &zeros);
+        let mut memory = take(&mut self.zeros).into_iter();
+        for mode in modes {
+            let mut z = memory.next().unwrap_or_default();
+            z.clone_from(mode);
+            remove(&mut z, &self.zeros);
             let size = slab::norm(&z);
             if size > 1e-3 {
                 slab::scale(&mut z, 1.0 / size);
-                pin(&mut matrix, &z, &mut used, kappa);
-                zeros.push(z);
+                pin(matrix, &z, &mut used, kappa);
+                self.zeros.push(z);
             }
         }
-        let mut soft = t.to_vec();
-        super::state::remove(&mut soft, &zeros);
-        let size = slab::norm(&soft);
-        slab::scale(&mut soft, 1.0 / size.max(f64::MIN_POSITIVE));
-        let e = pin(&mut matrix, &soft, &mut used, kappa);
-        let mut minus_e = e;
-        slab::scale(&mut minus_e, -1.0);
-        let columns = [soft.clone(), minus_e];
-        let (factors, solved) = match refined {
-            true => two_refined(&matrix, &columns),
-            false => two(take(&mut matrix), &columns),
-        };
-        let mut schur = [[0.0; 2]; 2];
-        for i in 0..2 {
-            for j in 0..2 {
-                let symmetric = 0.5 * (slab::dot(&columns[i], &solved[j]) + slab::dot(&columns[j], &solved[i]));
-                schur[i][j] = if i == 1 && j == 1 { 1.0 / kappa } else { 0.0 } - symmetric;
-            }
-        }
-        let negatives = factors.negatives();
-        let soft_pivot = schur[1][1];
-        Pinned {
-            complement_negatives: (negatives + negatives_of(schur)).saturating_sub(1),
-            index: negatives + usize::from(soft_pivot < 0.0),
-            matrix,
-            factors,
-            refined,
-            zeros,
-            soft,
-            columns,
-            solved,
-            schur,
-            soft_pivot,
-        }
+        used
+    }
+
+    /// Makes `t` the soft mode, without its parts along the zero modes.
+    fn aim(&mut self, t: &[f64]) {
+        let soft = &mut self.border.soft;
+        soft.clear();
+        soft.extend_from_slice(t);
+        remove(soft, &self.zeros);
+        let size = slab::norm(soft);
+        slab::scale(soft, 1.0 / size.max(f64::MIN_POSITIVE));
+    }
+
+    fn count(&mut self, factors: Ldl) {
+        let (negatives, schur) = (factors.negatives(), self.border.schur());
+        self.soft_pivot = schur[1][1];
+        self.complement_negatives = (negatives + negatives_of(schur)).saturating_sub(1);
+        self.index = negatives + usize::from(self.soft_pivot < 0.0);
+        self.factors = factors;
+    }
+
+    /// The soft mode: unit vector, orthogonal to the zero modes.
+    pub fn soft(&self) -> &[f64] {
+        &self.border.soft
     }
 
     /// The modes treated as zero modes, orthonormal.
@@ -104,61 +111,42 @@ impl Pinned {
         &self.zeros
     }
 
-    /// Solves [H t; tᵀ 0] (x, ν) = (b, along) in the complement of the zero modes.
-    pub fn solve(&self, b: &[f64], along: f64) -> (Vec<f64>, f64) {
-        let mut b = b.to_vec();
-        super::state::remove(&mut b, &self.zeros);
-        if self.refined {
-            b = accurate(&self.matrix, &self.factors, &b);
-        } else {
-            self.factors.solve(&mut b, 1);
+    /// Solves [H t; tᵀ 0] (x, ν) = (b, 0) in the complement of the zero modes.
+    pub fn solve(&self, b: &[f64]) -> (Vec<f64>, f64) {
+        let mut x = b.to_vec();
+        let nu = self.solve_in_place(&mut x);
+        (x, nu)
+    }
+
+    /// [`solve`](Self::solve) where `x` is b at first; returns ν.
+    pub fn solve_in_place(&self, x: &mut Vec<f64>) -> f64 {
+        remove(x, &self.zeros);
+        match &self.matrix {
+            Some(matrix) => *x = accurate(matrix, &self.factors, x),
+            None => self.factors.solve(x, 1),
         }
-        self.bordered(b, along)
+        let nu = self.border.take_back(x, 0.0);
+        remove(x, &self.zeros);
+        nu
     }
 
     /// The valley's direction: solves [H t; tᵀ 0] (x, ν) = (0, 1).
     pub fn valley(&self) -> (Vec<f64>, f64) {
-        self.bordered(vec![0.0; self.soft.len()], 1.0)
+        let mut x = Vec::new();
+        let nu = self.write_valley(&mut x);
+        (x, nu)
     }
 
-    /// From H″⁻¹b to the solution with the last pin taken back and the component `along` the soft mode.
-    fn bordered(&self, mut x: Vec<f64>, along: f64) -> (Vec<f64>, f64) {
-        let r = [along - slab::dot(&self.columns[0], &x), -slab::dot(&self.columns[1], &x)];
-        let [[a, b], [c, d]] = self.schur;
-        let determinant = a * d - b * c;
-        let q = [(d * r[0] - b * r[1]) / determinant, (a * r[1] - c * r[0]) / determinant];
-        slab::add_scaled(&mut x, -q[0], &self.solved[0]);
-        slab::add_scaled(&mut x, -q[1], &self.solved[1]);
-        super::state::remove(&mut x, &self.zeros);
-        (x, q[0])
+    /// [`valley`](Self::valley) into the memory of `x`; returns ν.
+    pub fn write_valley(&self, x: &mut Vec<f64>) -> f64 {
+        let nu = self.border.valley(x);
+        remove(x, &self.zeros);
+        nu
     }
-}
-
-/// Adds κ e eᵀ on the site where `mode` is largest and no pin stands yet; returns e.
-pub(crate) fn pin(matrix: &mut Banded, mode: &[f64], used: &mut Vec<usize>, kappa: f64) -> Vec<f64> {
-    let size = |i: usize| mode[2 * i].powi(2) + mode[2 * i + 1].powi(2);
-    let mut site = 0;
-    let mut largest = -1.0;
-    for i in (0..mode.len() / 2).filter(|i| !used.contains(i)) {
-        if size(i) > largest {
-            (site, largest) = (i, size(i));
-        }
-    }
-    used.push(site);
-    let norm = size(site).sqrt().max(f64::MIN_POSITIVE);
-    let e = [mode[2 * site] / norm, mode[2 * site + 1] / norm];
-    let mut column = vec![0.0; mode.len()];
-    for a in 0..2 {
-        column[2 * site + a] = e[a];
-        for b in 0..=a {
-            matrix.add(2 * site + a, 2 * site + b, kappa * e[a] * e[b]);
-        }
-    }
-    column
 }
 
 /// A⁻¹ b with one step of iterative refinement.
-pub(crate) fn accurate(matrix: &Banded, factors: &Ldl, b: &[f64]) -> Vec<f64> {
+fn accurate(matrix: &Banded, factors: &Ldl, b: &[f64]) -> Vec<f64> {
     let mut x = b.to_vec();
     factors.solve(&mut x, 1);
     let mut r = vec![0.0; b.len()];
@@ -169,32 +157,6 @@ pub(crate) fn accurate(matrix: &Banded, factors: &Ldl, b: &[f64]) -> Vec<f64> {
     factors.solve(&mut r, 1);
     slab::add_scaled(&mut x, 1.0, &r);
     x
-}
-
-/// The factors of A, and A⁻¹ of two columns.
-fn two(matrix: Banded, columns: &[Vec<f64>; 2]) -> (Ldl, [Vec<f64>; 2]) {
-    let (mut both, mut solved) = (Vec::new(), [Vec::new(), Vec::new()]);
-    slab::interleave(&columns[0], &columns[1], &mut both);
-    let factors = Ldl::solving(matrix, &mut both, 2);
-    let [x, y] = &mut solved;
-    slab::deinterleave(&both, x, y);
-    (factors, solved)
-}
-
-/// The same with a step of iterative refinement.
-fn two_refined(matrix: &Banded, columns: &[Vec<f64>; 2]) -> (Ldl, [Vec<f64>; 2]) {
-    let (factors, mut solved) = two(matrix.clone(), columns);
-    let (mut both, mut rest) = (Vec::new(), [vec![0.0; solved[0].len()], vec![0.0; solved[1].len()]]);
-    for ((rest, x), b) in rest.iter_mut().zip(&solved).zip(columns) {
-        matrix.multiply(x, rest);
-        rest.iter_mut().zip(b).for_each(|(r, b)| *r = b - *r);
-    }
-    slab::interleave(&rest[0], &rest[1], &mut both);
-    factors.solve(&mut both, 2);
-    let [r, s] = &mut rest;
-    slab::deinterleave(&both, r, s);
-    solved.iter_mut().zip(&rest).for_each(|(x, r)| slab::add_scaled(x, 1.0, r));
-    (factors, solved)
 }
 
 /// Negative eigenvalues of a symmetric 2 × 2 matrix.

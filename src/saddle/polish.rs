@@ -2,7 +2,7 @@
 //!
 //! A valley bends, so that a step along a soft mode first costs torque across it.
 
-use super::pinned::pin;
+use super::border::pin;
 use super::state::{State, remove};
 use crate::energy::Hamiltonian;
 use crate::sphere::rotation_of;

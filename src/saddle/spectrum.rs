@@ -3,10 +3,12 @@
 //! A sign is told only above the noise floor 8·eps·‖H‖₁. The counts come from the inertia of H ± floor with the zero modes
 //! pinned (see [`super::Pinned`]), so they hold for all eigenvalues, not just the few that are computed.
 
-use super::pinned::pin;
+use super::border::pin;
+use super::point::Point;
 use super::state::State;
 use crate::energy::Hamiltonian;
-use crate::linalg::lowest_modes;
+use crate::linalg::{Banded, Ldl, lowest_modes};
+use std::mem::take;
 
 /// What kind of stationary point a state is.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,8 +32,9 @@ impl Spectrum {
     pub fn of(h: &Hamiltonian, state: &State, count: usize) -> Spectrum {
         let norm_mev = state.hessian.norm1();
         let floor_mev = floor_mev(h, norm_mev);
-        let negative = below(h, state, floor_mev);
-        let flat = below(h, state, -floor_mev).saturating_sub(negative);
+        let below = |shift: f64| pinned(h, state.hessian.clone(), &state.zeros, shift).negatives();
+        let negative = below(floor_mev);
+        let flat = below(-floor_mev).saturating_sub(negative);
         let frozen = (0..h.sites()).filter(|&i| h.is_frozen(i)).count();
         let free = state.hessian.order() - 2 * frozen - state.zeros.len().min(state.hessian.order() - 2 * frozen);
         let modes = lowest_modes(&state.hessian, count.min(free), &state.zeros);
@@ -39,9 +42,14 @@ impl Spectrum {
         Spectrum { negative, flat, zero: state.zeros.len(), floor_mev, norm_mev, lowest_mev }
     }
 
-    /// Negative directions of a state, zero modes apart: one factorisation.
-    pub fn negatives(h: &Hamiltonian, state: &State) -> usize {
-        below(h, state, floor_mev(h, state.hessian.norm1()))
+    /// Negative directions at a point, zero modes apart: one factorisation, in the memory of `matrix`.
+    pub fn negatives(h: &Hamiltonian, point: &Point, matrix: &mut Banded) -> usize {
+        point.write_hessian(h, 0.0, matrix);
+        let floor = floor_mev(h, matrix.norm1());
+        let factors = pinned(h, take(matrix), &point.zeros, floor);
+        let negatives = factors.negatives();
+        *matrix = factors.into_memory();
+        negatives
     }
 
     /// Zero modes and flat ones together, as results report them.
@@ -55,15 +63,14 @@ impl Spectrum {
     }
 }
 
-/// Eigenvalues of a state below −shift (meV), zero modes apart.
-fn below(h: &Hamiltonian, state: &State, shift: f64) -> usize {
-    let mut matrix = state.hessian.clone();
+/// The factors of a Hessian + shift·1 whose zero modes are pinned.
+fn pinned(h: &Hamiltonian, mut matrix: Banded, zeros: &[Vec<f64>], shift: f64) -> Ldl {
     let mut used = Vec::new();
-    for z in &state.zeros {
+    for z in zeros {
         pin(&mut matrix, z, &mut used, h.stiffness_mev());
     }
     matrix.shift(shift);
-    matrix.factor().negatives()
+    matrix.factor()
 }
 
 /// What an eigenvalue must exceed in size to have a sign (meV): the rounding error, or what a long-ranged Hessian leaves out.

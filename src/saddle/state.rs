@@ -1,52 +1,39 @@
-//! A configuration with its energy, gradient, tangent basis and Hessian.
+//! A configuration with its Hessian.
 
-use crate::energy::{Hamiltonian, TangentBasis, assemble};
+use super::point::Point;
+use crate::energy::Hamiltonian;
 use crate::linalg::{Banded, Mode, lowest_modes, slab};
 use crate::sphere::move_points;
+use std::ops::Deref;
 
-/// Everything a Newton step needs, at one configuration.
+/// Everything a Newton step needs, at one configuration: all that a [`Point`] has, and the Hessian.
 #[derive(Clone, Debug)]
 pub struct State {
-    /// Spins, component-major.
-    pub m: Vec<f64>,
-    /// Energy above the Hamiltonian's reference (meV).
-    pub energy_mev: f64,
-    /// Euclidean gradient (meV).
-    pub gradient: Vec<f64>,
-    /// Tangent basis.
-    pub basis: TangentBasis,
-    /// Riemannian gradient in tangent coordinates (meV).
-    pub slope: Vec<f64>,
+    /// Spins, energy and gradient.
+    pub point: Point,
     /// Riemannian Hessian in tangent coordinates (meV).
     pub hessian: Banded,
-    /// Orthonormal zero modes: rotations about the symmetry axes, in tangent coordinates.
-    pub zeros: Vec<Vec<f64>>,
+}
+
+impl Deref for State {
+    type Target = Point;
+
+    fn deref(&self) -> &Point {
+        &self.point
+    }
 }
 
 impl State {
     /// At the spins `m`.
     pub fn at(h: &Hamiltonian, m: Vec<f64>) -> State {
-        let mut gradient = vec![0.0; m.len()];
-        let energy_mev = h.energy_gradient(&m, &mut gradient);
-        let mut force = vec![0.0; m.len()];
-        h.force(&m, &gradient, &mut force);
-        let basis = TangentBasis::at(&m);
-        let mut slope = basis.coordinates(&force);
-        slab::scale(&mut slope, -1.0);
-        let hessian = assemble(h, &m, &gradient, &basis);
-        let zeros = h.symmetry_axes_at(&m).iter().map(|axis| basis.rotation(*axis)).collect();
-        let zeros = orthonormal(zeros, 1e-6);
-        State { m, energy_mev, gradient, basis, slope, hessian, zeros }
+        State::of(h, Point::at(h, m))
     }
 
-    /// Largest component of the Riemannian gradient (meV).
-    pub fn max_torque_mev(&self) -> f64 {
-        slab::max_abs(&self.slope)
-    }
-
-    /// −g in tangent coordinates (meV).
-    pub fn downhill(&self) -> Vec<f64> {
-        self.slope.iter().map(|g| -g).collect()
+    /// At a point.
+    pub fn of(h: &Hamiltonian, point: Point) -> State {
+        let mut hessian = Banded::default();
+        point.write_hessian(h, 0.0, &mut hessian);
+        State { point, hessian }
     }
 
     /// g·x + ½ xᵀHx: by how much the energy is to rise along the tangent coordinates x (meV).
@@ -59,13 +46,6 @@ impl State {
     /// The lowest mode, zero modes apart; none where there is no other direction.
     pub fn lowest_mode(&self) -> Option<Mode> {
         lowest_modes(&self.hessian, 1, &self.zeros).into_iter().next()
-    }
-
-    /// The vector field (3N) of tangent coordinates.
-    pub fn field(&self, t: &[f64]) -> Vec<f64> {
-        let mut v = vec![0.0; self.m.len()];
-        self.basis.field(t, &mut v);
-        v
     }
 
     /// The spins after a move along a vector field.

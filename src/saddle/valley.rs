@@ -168,7 +168,7 @@ impl Search<'_> {
     /// Modes of the complement of the soft mode and the zero modes, lowest first.
     fn complement(&self, p: &Pinned, count: usize) -> Vec<Mode> {
         let mut known = p.zeros().to_vec();
-        known.push(p.soft.clone());
+        known.push(p.soft().to_vec());
         let modes = lowest_modes(&self.state.hessian, count, p.zeros());
         let rest = modes.into_iter().map(|mut m| {
             remove(&mut m.vector, &known);
@@ -202,7 +202,7 @@ impl Search<'_> {
             return false;
         }
         let Some(lowest) = lowest_modes(&self.state.hessian, 1, p.zeros()).into_iter().next() else { return false };
-        let sign = if slab::dot(&lowest.vector, &p.soft) >= 0.0 { 1.0 } else { -1.0 };
+        let sign = if slab::dot(&lowest.vector, p.soft()) >= 0.0 { 1.0 } else { -1.0 };
         let mut field = self.state.field(&lowest.vector);
         slab::scale(&mut field, sign);
         self.tau = field;
@@ -223,7 +223,7 @@ impl Search<'_> {
         }
         let g = self.state.slope.clone();
         let minus: Vec<f64> = g.iter().map(|x| -x).collect();
-        let (d, nu) = p.solve(&minus, 0.0);
+        let (d, nu) = p.solve(&minus);
         let (w, nl) = p.valley();
         let size = slab::norm(&w);
         let (slope, curvature) = (-nu, -nl - self.shift * size * size);
@@ -326,9 +326,9 @@ impl Search<'_> {
         let factor = if rotation > CAP { CAP / rotation } else { 1.0 };
         slab::scale(&mut v, factor);
         let mut hs = vec![0.0; d.len()];
-        self.state.hessian.multiply(&p.soft, &mut hs);
-        let softer = curvature / (size * size) <= slab::dot(&p.soft, &hs);
-        let tau = if softer { self.state.field(&w) } else { self.state.field(&p.soft) };
+        self.state.hessian.multiply(p.soft(), &mut hs);
+        let softer = curvature / (size * size) <= slab::dot(p.soft(), &hs);
+        let tau = if softer { self.state.field(&w) } else { self.state.field(p.soft()) };
         self.x += factor * along;
         let predicted = slab::dot(g, &d).abs();
         let scale = self.state.energy_mev.abs().max(1e-2 * self.c);
@@ -381,7 +381,7 @@ impl Search<'_> {
         let (w, nl) = p.valley();
         Refined {
             verdict,
-            valley: self.state.field(&p.soft),
+            valley: self.state.field(p.soft()),
             steps,
             factorisations: self.factorisations,
             index: p.index,

@@ -110,8 +110,16 @@ impl<'a> Ways<'a> {
     pub fn about(&self, axis: Direction) -> Vec<Way> {
         let axis = self.common_axis(axis);
         let mut ways = self.direct.clone();
+        let mut last: Option<(Vector, Vector, Way)> = None;
         for &i in &self.opposite {
-            ways[i] = Way::new(self.a.get(i), self.b.get(i), axis);
+            let (p, q) = (self.a.get(i), self.b.get(i));
+            // of uniform states all ways are one
+            let way = match last {
+                Some((before, after, way)) if (before, after) == (p, q) => way,
+                _ => Way::new(p, q, axis),
+            };
+            last = Some((p, q, way));
+            ways[i] = way;
         }
         ways
     }

@@ -1,0 +1,117 @@
+//! A configuration with its energy, gradient and tangent basis, in memory that is used again for the next one.
+
+use crate::energy::{Hamiltonian, TangentBasis, assemble_into};
+use crate::field::{Components, ComponentsMut, TILE};
+use crate::linalg::{Banded, slab};
+use crate::saddle::orthonormal;
+use crate::sphere::move_points;
+
+/// Everything a step down the gradient needs, at one configuration; a Newton step needs its Hessian too.
+#[derive(Clone, Debug, Default)]
+pub struct Point {
+    /// Spins, component-major.
+    pub m: Vec<f64>,
+    /// Energy above the Hamiltonian's reference (meV).
+    pub energy_mev: f64,
+    /// Each site's share of it (meV).
+    density: Vec<f64>,
+    /// Euclidean gradient (meV).
+    pub gradient: Vec<f64>,
+    /// Tangent basis.
+    pub basis: TangentBasis,
+    /// Riemannian gradient in tangent coordinates (meV).
+    pub slope: Vec<f64>,
+    /// Orthonormal zero modes: rotations about the symmetry axes, in tangent coordinates.
+    pub zeros: Vec<Vec<f64>>,
+    /// Room for the force on a tile.
+    force: Vec<f64>,
+}
+
+impl Point {
+    /// At the spins `m`.
+    pub fn at(h: &Hamiltonian, m: Vec<f64>) -> Point {
+        let mut point = Point { m, ..Point::default() };
+        point.evaluate(h);
+        point
+    }
+
+    /// Goes where a move of another point's spins along a vector field leads.
+    pub fn go(&mut self, h: &Hamiltonian, from: &Point, v: &[f64]) {
+        self.m.clone_from(&from.m);
+        self.move_by(h, v);
+    }
+
+    /// Goes on along a vector field.
+    pub fn move_by(&mut self, h: &Hamiltonian, v: &[f64]) {
+        move_points(&mut self.m, v, v.len(), 1.0);
+        self.evaluate(h);
+    }
+
+    fn evaluate(&mut self, h: &Hamiltonian) {
+        let Point { m, density, gradient, basis, slope, force, .. } = self;
+        let n = m.len() / 3;
+        gradient.resize(3 * n, 0.0);
+        density.resize(n, 0.0);
+        slope.resize(2 * n, 0.0);
+        basis.resize(n);
+        let spins = Components::new(m);
+        force.resize(3 * n.min(TILE), 0.0);
+        self.energy_mev = h.density_gradient(m, gradient, density, |row, g| {
+            let force = &mut force[..3 * row.len()];
+            h.force_row(row.start, spins.range(row.clone()), g, ComponentsMut::new(force));
+            basis.set_row(row.clone(), m);
+            let slope = &mut slope[2 * row.start..2 * row.end];
+            basis.write_row_coordinates(row, Components::new(force), slope);
+            slab::scale(slope, -1.0);
+        });
+        let mut memory = std::mem::take(&mut self.zeros).into_iter();
+        let axes = h.symmetry_axes_at(&self.m);
+        let rotations = axes.iter().map(|axis| {
+            let mut t = memory.next().unwrap_or_default();
+            self.basis.write_rotation(*axis, &mut t);
+            t
+        });
+        self.zeros = orthonormal(rotations.collect(), 1e-6);
+    }
+
+    /// Largest component of the Riemannian gradient (meV).
+    pub fn max_torque_mev(&self) -> f64 {
+        slab::max_abs(&self.slope)
+    }
+
+    /// −g in tangent coordinates (meV).
+    pub fn downhill(&self) -> Vec<f64> {
+        let mut x = Vec::new();
+        self.write_downhill(&mut x);
+        x
+    }
+
+    /// [`downhill`](Self::downhill) into the memory of `x`.
+    pub fn write_downhill(&self, x: &mut Vec<f64>) {
+        x.clear();
+        x.extend(self.slope.iter().map(|g| -g));
+    }
+
+    /// The Riemannian Hessian plus shift·1 in tangent coordinates (meV), in the memory of `matrix`.
+    pub fn write_hessian(&self, h: &Hamiltonian, shift: f64, matrix: &mut Banded) {
+        assemble_into(h, &self.m, &self.gradient, &self.basis, shift, matrix);
+    }
+
+    /// Energy above that of another point (meV), summed from differences of densities.
+    pub fn above_mev(&self, other: &Point) -> f64 {
+        slab::sum_of_differences(&self.density, &other.density)
+    }
+
+    /// The vector field (3N) of tangent coordinates.
+    pub fn field(&self, t: &[f64]) -> Vec<f64> {
+        let mut v = Vec::new();
+        self.write_field(t, &mut v);
+        v
+    }
+
+    /// [`field`](Self::field) into the memory of `v`.
+    pub fn write_field(&self, t: &[f64], v: &mut Vec<f64>) {
+        v.resize(self.m.len(), 0.0);
+        self.basis.field(t, v);
+    }
+}
