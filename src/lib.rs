@@ -37,5 +37,6 @@ pub mod saddle;
 pub mod sphere;
 pub mod spins;
 pub mod state;
+mod threads;
 pub mod units;
 pub mod words;

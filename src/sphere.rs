@@ -3,12 +3,14 @@
 use crate::field::{Components, ComponentsMut, TILE, tiles};
 use crate::geometry::{Vector, exp, exp_short, vector};
 use crate::linalg::slab;
+use crate::threads::{MADE, apiece};
 use multiversion::multiversion;
 use rayon::prelude::*;
 
 /// Each spin m ← Exp_m(s v), image by image (slabs of 3N numbers).
 pub fn move_points(points: &mut [f64], v: &[f64], slab: usize, s: f64) {
-    points.par_chunks_mut(slab).zip(v.par_chunks(slab)).for_each(|(m, v)| {
+    let images = points.par_chunks_mut(slab).zip(v.par_chunks(slab)).with_min_len(apiece(slab, MADE));
+    images.for_each(|(m, v)| {
         let v = Components::new(v);
         for (first, m) in tiles(m) {
             let v = v.range(first..first + m.x.len());

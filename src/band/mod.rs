@@ -26,17 +26,9 @@ pub use sweep::{Sweep, SweepStep};
 
 use crate::energy::Hamiltonian;
 use crate::path::Path;
+use crate::threads::{MADE, READ, apiece};
 use rayon::prelude::*;
 use split::Split;
-
-/// Numbers of gradients and of split forces that are worth waking another thread for: some 30 µs of work.
-const GRADIENTS: usize = 3 * 8192;
-const SPLITS: usize = 3 * 2048;
-
-/// Images of `slab` numbers that make at least `worth` of them.
-fn apiece(slab: usize, worth: usize) -> usize {
-    worth.div_ceil(slab.max(1))
-}
 
 /// A path with the energies, forces and tangents of its images. The two ends never move.
 #[derive(Debug)]
@@ -93,7 +85,7 @@ impl<'h> Band<'h> {
         let (h, path) = (self.hamiltonian, &self.path);
         let energies: Vec<f64> = self.gradient[slab..last * slab]
             .par_chunks_mut(slab)
-            .with_min_len(apiece(slab, GRADIENTS))
+            .with_min_len(apiece(slab, READ))
             .enumerate()
             .map(|(k, g)| h.energy_gradient(path.image(k + 1), g))
             .collect();
@@ -112,7 +104,7 @@ impl<'h> Band<'h> {
         let across = self.perpendicular[inner].par_chunks_mut(slab);
         let split: Vec<Split> = tangent
             .zip(across)
-            .with_min_len(apiece(slab, SPLITS))
+            .with_min_len(apiece(slab, MADE))
             .enumerate()
             .map(|(k, (t, f))| {
                 let k = k + 1;

@@ -3,14 +3,13 @@
 use super::{Follows, Method, Optimiser};
 use crate::registry::Described;
 use crate::sphere::{move_points, rotation_of};
+use crate::threads::{MADE, apiece};
 use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// Largest rotation of a spin in one step (rad).
 const CAP: f64 = 0.3;
-/// Numbers to be moved that are worth waking another thread for.
-const WORTH: usize = 3 * 4096;
 
 /// `{"implicit": {}}`.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
@@ -36,7 +35,7 @@ impl Method for Implicit {
 
 impl Optimiser for Implicit {
     fn advance(&mut self, points: &mut [f64], slab: usize, direction: &[f64]) {
-        let images = points.par_chunks_mut(slab).zip(direction.par_chunks(slab)).with_min_len(WORTH.div_ceil(slab));
+        let images = points.par_chunks_mut(slab).zip(direction.par_chunks(slab)).with_min_len(apiece(slab, MADE));
         images.for_each(|(m, v)| {
             let rotation = rotation_of(v);
             move_points(m, v, slab, if rotation > CAP { CAP / rotation } else { 1.0 });

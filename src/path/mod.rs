@@ -11,6 +11,7 @@ pub use resample::blend;
 use crate::field::Components;
 use crate::sphere::angles_between;
 use crate::spins::Spins;
+use crate::threads::{READ, apiece};
 use ndarray::Array3;
 use rayon::prelude::*;
 
@@ -69,14 +70,18 @@ impl Path {
 
     /// Distances between neighbouring images (rad), one fewer than images.
     pub fn spacings(&self) -> Vec<f64> {
-        (1..self.images()).into_par_iter().map(|k| distance(self.image(k - 1), self.image(k))).collect()
+        self.steps(distance)
     }
 
     /// The largest rotation of any spin between neighbouring images (rad).
     pub fn largest_rotation(&self) -> f64 {
-        let rotations: Vec<f64> =
-            (1..self.images()).into_par_iter().map(|k| largest_angle(self.image(k - 1), self.image(k))).collect();
-        rotations.into_iter().fold(0.0, f64::max)
+        self.steps(largest_angle).into_iter().fold(0.0, f64::max)
+    }
+
+    /// How far neighbouring images are apart, by any measure.
+    fn steps(&self, measure: impl Fn(&[f64], &[f64]) -> f64 + Sync) -> Vec<f64> {
+        let pairs = (1..self.images()).into_par_iter().with_min_len(apiece(3 * self.sites(), READ));
+        pairs.map(|k| measure(self.image(k - 1), self.image(k))).collect()
     }
 
     /// Total length (rad).

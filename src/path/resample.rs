@@ -3,6 +3,7 @@
 use super::Path;
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, slerp};
+use crate::threads::{MADE, apiece};
 use ndarray::Array3;
 use rayon::prelude::*;
 
@@ -42,7 +43,8 @@ impl Path {
     /// A path whose images are written one by one, each a slab of 3N numbers.
     pub(crate) fn build(images: usize, sites: usize, fill: impl Fn(usize, &mut [f64]) + Sync) -> Path {
         let mut path = Path { m: Array3::zeros((images, 3, sites)) };
-        path.as_mut_slice().par_chunks_mut(3 * sites).enumerate().for_each(|(k, out)| fill(k, out));
+        let images = path.as_mut_slice().par_chunks_mut(3 * sites).with_min_len(apiece(3 * sites, MADE));
+        images.enumerate().for_each(|(k, out)| fill(k, out));
         path
     }
 }

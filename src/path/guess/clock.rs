@@ -8,6 +8,7 @@ use crate::field::ComponentsMut;
 use crate::geometry::{Arc, Direction, Vector, angle, vector};
 use crate::path::Path;
 use crate::spins::Spins;
+use crate::threads::{MADE, apiece};
 use rayon::prelude::*;
 
 /// Ends farther apart than this (rad) are nearly opposite: they turn about the common axis, not in their own plane.
@@ -94,7 +95,7 @@ impl<'a> Ways<'a> {
     pub fn between(a: &'a Spins, b: &'a Spins) -> Ways<'a> {
         let sites = 0..a.sites();
         let opposite: Vec<usize> = sites.clone().filter(|&i| are_nearly_opposite(a.get(i), b.get(i))).collect();
-        let direct = sites.into_par_iter().map(|i| match opposite.binary_search(&i) {
+        let direct = sites.into_par_iter().with_min_len(apiece(3, MADE)).map(|i| match opposite.binary_search(&i) {
             Ok(_) => Way::Rest(a.get(i)),
             Err(_) => Way::new(a.get(i), b.get(i), Direction::X),
         });

@@ -13,6 +13,7 @@ use crate::linalg::slab;
 use crate::path::Path;
 use crate::registry::Described;
 use crate::spins::Spins;
+use crate::threads::{READ, apiece};
 use multiversion::multiversion;
 use rayon::prelude::*;
 use schemars::JsonSchema;
@@ -157,7 +158,8 @@ fn even_times(entries: &[f64], lengths: &[f64], width: f64, images: usize) -> Ve
                 .collect();
             slab::sum(&sums).sqrt()
         };
-        let distances: Vec<f64> = times.par_windows(2).map(distance).collect();
+        let pairs = times.par_windows(2).with_min_len(apiece(3 * entries.len(), READ));
+        let distances: Vec<f64> = pairs.map(distance).collect();
         let mut s = vec![0.0];
         for d in &distances {
             s.push(s[s.len() - 1] + d);
