@@ -1,6 +1,6 @@
 //! How much work is worth waking another thread for: some 30 µs of it.
 
-/// Numbers of vector fields that are read once.
+/// Numbers of vector fields that are passed once.
 pub const READ: usize = 3 * 8192;
 /// Numbers of vector fields that are made from angles, or in several passes.
 pub const MADE: usize = 3 * 2048;

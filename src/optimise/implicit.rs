@@ -3,7 +3,7 @@
 use super::{Follows, Method, Optimiser};
 use crate::registry::Described;
 use crate::sphere::{move_points, rotation_of};
-use crate::threads::{MADE, apiece};
+use crate::threads::{READ, apiece};
 use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -35,7 +35,7 @@ impl Method for Implicit {
 
 impl Optimiser for Implicit {
     fn advance(&mut self, points: &mut [f64], slab: usize, direction: &[f64]) {
-        let images = points.par_chunks_mut(slab).zip(direction.par_chunks(slab)).with_min_len(apiece(slab, MADE));
+        let images = points.par_chunks_mut(slab).zip(direction.par_chunks(slab)).with_min_len(apiece(slab, READ));
         images.for_each(|(m, v)| {
             let rotation = rotation_of(v);
             move_points(m, v, slab, if rotation > CAP { CAP / rotation } else { 1.0 });
