@@ -85,8 +85,8 @@ fn narrow_walls_hop_from_end_to_end_at_the_height_of_one_hop() {
 
 #[test]
 fn dzyaloshinskii_rings_and_their_mirror_images_have_one_barrier() {
-    for d in [0.1, 0.3] {
-        let [a, b] = [d, -d].map(|d| solve(&Build::ring(30).easy(0.2).dmi(d, Direction::Y).reversal()));
+    for (d, direction) in [(0.1, Direction::Y), (0.3, Direction::Y), (0.1, Direction::Z), (0.3, Direction::Z)] {
+        let [a, b] = [d, -d].map(|d| solve(&Build::ring(30).easy(0.2).dmi(d, direction).reversal()));
         assert!((forward(&a) - forward(&b)).abs() < 1e-10, "D = ±{d}: {} {}", forward(&a), forward(&b));
     }
 }
