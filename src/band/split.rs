@@ -40,13 +40,9 @@ pub fn image(
         chord(weights, before.y, here.y, after.y, t.y);
         chord(weights, before.z, here.z, after.z, t.z);
         raw += slab::dot(t.x, t.x) + slab::dot(t.y, t.y) + slab::dot(t.z, t.z);
-        negate(g.x, f.x);
-        negate(g.y, f.y);
-        negate(g.z, f.z);
         project_row(here, t.reborrow());
-        project_row(here, f.reborrow());
         h.hold_frozen_row(first, t.reborrow());
-        h.hold_frozen_row(first, f.reborrow());
+        h.force_row(first, here, g, f.reborrow());
         tt += slab::dot(t.x, t.x) + slab::dot(t.y, t.y) + slab::dot(t.z, t.z);
         ft += slab::dot(f.x, t.x) + slab::dot(f.y, t.y) + slab::dot(f.z, t.z);
         squares += angles_between(here, after).0;
@@ -64,12 +60,6 @@ fn chord((plus, minus): (f64, f64), before: &[f64], here: &[f64], after: &[f64],
     let (before, here, after) = (&before[..n], &here[..n], &after[..n]);
     for i in 0..n {
         t[i] = plus * (after[i] - here[i]) + minus * (here[i] - before[i]);
-    }
-}
-
-fn negate(g: &[f64], f: &mut [f64]) {
-    for (f, g) in f.iter_mut().zip(g) {
-        *f = -g;
     }
 }
 

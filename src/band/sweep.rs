@@ -17,13 +17,11 @@
 use super::Band;
 use super::linearised::{Linearised, Move, SHIFT_FLOOR};
 use crate::geometry::Vector;
+use crate::threads::MADE;
 use rayon::prelude::*;
 use std::collections::VecDeque;
 use std::mem::take;
 use std::sync::{Mutex, PoisonError};
-
-/// Fewer spins, of all images together, are not worth waking another thread for.
-const WORTH: usize = 2048;
 
 /// The sweep's memory between evaluations: the shifts μ, and room for the linear algebra.
 #[derive(Debug)]
@@ -159,9 +157,9 @@ impl Sweep {
     /// Writes the tangent moves (rad) of the images between the ends, slab after slab, of an evaluated band.
     pub fn step(&mut self, band: &Band, axes: &[Vector], moves: &mut [f64]) -> SweepStep {
         self.shifts.resize(band.images(), SHIFT_FLOOR * self.stiffness);
+        let small = moves.len() < MADE;
         let mut slabs: Vec<&mut [f64]> = moves.chunks_mut(3 * band.path().sites()).collect();
         slabs.iter_mut().enumerate().filter(|(k, _)| band.is_held(k + 1)).for_each(|(_, y)| y.fill(0.0));
-        let small = slabs.len() * band.path().sites() < WORTH;
         let threads = if small { 1 } else { rayon::current_num_threads() };
         let (shifts, rooms) = (&self.shifts[..], &self.rooms);
         let task = Task { band, axes, stiffness: self.stiffness, shifts, rooms, threads };

@@ -68,11 +68,8 @@ pub fn relax_to_minimum(h: &Hamiltonian, start: &Spins, tolerance_mev: f64) -> R
         let before = p.max_torque_mev();
         let next = newton_step(h, &p, &mut shift, &mut memory);
         let Some(next) = next else { break };
-        stalled = if next.max_torque_mev() > 0.5 * before && next.max_torque_mev() < 20.0 * tolerance_mev {
-            stalled + 1
-        } else {
-            0
-        };
+        let torque = next.max_torque_mev();
+        stalled = if torque > 0.5 * before && torque < 20.0 * tolerance_mev { stalled + 1 } else { 0 };
         p = next;
         steps += 1;
     }

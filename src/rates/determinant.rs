@@ -71,7 +71,7 @@ impl PinnedHessian {
         remove(b, &self.zeros);
         self.factors.solve(b, 1);
         if let Some(border) = &self.border {
-            border.take_back(b, 0.0);
+            border.take_back(b);
         }
         remove(b, &self.zeros);
     }

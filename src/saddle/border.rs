@@ -109,15 +109,15 @@ impl Border {
         self.schur
     }
 
-    /// From x = H″⁻¹b to the solution of [H' t; tᵀ 0] (x, ν) = (b, along), in place; returns ν.
-    pub fn take_back(&self, x: &mut [f64], along: f64) -> f64 {
-        let r = [along - slab::dot(&self.soft, x), self.pin.dot(x)];
+    /// From x = H″⁻¹b to the solution of [H' t; tᵀ 0] (x, ν) = (b, 0), in place; returns ν.
+    pub fn take_back(&self, x: &mut [f64]) -> f64 {
+        let r = [-slab::dot(&self.soft, x), self.pin.dot(x)];
         let q = self.share(r);
         slab::add_pairs(x, [-q[0], -q[1]], &self.solved);
         q[0]
     }
 
-    /// The same for b = 0, into the memory of `x`.
+    /// The solution of [H' t; tᵀ 0] (x, ν) = (0, 1), into the memory of `x`; returns ν.
     pub fn valley(&self, x: &mut Vec<f64>) -> f64 {
         let q = self.share([1.0, 0.0]);
         x.clear();

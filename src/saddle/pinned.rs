@@ -125,7 +125,7 @@ impl Pinned {
             Some(matrix) => *x = accurate(matrix, &self.factors, x),
             None => self.factors.solve(x, 1),
         }
-        let nu = self.border.take_back(x, 0.0);
+        let nu = self.border.take_back(x);
         remove(x, &self.zeros);
         nu
     }
