@@ -51,7 +51,7 @@ fn main() {
 /// A run; of short ones the quickest of several.
 fn quickest(problem: &Problem) -> Outcome {
     let once = || run(problem, &mut Silent).expect("a valid problem");
-    let repetitions = (200_000 / problem.chain.sites).clamp(1, 99);
+    let repetitions = (1_000_000 / problem.chain.sites).clamp(1, 99);
     let runs = (0..repetitions).map(|_| once());
     runs.min_by(|a, b| a.work.seconds.total_cmp(&b.work.seconds)).expect("at least one")
 }

@@ -1,7 +1,7 @@
 //! Products of spheres: moving many unit vectors along tangent vectors by the exponential map, and angles between them.
 
 use crate::field::{Components, ComponentsMut, TILE, tiles};
-use crate::geometry::{Vector, exp, exp_short, vector};
+use crate::geometry::{Vector, exp, exp_short, log, vector};
 use crate::linalg::slab;
 use crate::threads::{MADE, apiece};
 use multiversion::multiversion;
@@ -181,6 +181,48 @@ pub fn angles_between(a: Components, b: Components) -> (f64, f64) {
     (sum, largest.sqrt())
 }
 
+/// Writes the tangent vectors (rad) along the great circles from the spins of `a` to those of `b`: their [`log`].
+pub fn write_logs(a: Components, b: Components, out: &mut [f64]) {
+    let mut chords = [0.0; TILE];
+    for (first, out) in tiles(out) {
+        let range = first..first + out.x.len();
+        let (a, b, chords) = (a.range(range.clone()), b.range(range.clone()), &mut chords[..range.len()]);
+        chords_squared(a, b, chords);
+        if slab::max_abs(chords) <= 2.0 {
+            logs_of_chords(a, b, chords, out.x, out.y, out.z);
+        } else {
+            far_logs(a, b, out);
+        }
+    }
+}
+
+/// For s = |a − b|² ≤ 2: θ/sin θ of the part of b − a across a; sin² θ = s (1 − ¼ s).
+#[multiversion(targets("x86_64+avx2"))]
+fn logs_of_chords(a: Components, b: Components, chords: &[f64], x: &mut [f64], y: &mut [f64], z: &mut [f64]) {
+    let n = chords.len();
+    let (ax, ay, az) = (&a.x[..n], &a.y[..n], &a.z[..n]);
+    let (bx, by, bz) = (&b.x[..n], &b.y[..n], &b.z[..n]);
+    let (x, y, z) = (&mut x[..n], &mut y[..n], &mut z[..n]);
+    for i in 0..n {
+        let step = [bx[i] - ax[i], by[i] - ay[i], bz[i] - az[i]];
+        let along = ax[i] * step[0] + ay[i] * step[1] + az[i] * step[2];
+        let mut series = 0.0;
+        for c in SQUARE.iter().rev() {
+            series = series * chords[i] + c;
+        }
+        let longer = (series / (1.0 - 0.25 * chords[i])).sqrt();
+        x[i] = longer * (step[0] - along * ax[i]);
+        y[i] = longer * (step[1] - along * ay[i]);
+        z[i] = longer * (step[2] - along * az[i]);
+    }
+}
+
+fn far_logs(a: Components, b: Components, mut out: ComponentsMut) {
+    for i in 0..a.sites() {
+        out.set(i, log(a.get(i), b.get(i)));
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -202,6 +244,10 @@ mod tests {
                 let all: Vec<f64> = a.into_iter().chain(b).collect();
                 let (sum, largest) = angles_between(Components::new(&all[..3]), Components::new(&all[3..]));
                 assert!((largest - angle(a, b)).abs() <= 4e-15 && sum.sqrt() == largest);
+                let mut v = [0.0; 3];
+                write_logs(Components::new(&all[..3]), Components::new(&all[3..]), &mut v);
+                let wrong = vector::norm(vector::sub(v, log(a, b)));
+                assert!(wrong <= 1e-15 * largest.max(0.1), "{a:?} {b:?} {wrong}");
             }
         }
         assert_eq!(angle_of_units([0.0, 0.0, 1.0], [0.0, 0.0, 1.0]), 0.0);

@@ -9,35 +9,56 @@ use crate::field::{Components, ComponentsMut, TILE};
 use crate::geometry::Vector;
 use crate::linalg::slab;
 use crate::path::Path;
+use crate::threads::{READ, apiece};
 use multiversion::multiversion;
+use rayon::prelude::*;
+
+/// A turn, by its sine and cosine times one size.
+type Turn = (f64, f64);
 
 /// Turns every image between the ends about the given symmetry axes towards the image before it.
 pub fn align_rotations(path: &mut Path, axes: &[Vector]) {
     let rounds = if axes.len() > 1 { 4 } else { 1 };
     let slab = 3 * path.sites();
+    let mut known = axes.first().map_or(Vec::new(), |axis| overlaps_as_they_are(path, *axis));
     for k in 1..path.images() - 1 {
         let (before, rest) = path.as_mut_slice().split_at_mut(k * slab);
         let (reference, image) = (&before[(k - 1) * slab..], &mut rest[..slab]);
+        let mut turned = false;
         for _ in 0..rounds {
             for &axis in axes {
-                turn_towards(reference, image, axis);
+                // what is known is of the first axis, before any turn
+                let turn = known[k - 1]
+                    .take()
+                    .unwrap_or_else(|| overlap(Components::new(reference), Components::new(image), axis));
+                turned |= turn_by(image, axis, turn);
             }
+        }
+        if turned && let Some(next) = known.get_mut(k) {
+            *next = None;
         }
     }
 }
 
-fn turn_towards(reference: &[f64], image: &mut [f64], axis: Vector) {
-    let (sine, cosine) = overlap(Components::new(reference), Components::new(image), axis);
+/// The turns of all images but the last towards the one before, as long as that has not been turned itself.
+fn overlaps_as_they_are(path: &Path, axis: Vector) -> Vec<Option<Turn>> {
+    let pairs = (1..path.images() - 1).into_par_iter().with_min_len(apiece(path.image(0).len(), READ));
+    pairs.map(|k| Some(overlap(Components::new(path.image(k - 1)), Components::new(path.image(k)), axis))).collect()
+}
+
+/// Turns an image, if it is by more than rounding; says whether it was.
+fn turn_by(image: &mut [f64], axis: Vector, (sine, cosine): Turn) -> bool {
     let size = (sine * sine + cosine * cosine).sqrt();
-    if size < 1e-8 * reference.len() as f64 / 3.0 || sine.abs() < 1e-15 * size && cosine > 0.0 {
-        return;
+    if size < 1e-8 * image.len() as f64 / 3.0 || sine.abs() < 1e-15 * size && cosine > 0.0 {
+        return false;
     }
     let image = ComponentsMut::new(image);
     turn(image.x, image.y, image.z, axis, (sine / size, cosine / size));
+    true
 }
 
 /// Σ axis·(b × a) and Σ (a·b − (a·axis)(b·axis)): the sine and cosine of the turn that brings b to a, times one size.
-fn overlap(a: Components, b: Components, axis: Vector) -> (f64, f64) {
+fn overlap(a: Components, b: Components, axis: Vector) -> Turn {
     let (mut sine, mut cosine) = ([0.0; TILE], [0.0; TILE]);
     let (mut sines, mut cosines) = (0.0, 0.0);
     for first in (0..a.sites()).step_by(TILE) {

@@ -1,9 +1,10 @@
 //! The energy between images: a cubic Hermite piece an interval, from the energies and the slopes −F·τ.
 
 use super::Band;
-use crate::field::Components;
-use crate::geometry::{log, vector};
+use crate::field::{Components, TILE};
 use crate::linalg::slab;
+use crate::sphere::write_logs;
+use crate::threads::both;
 
 /// Energy along the reaction coordinate.
 #[derive(Clone, Debug)]
@@ -42,8 +43,9 @@ impl Profile {
         let e = band.energies_mev();
         let energy = e.iter().map(|x| x - e[0]).collect();
         let mut slope: Vec<f64> = (0..=last).map(|k| -band.along(k)).collect();
-        slope[0] = end_slope(band, 0, 1);
-        slope[last] = -end_slope(band, last, last - 1);
+        let numbers = band.gradient(0).len();
+        let ends = both(numbers, || end_slope(band, 0, 1), || end_slope(band, last, last - 1));
+        (slope[0], slope[last]) = (ends.0, -ends.1);
         Profile { s, energy, slope }
     }
 
@@ -114,13 +116,17 @@ impl Profile {
 fn end_slope(band: &Band, end: usize, towards: usize) -> f64 {
     let (a, b) = (Components::new(band.path().image(end)), Components::new(band.path().image(towards)));
     let g = Components::new(band.gradient(end));
-    let (mut work, mut squares) = (Vec::with_capacity(a.sites()), 0.0);
-    for i in 0..a.sites() {
-        let v = log(a.get(i), b.get(i));
-        squares += vector::dot(v, v);
-        work.push(vector::dot(g.get(i), v));
+    let mut v = [0.0; 3 * TILE];
+    let (mut work, mut squares) = (0.0, 0.0);
+    for first in (0..a.sites()).step_by(TILE) {
+        let range = first..a.sites().min(first + TILE);
+        let v = &mut v[..3 * range.len()];
+        write_logs(a.range(range.clone()), b.range(range.clone()), v);
+        squares += slab::dot(v, v);
+        let (v, g) = (Components::new(v), g.range(range));
+        work += slab::dot(g.x, v.x) + slab::dot(g.y, v.y) + slab::dot(g.z, v.z);
     }
-    if squares == 0.0 { 0.0 } else { slab::sum(&work) / squares.sqrt() }
+    if squares == 0.0 { 0.0 } else { work / squares.sqrt() }
 }
 
 /// Real roots of a u² + b u + c, ascending, without cancellation.

@@ -2,7 +2,7 @@
 
 use super::minimum::{turned, turns};
 use super::recorder::Recorder;
-use super::top::{Top, highest};
+use super::top::Top;
 use crate::band::Band;
 use crate::energy::Hamiltonian;
 use crate::error::Result;
@@ -129,18 +129,13 @@ impl Found {
     }
 }
 
-/// The refined top of a band, if it has one.
-pub fn conclude(band: &Band, c: f64, hop: f64, recorder: &mut Recorder) -> Result<Option<Found>> {
-    highest(band).map(|top| Found::recorded(band.hamiltonian(), top, c, hop, recorder)).transpose()
-}
-
 /// The path with more of its images in the first or last interval, if its top is there: or, if none shows, at its higher end
 /// (between two minima there is one).
-pub fn zoomed(band: &Band, images: usize) -> Option<Path> {
+pub fn zoomed(band: &Band, top: Option<&Top>, images: usize) -> Option<Path> {
     let s = band.path().reaction_coordinate();
     let last = band.images() - 1;
     let e = band.energies_mev();
-    let end = match highest(band) {
+    let end = match top {
         Some(top) if top.s > s[1] && top.s < s[last - 1] => return None,
         Some(top) if top.s <= s[1] => 0,
         Some(_) => last,

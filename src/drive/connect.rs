@@ -8,7 +8,7 @@
 use super::climb::{Found, ZOOMS, zoomed};
 use super::minimum::{Link, Minimum};
 use super::relaxation::{Goal, Relaxation};
-use super::top::{Top, direction, tops};
+use super::top::{Top, direction, highest, tops};
 use crate::band::Band;
 use crate::energy::Hamiltonian;
 use crate::error::Result;
@@ -18,6 +18,7 @@ use crate::path::{Path, distance};
 use crate::saddle::{State, follow_modes};
 use crate::sphere::rotation_of;
 use crate::spins::Spins;
+use std::borrow::Cow;
 
 /// Most stretches of one path.
 const MOST: usize = 600;
@@ -49,10 +50,10 @@ pub struct Sequence {
 }
 
 /// A stretch of path between two minima, with the saddle on it if that is known already.
-struct Stretch {
+struct Stretch<'p> {
     a: Minimum,
     b: Minimum,
-    path: Path,
+    path: Cow<'p, Path>,
     saddle: Option<Found>,
 }
 
@@ -69,7 +70,7 @@ pub fn follow(
     let c = relaxation.scales.stiffness_mev;
     let mut sequence = Sequence::default();
     // the part of the path that comes first is on top
-    let mut stretches = vec![Stretch { a, b, path: band.path().clone(), saddle: Some(saddle) }];
+    let mut stretches = vec![Stretch { a, b, path: Cow::Borrowed(band.path()), saddle: Some(saddle) }];
     let mut open: Vec<(Minimum, Link)> = Vec::new();
     let mut count = 0;
     while let Some(stretch) = stretches.pop() {
@@ -113,11 +114,11 @@ pub fn follow(
             sequence.gap = Some("a descent from a saddle leads back to where it came from".into());
         }
         if !right_done && !astray {
-            let path = between(&stretch.path, &link.after.spins, &stretch.b.spins, false, context)?;
+            let path = Cow::Owned(between(&stretch.path, &link.after.spins, &stretch.b.spins, false, context)?);
             stretches.push(Stretch { a: link.after.clone(), b: stretch.b.clone(), path, saddle: None });
         }
         if !left_done && !astray {
-            let path = between(&stretch.path, &stretch.a.spins, &link.before.spins, true, context)?;
+            let path = Cow::Owned(between(&stretch.path, &stretch.a.spins, &link.before.spins, true, context)?);
             stretches.push(Stretch { a: stretch.a.clone(), b: link.before.clone(), path, saddle: None });
             open.push((link.before.clone(), link));
             continue;
@@ -150,7 +151,7 @@ fn is_flat(relaxation: &mut Relaxation, h: &Hamiltonian, stretch: &Stretch) -> R
     if h.difference_mev(stretch.a.spins.as_slice(), stretch.b.spins.as_slice()).abs() > flat {
         return Ok(false);
     }
-    let mut band = Band::new(h, stretch.path.clone());
+    let mut band = Band::new(h, stretch.path.as_ref().clone());
     relaxation.run(&mut band, Goal::Tight, FLAT_EVALUATIONS)?;
     let start = stretch.a.spins.as_slice();
     Ok(band.path().largest_rotation() < 1.0
@@ -165,10 +166,10 @@ fn new_saddle(
     known: &[&Found],
     c: f64,
 ) -> Result<Option<Found>> {
-    let mut band = Band::new(h, stretch.path.clone());
+    let mut band = Band::new(h, stretch.path.as_ref().clone());
     relaxation.run(&mut band, Goal::Loose, EVALUATIONS)?;
     for _ in 0..ZOOMS {
-        let Some(path) = zoomed(&band, band.images() + 4) else { break };
+        let Some(path) = zoomed(&band, highest(&band).as_ref(), band.images() + 4) else { break };
         band = Band::new(h, path);
         relaxation.run(&mut band, Goal::Loose, EVALUATIONS)?;
     }

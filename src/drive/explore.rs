@@ -8,7 +8,9 @@ use crate::geometry::{Direction, vector};
 use crate::path::Path;
 use crate::path::guess::{Edge, Geodesic, GuessContext, GuessSpec, NoiseSpec, Rotation, Sweep, Ways, best_turn};
 use crate::spins::Spins;
+use crate::threads::{MADE, apiece};
 use crate::units::Angle;
+use rayon::prelude::*;
 
 /// Noise that frees a swept wall from accidental symmetries (rad).
 const NOISE: f64 = 2e-3;
@@ -148,7 +150,7 @@ pub fn turning_axis(problem: &Problem, a: &Spins, b: &Spins, context: &GuessCont
 /// Of ±x, ±y, ±z and the symmetry axes the one of least cost halfway (meV); of equal ones the first. Where that hardly tells and
 /// an end holds a wall (which moves as it is if its spins turn in one sense, and is turned over in the other), the one on whose
 /// way the highest energy is lowest. The cost is asked for with a number of images.
-fn best_axis(problem: &Problem, ways: &Ways, cost: impl Fn(Direction, usize) -> f64) -> Direction {
+fn best_axis(problem: &Problem, ways: &Ways, cost: impl Fn(Direction, usize) -> f64 + Sync) -> Direction {
     let h = &problem.hamiltonian;
     if !ways.have_a_choice() {
         return Direction::X;
@@ -157,7 +159,12 @@ fn best_axis(problem: &Problem, ways: &Ways, cost: impl Fn(Direction, usize) -> 
     let oblique = h.symmetry_axes().iter().filter(|v| v.iter().all(|c| c.abs() < 1.0));
     let candidates = cartesian.iter().chain(oblique).flat_map(|v| [*v, v.map(|c| -c)]);
     let axes = candidates.filter_map(|axis| Direction::new(axis).ok());
-    let halfway: Vec<(f64, Direction)> = axes.map(|axis| (cost(axis, 3), axis)).collect();
+    let axes: Vec<Direction> = axes.collect();
+    let costs = |axes: &[Direction], images: usize| -> Vec<(f64, Direction)> {
+        let axes = axes.par_iter().with_min_len(apiece(3 * h.sites(), MADE));
+        axes.map(|axis| (cost(*axis, images), *axis)).collect()
+    };
+    let halfway = costs(&axes, 3);
     let Some((least, first)) = lowest(&halfway, h.stiffness_mev()) else { return Direction::X };
     let above = (least - h.energy_mev(ways.a.as_slice())).abs();
     let near = least + ALIKE * above + 1e-9 * h.stiffness_mev();
@@ -165,8 +172,7 @@ fn best_axis(problem: &Problem, ways: &Ways, cost: impl Fn(Direction, usize) -> 
     if alike.len() < 2 || !(holds_wall(ways.a) || holds_wall(ways.b)) {
         return first;
     }
-    let along: Vec<(f64, Direction)> = alike.iter().map(|axis| (cost(*axis, WAY), *axis)).collect();
-    lowest(&along, h.stiffness_mev()).map_or(first, |(_, axis)| axis)
+    lowest(&costs(&alike, WAY), h.stiffness_mev()).map_or(first, |(_, axis)| axis)
 }
 
 /// The first of the lowest (meV).

@@ -12,6 +12,7 @@ use crate::path::guess::best_turn;
 use crate::path::largest_angle;
 use crate::saddle::{Spectrum, State, descend};
 use crate::spins::Spins;
+use crate::threads::both;
 
 /// How many eigenvalues of a saddle are reported.
 const REPORTED: usize = 6;
@@ -39,6 +40,12 @@ impl Minimum {
     /// A relaxed state, examined.
     pub fn examine(h: &Hamiltonian, spins: &Spins) -> Minimum {
         Minimum::with_modes(h, spins, 0)
+    }
+
+    /// Two of them.
+    pub fn examine_both(h: &Hamiltonian, spins: [&Spins; 2]) -> [Minimum; 2] {
+        let [a, b] = spins;
+        both(3 * h.sites(), || Minimum::examine(h, a), || Minimum::examine(h, b)).into()
     }
 
     /// The same with so many of its lowest eigenvalues.

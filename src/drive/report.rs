@@ -11,8 +11,10 @@ use super::{Partial, Problem};
 use crate::band::{Band, Extremum};
 use crate::energy::Hamiltonian;
 use crate::linalg::slab;
-use crate::path::{Path, distance};
+use crate::path::Path;
 use crate::spins::Spins;
+use crate::threads::{MADE, apiece};
+use rayon::prelude::*;
 use std::time::Instant;
 
 /// Points of the profile in every interval.
@@ -57,8 +59,7 @@ pub fn outcome(
 ) -> Outcome {
     let h = &run.problem.hamiltonian;
     let band = &c.band;
-    let path = band.path().clone();
-    let above_final = h.difference_mev(path.image(path.images() - 1), path.image(0));
+    let above_final = h.difference_mev(band.path().image(band.images() - 1), band.path().image(0));
     let saddles = if !proof.links.is_empty() {
         sorted(proof.links.iter().map(|l| saddle_of_link(h, band, l)).collect())
     } else if !found.is_empty() {
@@ -79,8 +80,9 @@ pub fn outcome(
     warnings.extend(doubts.into_iter().map(|d| format!("not certified: {d}")));
     warnings.extend(flat_warnings(&proof.ends, &proof.links));
     warnings.extend(rates.as_ref().map(rates::warnings).unwrap_or_default());
-    let work = run.work(band.evaluations());
+    let (images, profile) = (image_table(h, band), profile(band));
     let minima = if proof.links.len() > 1 { link_minima(band, &proof.links) } else { band_minima(h, band) };
+    let work = run.work(band.evaluations());
     Outcome {
         converged,
         certified,
@@ -92,14 +94,14 @@ pub fn outcome(
         intermediate_minima: minima,
         rates,
         rejected_paths,
-        images: image_table(h, band),
-        profile: profile(band),
+        images,
+        profile,
         work,
         max_perpendicular_torque_mev: band.max_perpendicular_mev(),
         largest_predicted_rotation_rad: c.history.last().map_or(0.0, |r| r.largest_predicted_rotation_rad),
         history: c.history,
         saddles,
-        path,
+        path: c.band.into_path(),
     }
 }
 
@@ -146,7 +148,7 @@ pub fn same_minimum(run: Summary) -> Outcome {
     let h = &run.problem.hamiltonian;
     let path = Path::new(&[run.ends[0].spins.clone(), run.ends[1].spins.clone()]);
     let band = Band::new(h, path.clone());
-    let ends = [0, 1].map(|k| Minimum::examine(h, &run.ends[k].spins));
+    let ends = Minimum::examine_both(h, run.ends.each_ref().map(|end| &end.spins));
     let mut warnings = run.warnings.clone();
     warnings.push("there is no path between a minimum and itself".into());
     let work = run.work(0);
@@ -240,7 +242,7 @@ fn sorted(mut saddles: Vec<SaddlePoint>) -> Vec<SaddlePoint> {
 fn nearest(band: &Band, m: &[f64]) -> (f64, usize) {
     let path = band.path();
     let s = path.reaction_coordinate();
-    let far: Vec<f64> = (0..path.images()).map(|k| distance(path.image(k), m)).collect();
+    let far = path.distances_from(m);
     let k = (0..far.len()).fold(0, |best, k| if far[k] < far[best] { k } else { best });
     let (a, b) = if k + 1 < far.len() && (k == 0 || far[k + 1] < far[k - 1]) {
         (k, k + 1)
@@ -341,22 +343,24 @@ fn band_minima(h: &Hamiltonian, band: &Band) -> Vec<IntermediateMinimum> {
 
 fn image_table(h: &Hamiltonian, band: &Band) -> ImageTable {
     let path = band.path();
-    let images = path.images();
-    let mut terms_mev: Vec<(String, Vec<f64>)> = Vec::new();
-    for k in 0..images {
-        for (j, (name, e)) in h.energies_mev(path.image(k)).into_iter().enumerate() {
-            if k == 0 {
-                terms_mev.push((name.to_string(), Vec::with_capacity(images)));
-            }
-            terms_mev[j].1.push(e);
-        }
-    }
+    let first = h.density(path.image(0));
+    let row = |k: usize| {
+        let m = path.image(k);
+        let mut above = h.density(m);
+        let energy = h.reference_mev() + slab::sum(&above);
+        slab::add_scaled(&mut above, -1.0, &first);
+        (energy, slab::sum(&above), h.energies_mev(m), slab::max_abs(band.perpendicular(k)))
+    };
+    let rows = (0..path.images()).into_par_iter().with_min_len(apiece(path.image(0).len(), MADE)).map(row);
+    let rows: Vec<_> = rows.collect();
+    let terms = rows.first().map(|row| row.2.iter().map(|term| term.0)).into_iter().flatten();
+    let terms_mev = terms.enumerate().map(|(j, name)| (name.to_string(), rows.iter().map(|row| row.2[j].1).collect()));
     ImageTable {
         reaction_coordinate_rad: path.reaction_coordinate(),
-        energy_mev: (0..images).map(|k| h.energy_mev(path.image(k))).collect(),
-        above_initial_mev: (0..images).map(|k| h.difference_mev(path.image(k), path.image(0))).collect(),
-        terms_mev,
-        max_perpendicular_torque_mev: (0..images).map(|k| slab::max_abs(band.perpendicular(k))).collect(),
+        energy_mev: rows.iter().map(|row| row.0).collect(),
+        above_initial_mev: rows.iter().map(|row| row.1).collect(),
+        terms_mev: terms_mev.collect(),
+        max_perpendicular_torque_mev: rows.iter().map(|row| row.3).collect(),
     }
 }
 

@@ -1,7 +1,7 @@
 //! A whole run.
 
 use super::candidate::{Candidate, describe, rejection};
-use super::climb::{Found, ZOOMS, conclude, escapes, same, zoomed};
+use super::climb::{Found, ZOOMS, escapes, same, zoomed};
 use super::connect::{Sequence, follow};
 use super::ends::{Relaxed, judge_end, kept, relax_to_minimum};
 use super::explore::{natural_guesses, turning_axis};
@@ -10,15 +10,17 @@ use super::minimum::{Link, Minimum};
 use super::outcome::*;
 use super::relaxation::{Goal, Relaxation, height, image_levels, needs_laplacian, refined};
 use super::report::{self, Proof};
-use super::top::tops;
+use super::top::{Top, highest, tops};
 use super::{Images, Observer, Problem, Recorder, Scales, Silent, Stop};
 use crate::band::{Band, Laplacian, align_rotations};
+use crate::energy::Hamiltonian;
 use crate::error::Result;
 use crate::geometry::{Direction, Vector};
 use crate::path::guess::{FirstGuess, GuessContext, GuessSpec, NoiseSpec, Rotation, add_noise, moving_sites, smooth};
 use crate::path::{Path, distance};
 use crate::spins::Spins;
 use crate::state::StateContext;
+use crate::threads::both;
 use std::time::Instant;
 
 /// Neighbouring images of an automatic path are at most this far apart, any spin (rad).
@@ -112,17 +114,15 @@ impl<'a, 'o> Run<'a, 'o> {
         let h = &problem.hamiltonian;
         observer.stage("relaxing the ends");
         let mut warnings = Vec::new();
-        let mut end = |spins: &Spins, which: &str| -> Result<Relaxed> {
-            if !problem.relax_ends {
-                return Ok(kept(h, spins));
-            }
-            let relax = || relax_to_minimum(h, spins, END_TOLERANCE * h.stiffness_mev());
-            let relaxed = recorder.call(h, &[spins.as_slice()], relax)?;
-            warnings.extend(judge_end(&relaxed, which));
-            Ok(relaxed)
+        let given = [&problem.initial, &problem.final_state];
+        let ends = if problem.relax_ends {
+            recorder.call(h, &given.map(|spins| spins.as_slice()), || relaxed_ends(h, given))?
+        } else {
+            given.map(|spins| kept(h, spins))
         };
-        let ends = [end(&problem.initial, "initial")?, end(&problem.final_state, "final")?];
-        if !problem.relax_ends {
+        if problem.relax_ends {
+            warnings.extend(ends.iter().zip(["initial", "final"]).flat_map(|(end, which)| judge_end(end, which)));
+        } else {
             warnings.push(
                 "the ends were not relaxed (relax_ends is false): they need not be minima, and a certificate speaks of the saddle alone"
                     .into(),
@@ -310,7 +310,7 @@ impl<'a, 'o> Run<'a, 'o> {
     /// Follows the path from its highest saddle down to both ends, and says what was proven on the way.
     fn prove(&mut self, c: &Candidate<'a>, found: &[Found]) -> Result<Proof> {
         let h = &self.problem.hamiltonian;
-        let ends = [0, 1].map(|k| Minimum::examine(h, &self.ends[k].spins));
+        let ends = Minimum::examine_both(h, self.ends.each_ref().map(|end| &end.spins));
         let highest = found.iter().max_by(|p, q| p.refined.state.energy_mev.total_cmp(&q.refined.state.energy_mev));
         let Some(highest) = highest.filter(|_| self.problem.certify) else {
             let doubt = match (self.problem.certify, self.problem.seeks_saddles()) {
@@ -375,7 +375,7 @@ impl<'a, 'o> Run<'a, 'o> {
         if self.axes.is_empty() || self.problem.guess.is_some() {
             return Ok(None);
         }
-        let ends = [0, 1].map(|k| Minimum::examine(h, &self.ends[k].spins));
+        let ends = Minimum::examine_both(h, self.ends.each_ref().map(|end| &end.spins));
         if !ends[0].is_turned(h, &ends[1]) {
             return Ok(None);
         }
@@ -437,8 +437,11 @@ impl<'a, 'o> Run<'a, 'o> {
             if !self.problem.seeks_saddles() {
                 break;
             }
-            self.zoom(c)?;
-            c.found = conclude(&c.band, scale, self.scales.half_site_rad(), self.recorder)?;
+            let h = c.band.hamiltonian();
+            c.found = match self.zoom(c)? {
+                Some(top) => Some(Found::recorded(h, top, scale, self.scales.half_site_rad(), self.recorder)?),
+                None => None,
+            };
             let Some(found) = c.found.as_ref() else { break };
             if found.is_saddle(scale) || round + 1 == ESCAPES {
                 break;
@@ -462,18 +465,20 @@ impl<'a, 'o> Run<'a, 'o> {
         Ok(())
     }
 
-    /// A top inside the first or last interval is not resolved: the part of the path around it becomes finer.
-    fn zoom(&mut self, c: &mut Candidate<'a>) -> Result<()> {
+    /// The path's top. One inside the first or last interval is not resolved: the part of the path around it becomes finer.
+    fn zoom(&mut self, c: &mut Candidate<'a>) -> Result<Option<Top>> {
+        let mut top = highest(&c.band);
         for _ in 0..ZOOMS {
             let images = match self.problem.images {
                 Images::Count(n) => n,
                 Images::Auto => c.band.images() + 8,
             };
-            let Some(path) = zoomed(&c.band, images) else { break };
+            let Some(path) = zoomed(&c.band, top.as_ref(), images) else { break };
             c.band = Band::continued(&self.problem.hamiltonian, path, c.band.evaluations());
             self.relax(c, Goal::Loose, c.band.evaluations() + 24)?;
+            top = highest(&c.band);
         }
-        Ok(())
+        Ok(top)
     }
 
     /// Every maximum within a tenth of the highest, refined; saddles found twice count once.
@@ -564,6 +569,13 @@ impl<'a, 'o> Run<'a, 'o> {
     }
 }
 
+/// The minima that two states relax to.
+fn relaxed_ends(h: &Hamiltonian, given: [&Spins; 2]) -> Result<[Relaxed; 2]> {
+    let relax = |spins: &Spins| relax_to_minimum(h, spins, END_TOLERANCE * h.stiffness_mev());
+    let (a, b) = both(3 * h.sites(), || relax(given[0]), || relax(given[1]));
+    Ok([a?, b?])
+}
+
 /// Whether a saddle is image k of a band, and higher than its neighbours.
 fn is_seated(band: &Band, k: usize, saddle: &Found) -> bool {
     let e = band.energies_mev();
@@ -577,11 +589,10 @@ fn seat(band: &mut Band, found: &[Found]) -> bool {
     let mut seated = false;
     for f in found {
         let saddle = &f.refined.state.m;
-        let k = (1..last)
-            .min_by(|&i, &j| distance(band.path().image(i), saddle).total_cmp(&distance(band.path().image(j), saddle)))
-            .unwrap_or(1);
+        let far = band.path().distances_from(saddle);
+        let k = (1..last).min_by(|&i, &j| far[i].total_cmp(&far[j])).unwrap_or(1);
         let gap = distance(band.path().image(k - 1), band.path().image(k + 1));
-        let fits = [k - 1, k + 1].iter().all(|&j| distance(band.path().image(j), saddle) < gap);
+        let fits = far[k - 1] < gap && far[k + 1] < gap;
         if fits && !band.is_held(k) {
             band.hold(k, saddle);
             seated = true;

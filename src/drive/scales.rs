@@ -4,6 +4,7 @@ use crate::energy::Hamiltonian;
 use crate::field::Components;
 use crate::linalg::{eigenvalues_symmetric, slab};
 use crate::saddle::State;
+use crate::threads::both;
 
 /// Scales from which tolerances, shifts and image counts follow.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,7 +25,8 @@ impl Scales {
 
     /// From two relaxed ends.
     pub fn of_ends(h: &Hamiltonian, a: &[f64], b: &[f64]) -> Scales {
-        let softest = softest_mode(h, a).max(softest_mode(h, b));
+        let (of_a, of_b) = both(a.len(), || softest_mode(h, a), || softest_mode(h, b));
+        let softest = of_a.max(of_b);
         Scales::new(h, if softest > 1e-9 * h.stiffness_mev() { softest } else { on_site_gap(h) })
     }
 

@@ -33,27 +33,32 @@ fn spins(r: &mut Reader, h: &Hamiltonian) -> Option<Spins> {
     row_of(r, h).map(|row| Spins::from_unit_components(&row))
 }
 
-impl Stored for Relaxed {
+impl Stored for [Relaxed; 2] {
     const KIND: usize = 1;
 
     fn write(&self, w: &mut Writer) {
-        w.row(self.spins.as_slice());
-        w.real(self.max_torque_mev);
-        w.whole(self.steps);
-        w.real(self.largest_rotation_rad);
-        w.flag(self.left_saddle);
-        w.flag(self.converged);
+        for end in self {
+            w.row(end.spins.as_slice());
+            w.real(end.max_torque_mev);
+            w.whole(end.steps);
+            w.real(end.largest_rotation_rad);
+            w.flag(end.left_saddle);
+            w.flag(end.converged);
+        }
     }
 
-    fn read(r: &mut Reader, h: &Hamiltonian) -> Option<Relaxed> {
-        Some(Relaxed {
-            spins: spins(r, h)?,
-            max_torque_mev: r.real()?,
-            steps: r.whole()?,
-            largest_rotation_rad: r.real()?,
-            left_saddle: r.flag()?,
-            converged: r.flag()?,
-        })
+    fn read(r: &mut Reader, h: &Hamiltonian) -> Option<[Relaxed; 2]> {
+        let mut one = || {
+            Some(Relaxed {
+                spins: spins(r, h)?,
+                max_torque_mev: r.real()?,
+                steps: r.whole()?,
+                largest_rotation_rad: r.real()?,
+                left_saddle: r.flag()?,
+                converged: r.flag()?,
+            })
+        };
+        Some([one()?, one()?])
     }
 }
 

@@ -1,10 +1,11 @@
 //! Where a relaxed band has its maxima: starting points for their refinement.
 
 use crate::band::{Band, Extremum, Profile};
-use crate::field::{Components, ComponentsMut};
-use crate::geometry::log;
+use crate::field::Components;
 use crate::linalg::slab;
 use crate::path::blend;
+use crate::sphere::write_logs;
+use crate::threads::both;
 
 /// A maximum of a band, as far as the band tells.
 #[derive(Clone, Debug)]
@@ -93,8 +94,9 @@ fn between(band: &Band, profile: &Profile, x: &Extremum) -> Top {
 /// Direction of the path through image k: both neighbours, each as a unit vector.
 fn through(band: &Band, k: usize) -> Vec<f64> {
     let here = band.path().image(k);
-    let mut t = direction(here, band.path().image(k + 1), 1.0);
-    slab::add_scaled(&mut t, 1.0, &direction(here, band.path().image(k - 1), -1.0));
+    let (on, back) = (band.path().image(k + 1), band.path().image(k - 1));
+    let (mut t, back) = both(here.len(), || direction(here, on, 1.0), || direction(here, back, -1.0));
+    slab::add_scaled(&mut t, 1.0, &back);
     let size = slab::norm(&t);
     if size < 1e-12 {
         return band.tangent(k).to_vec();
@@ -105,11 +107,8 @@ fn through(band: &Band, k: usize) -> Vec<f64> {
 
 /// ± the unit initial velocity of the geodesic from m to `to`.
 pub(super) fn direction(m: &[f64], to: &[f64], sign: f64) -> Vec<f64> {
-    let (a, b) = (Components::new(m), Components::new(to));
     let mut t = vec![0.0; m.len()];
-    for i in 0..a.sites() {
-        ComponentsMut::new(&mut t).set(i, log(a.get(i), b.get(i)));
-    }
+    write_logs(Components::new(m), Components::new(to), &mut t);
     let size = slab::norm(&t);
     slab::scale(&mut t, sign / size.max(f64::MIN_POSITIVE));
     t

@@ -13,9 +13,11 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// From this many sites on, the tiles of one image are shared among threads.
-const LONG: usize = 32 * 1024;
+pub const LONG: usize = 32 * 1024;
 /// Sites in one pass where gradients are not kept.
 const ROW: usize = 64;
+/// Tiles of a long chain that are worth waking a thread for.
+const TILES: usize = 16;
 
 /// The energy of a chain: named terms, their sum, its derivatives and its symmetry.
 #[derive(Debug)]
@@ -159,35 +161,41 @@ impl Hamiltonian {
             slab::sum(density)
         };
         let sums: Vec<f64> = if self.sites >= LONG {
-            tiles(g).collect::<Vec<_>>().into_par_iter().map(tile).collect()
+            tiles(g).collect::<Vec<_>>().into_par_iter().with_min_len(TILES).map(tile).collect()
         } else {
             tiles(g).map(tile).collect()
         };
         far.map_or(0.0, |density| slab::sum(&density)) + slab::sum(&sums)
     }
 
-    /// The same, and the energy density of every site above the reference (meV). `each` is called for one row of sites after the
-    /// other, with their gradient, as soon as that is known.
-    pub fn density_gradient(
+    /// The same, and the energy density of every site above the reference (meV). `each` is called for every tile of sites, with
+    /// its gradient, as soon as that is known, and with what there is for that tile in `rows`.
+    pub fn density_gradient<R: Send>(
         &self,
         m: &[f64],
         g: &mut [f64],
         density: &mut [f64],
-        mut each: impl FnMut(Range<usize>, Components),
+        rows: impl Iterator<Item = R>,
+        each: impl Fn(Range<usize>, Components, R) + Sync,
     ) -> f64 {
         self.evaluations.fetch_add(1, Ordering::Relaxed);
         let far = self.add_far(m, g);
         density.fill(0.0);
-        let mut sums = Vec::with_capacity(self.sites.div_ceil(TILE));
-        for ((first, mut g), density) in tiles(g).zip(density.chunks_mut(TILE)) {
+        let tile = |(((first, mut g), density), row): (((usize, ComponentsMut), &mut [f64]), R)| -> f64 {
             self.near_tile(m, first, g.reborrow(), density);
-            let row = first..first + density.len();
+            let sites = first..first + density.len();
             if let Some(far) = &far {
-                slab::add_scaled(density, 1.0, &far[row.clone()]);
+                slab::add_scaled(density, 1.0, &far[sites.clone()]);
             }
-            sums.push(slab::sum(density));
-            each(row, g.as_read());
-        }
+            each(sites, g.as_read(), row);
+            slab::sum(density)
+        };
+        let tiles = tiles(g).zip(density.chunks_mut(TILE)).zip(rows);
+        let sums: Vec<f64> = if self.sites >= LONG {
+            tiles.collect::<Vec<_>>().into_par_iter().with_min_len(TILES).map(tile).collect()
+        } else {
+            tiles.map(tile).collect()
+        };
         slab::sum(&sums)
     }
 

@@ -8,11 +8,13 @@
 //! long-ranged term adds is in [`far`].
 
 use super::blocks::{Blocks, Bonds, multiply};
+use super::hamiltonian::LONG;
 use super::{Hamiltonian, far};
-use crate::field::{Components, ComponentsMut};
+use crate::field::{Components, ComponentsMut, tiles};
 use crate::geometry::{Vector, tangent_basis, vector};
 use crate::linalg::Banded;
 use multiversion::multiversion;
+use rayon::prelude::*;
 use std::ops::Range;
 
 /// Two orthonormal tangent vectors a site, each as a component-major field.
@@ -20,6 +22,26 @@ use std::ops::Range;
 pub struct TangentBasis {
     first: Vec<f64>,
     second: Vec<f64>,
+}
+
+/// The basis on a tile of sites ([`crate::field::TILE`]).
+#[derive(Debug)]
+pub struct BasisTile<'a> {
+    e: ComponentsMut<'a>,
+    f: ComponentsMut<'a>,
+}
+
+impl BasisTile<'_> {
+    /// Makes it the basis at the spins `m`.
+    pub fn set(&mut self, m: Components) {
+        let (e, f) = (&mut self.e, &mut self.f);
+        write_basis(m, e.x, e.y, e.z, f.x, f.y, f.z);
+    }
+
+    /// Tangent coordinates of a vector field.
+    pub fn write_coordinates(&self, v: Components, t: &mut [f64]) {
+        write_coordinates(self.e.as_read(), self.f.as_read(), v, t);
+    }
 }
 
 impl TangentBasis {
@@ -47,6 +69,11 @@ impl TangentBasis {
         let e = ComponentsMut::new(&mut self.first).into_range(row.clone());
         let f = ComponentsMut::new(&mut self.second).into_range(row.clone());
         write_basis(Components::new(m).range(row), e.x, e.y, e.z, f.x, f.y, f.z);
+    }
+
+    /// It in tiles, to be set one by one.
+    pub fn tiles(&mut self) -> impl Iterator<Item = BasisTile<'_>> {
+        tiles(&mut self.first).zip(tiles(&mut self.second)).map(|((_, e), (_, f))| BasisTile { e, f })
     }
 
     /// The two vectors at site i.
@@ -227,7 +254,7 @@ pub fn assemble_shifted(h: &Hamiltonian, m: &[f64], g: &[f64], basis: &TangentBa
 
 fn fill(h: &Hamiltonian, m: &[f64], g: &[f64], basis: &TangentBasis, shift: f64, precise: bool, matrix: &mut Banded) {
     let assembly = Assembly::begin(h, m, g, shift, precise, matrix);
-    assembly.write_rows(basis, 0..h.sites(), matrix);
+    assembly.write_all(basis, matrix);
     assembly.finish(basis, matrix);
 }
 
@@ -270,7 +297,24 @@ impl<'a> Assembly<'a> {
 
     /// Writes a row of sites, with the basis there and as many sites on as the bonds reach.
     pub fn write_rows(&self, basis: &TangentBasis, row: Range<usize>, matrix: &mut Banded) {
-        self.parts(basis).write_plain(row.start..row.end.min(self.plain), matrix);
+        let row = row.start..row.end.min(self.plain);
+        if !row.is_empty() {
+            self.parts(basis).write_plain(row.clone(), matrix.columns_of(row));
+        }
+    }
+
+    /// Writes all rows of sites; of long chains side by side.
+    fn write_all(&self, basis: &TangentBasis, matrix: &mut Banded) {
+        if self.h.sites() < LONG {
+            return self.write_rows(basis, 0..self.h.sites(), matrix);
+        }
+        let columns = matrix.columns_of(0..self.plain);
+        let size = columns.len() / self.plain.max(1);
+        let parts = self.parts(basis);
+        columns.par_chunks_mut((size * PART).max(1)).enumerate().for_each(|(k, columns)| {
+            let first = k * PART;
+            parts.write_plain(first..first + columns.len() / size, columns);
+        });
     }
 
     /// Adds all that [`write_rows`](Self::write_rows) has not written, whatever rows it was given.
@@ -291,6 +335,8 @@ impl<'a> Assembly<'a> {
 
 /// Sites in one pass of the kernels.
 const ROW: usize = 64;
+/// Sites of a long chain that are worth waking a thread for.
+const PART: usize = 4096;
 
 /// (ee, fe, ff) of a row of sites.
 #[multiversion(targets("x86_64+avx2"))]
@@ -371,21 +417,21 @@ impl Parts<'_> {
 
     /// Writes the columns of sites all of whose later partners come after them in the band: the entries from the diagonal
     /// down, row after row of sites.
-    fn write_plain(&self, sites: Range<usize>, matrix: &mut Banded) {
+    fn write_plain(&self, sites: Range<usize>, columns: &mut [f64]) {
         let mut entries = [[0.0; ROW]; 4];
-        for first in sites.clone().step_by(ROW) {
+        let size = columns.len() / sites.len();
+        for (first, columns) in sites.clone().step_by(ROW).zip(columns.chunks_mut(size * ROW)) {
             let here = first..sites.end.min(first + ROW);
-            let columns = || here.clone().zip(0..);
             diagonals(self, here.clone(), &mut entries);
             let [ee, fe, ff, _] = &entries;
-            for ((_, i), pair) in columns().zip(matrix.column_pairs(first)) {
+            for (i, pair) in columns.chunks_exact_mut(size).enumerate() {
                 let (second, last) = (pair.len() / 2, pair.len() - 1);
                 (pair[0], pair[1], pair[second], pair[last]) = (ee[i], fe[i], ff[i], 0.0);
             }
             for (k, bonds) in self.blocks.bond.iter().enumerate() {
                 couplings(self, bonds, k + 1, here.clone(), &mut entries);
                 let [ee, ef, fe, ff] = &entries;
-                for ((_, i), pair) in columns().zip(matrix.column_pairs(first)) {
+                for (i, pair) in columns.chunks_exact_mut(size).enumerate() {
                     let second = pair.len() / 2 - 1;
                     (pair[2 * k + 2], pair[second + 2 * k + 2]) = (ee[i], fe[i]);
                     (pair[2 * k + 3], pair[second + 2 * k + 3]) = (ef[i], ff[i]);

@@ -28,7 +28,7 @@ pub use dipolar::DipolarSpec;
 pub use dmi::{Dmi, DmiSpec};
 pub use exchange::{Exchange, ExchangeSpec};
 pub use hamiltonian::{Hamiltonian, symmetry_axes};
-pub use hessian::{Assembly, TangentBasis, assemble, assemble_into, assemble_shifted};
+pub use hessian::{Assembly, BasisTile, TangentBasis, assemble, assemble_into, assemble_shifted};
 pub use magnetostatics::Magnetostatics;
 pub use spec::{Medium, TermBuilder, TermSpec};
 pub use zeeman::{Zeeman, ZeemanSpec};

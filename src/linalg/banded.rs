@@ -7,6 +7,7 @@
 //! A matrix without a rim may have a long-ranged [`Tail`] besides. Factorised by [`Ldl`].
 
 use super::{Ldl, Tail, slab};
+use std::ops::Range;
 
 /// A symmetric matrix of `inner` banded unknowns followed by `border` unknowns coupled to all.
 #[derive(Clone, Debug, Default)]
@@ -51,6 +52,15 @@ impl Banded {
         self.tail = None;
     }
 
+    /// Makes it a copy of another matrix, in the memory it has.
+    pub(super) fn copy_from(&mut self, other: &Banded) {
+        (self.inner, self.width, self.border) = (other.inner, other.width, other.border);
+        self.band.clone_from(&other.band);
+        self.rim.clone_from(&other.rim);
+        self.corner.clone_from(&other.corner);
+        self.tail.clone_from(&other.tail);
+    }
+
     /// Adds a tail to a matrix of two unknowns a site, without a rim.
     pub fn set_tail(&mut self, tail: Tail) {
         debug_assert!(self.border == 0 && self.inner == 2 * tail.rows.len());
@@ -84,10 +94,10 @@ impl Banded {
         }
     }
 
-    /// The columns 2i and 2i + 1 together, for each i from `first` on, from the diagonal down: w + 1 entries each.
-    pub fn column_pairs(&mut self, first: usize) -> impl Iterator<Item = &mut [f64]> {
+    /// The columns 2i and 2i + 1 of all sites i of a row, from the diagonal down: w + 1 entries each.
+    pub fn columns_of(&mut self, sites: Range<usize>) -> &mut [f64] {
         let pair = 2 * (self.width + 1);
-        self.band[first * pair..self.inner * (self.width + 1)].chunks_exact_mut(pair)
+        &mut self.band[sites.start * pair..sites.end * pair]
     }
 
     /// Entry (i, j); zero outside the band where there is no tail.
@@ -125,6 +135,46 @@ impl Banded {
 
     /// y ← A x.
     pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
+        match (self.width, self.border) {
+            (1, 0) => self.multiply_narrow::<1, 2>(x, y),
+            (3, 0) => self.multiply_narrow::<3, 4>(x, y),
+            (5, 0) => self.multiply_narrow::<5, 6>(x, y),
+            _ => self.multiply_any(x, y),
+        }
+        if let Some(tail) = &self.tail {
+            tail.add_product(x, y);
+        }
+    }
+
+    /// The band alone, of half-bandwidth W = S − 1: with what the last columns still owe to the next rows in registers.
+    fn multiply_narrow<const W: usize, const S: usize>(&self, x: &[f64], y: &mut [f64]) {
+        let n = self.inner;
+        let mut owed = [0.0; S];
+        let inside = n.saturating_sub(W);
+        for j in 0..n {
+            let column = &self.band[j * S..][..S];
+            let mut sum = column[0] * x[j];
+            if j < inside {
+                let ahead = &x[j + 1..][..W];
+                for k in 0..W {
+                    sum += column[k + 1] * ahead[k];
+                    owed[k + 1] += column[k + 1] * x[j];
+                }
+            } else {
+                for k in 1..n - j {
+                    sum += column[k] * x[j + k];
+                    owed[k] += column[k] * x[j];
+                }
+            }
+            y[j] = owed[0] + sum;
+            for k in 0..W {
+                owed[k] = owed[k + 1];
+            }
+            owed[W] = 0.0;
+        }
+    }
+
+    fn multiply_any(&self, x: &[f64], y: &mut [f64]) {
         let (n, w, b) = (self.inner, self.width, self.border);
         y.fill(0.0);
         for j in 0..n {
@@ -150,9 +200,6 @@ impl Banded {
                     y[n + s] += a * x[n + r];
                 }
             }
-        }
-        if let Some(tail) = &self.tail {
-            tail.add_product(x, y);
         }
     }
 
@@ -273,6 +320,21 @@ mod tests {
                 let single: Vec<f64> = (0..n).map(|j| full[j * n]).collect();
                 let unit = solve_dense(&full, &single, n).expect("regular");
                 assert!((unit[0] - 1.0).abs() < 1e-10 / smallest);
+            }
+        }
+    }
+
+    #[test]
+    fn products_of_narrow_bands_have_the_bits_of_any_other() {
+        let mut r = rand_chacha::ChaCha8Rng::seed_from_u64(6);
+        for width in [1, 3, 5] {
+            for n in [1, 2, 5, 6, 7, 40] {
+                let a = random(&mut r, n, width, 0);
+                let x: Vec<f64> = (0..n).map(|_| r.random_range(-1.0..1.0)).collect();
+                let (mut narrow, mut any) = (vec![9.0; n], vec![9.0; n]);
+                a.multiply(&x, &mut narrow);
+                a.multiply_any(&x, &mut any);
+                assert_eq!(narrow, any);
             }
         }
     }

@@ -12,6 +12,7 @@ use super::lowest::{APART, Mode, rayleigh_ritz};
 use super::{Banded, Ldl, slab};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use std::mem::take;
 
 /// A vector whose residual is this part of its eigenvalue is an eigenvector: the eigenvalue is right to the square of it.
 const RESIDUAL: f64 = 1e-8;
@@ -50,6 +51,8 @@ struct Slices<'a> {
     /// Orthonormal.
     vectors: Vec<Vec<f64>>,
     random: ChaCha8Rng,
+    /// Memory for A − s and its factors.
+    memory: Banded,
 }
 
 impl<'a> Slices<'a> {
@@ -64,23 +67,25 @@ impl<'a> Slices<'a> {
             found: Vec::new(),
             vectors: Vec::new(),
             random: ChaCha8Rng::seed_from_u64(0x5eed),
+            memory: Banded::default(),
         }
     }
 
-    /// The factors of A − s.
-    fn factor(&mut self, s: f64) -> Ldl {
-        let mut shifted = self.matrix.clone();
+    /// Takes A − s apart, which tells how many eigenvalues are below s; x ← (A − s)⁻¹ x, where there is an x.
+    fn factor(&mut self, s: f64, x: &mut [f64]) {
+        let mut shifted = take(&mut self.memory);
+        shifted.copy_from(self.matrix);
         shifted.shift(-s);
-        let factors = shifted.factor();
+        let factors = Ldl::solving_sized(shifted, self.scale, x, usize::from(!x.is_empty()));
         let known = self.known_values.iter().filter(|v| **v < s).count();
         let at = self.points.partition_point(|p| p.0 < s);
         self.points.insert(at, (s, factors.negatives().saturating_sub(known)));
-        factors
+        self.memory = factors.into_memory();
     }
 
     /// Number of eigenvalues below s.
     fn below(&mut self, s: f64) -> usize {
-        self.factor(s);
+        self.factor(s, &mut []);
         self.points.iter().find(|p| p.0 == s).map_or(0, |p| p.1)
     }
 
@@ -106,13 +111,13 @@ impl<'a> Slices<'a> {
         let least = 1e-11 * self.scale;
         let mut outer = least;
         while self.points.first().is_none_or(|p| p.1 > 0) && outer < 16.0 * self.scale {
-            self.factor(-outer);
+            self.factor(-outer, &mut []);
             outer *= 16.0;
         }
         outer = self.points.last().map_or(least, |p| p.0.max(least));
         while self.points.last().is_none_or(|p| !self.lacks(*p)) && outer < 16.0 * self.scale {
             outer *= 4.0;
-            self.factor(outer);
+            self.factor(outer, &mut []);
         }
         let end = self.points.iter().position(|p| self.lacks(*p)).unwrap_or(self.points.len() - 1);
         (self.points[end.saturating_sub(1)].0, self.points[end].0)
@@ -142,7 +147,7 @@ impl<'a> Slices<'a> {
             let (a, b) = self.bracket();
             let inside = a < quotient && quotient < b;
             let shift = if inside && (round < SLOW || round % 2 == 0) { quotient } else { self.middle(a, b) };
-            self.factor(shift).solve(&mut x, 1);
+            self.factor(shift, &mut x);
             self.clear(&mut x)?;
             self.matrix.multiply(&x, &mut image);
             quotient = slab::dot(&x, &image);

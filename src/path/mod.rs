@@ -84,6 +84,12 @@ impl Path {
         pairs.map(|k| measure(self.image(k - 1), self.image(k))).collect()
     }
 
+    /// Distances of all images from a configuration (rad).
+    pub fn distances_from(&self, m: &[f64]) -> Vec<f64> {
+        let images = (0..self.images()).into_par_iter().with_min_len(apiece(m.len(), READ));
+        images.map(|k| distance(self.image(k), m)).collect()
+    }
+
     /// Total length (rad).
     pub fn length(&self) -> f64 {
         self.spacings().iter().sum()

@@ -1,7 +1,7 @@
 //! A configuration with its energy, gradient and tangent basis, in memory that is used again for the next one.
 
 use crate::energy::{Hamiltonian, TangentBasis, assemble_into};
-use crate::field::{Components, ComponentsMut, TILE};
+use crate::field::{Components, TILE};
 use crate::linalg::{Banded, slab};
 use crate::saddle::orthonormal;
 use crate::sphere::move_points;
@@ -23,8 +23,6 @@ pub struct Point {
     pub slope: Vec<f64>,
     /// Orthonormal zero modes: rotations about the symmetry axes, in tangent coordinates.
     pub zeros: Vec<Vec<f64>>,
-    /// Room for the force on a tile.
-    force: Vec<f64>,
 }
 
 impl Point {
@@ -48,21 +46,22 @@ impl Point {
     }
 
     fn evaluate(&mut self, h: &Hamiltonian) {
-        let Point { m, density, gradient, basis, slope, force, .. } = self;
+        let Point { m, density, gradient, basis, slope, .. } = self;
         let n = m.len() / 3;
         gradient.resize(3 * n, 0.0);
         density.resize(n, 0.0);
         slope.resize(2 * n, 0.0);
         basis.resize(n);
         let spins = Components::new(m);
-        force.resize(3 * n.min(TILE), 0.0);
-        self.energy_mev = h.density_gradient(m, gradient, density, |row, g| {
-            let force = &mut force[..3 * row.len()];
-            h.force_row(row.start, spins.range(row.clone()), g, ComponentsMut::new(force));
-            basis.set_row(row.clone(), m);
-            let slope = &mut slope[2 * row.start..2 * row.end];
-            basis.write_row_coordinates(row, Components::new(force), slope);
-            slab::scale(slope, -1.0);
+        let rows = basis.tiles().zip(slope.chunks_mut(2 * TILE));
+        self.energy_mev = h.density_gradient(m, gradient, density, rows, |row, g, (mut basis, slope)| {
+            basis.set(spins.range(row.clone()));
+            // the basis vectors are tangent, so that the gradient need not be projected
+            basis.write_coordinates(g, slope);
+            if h.has_frozen() {
+                let frozen = slope.chunks_exact_mut(2).zip(row).filter(|(_, i)| h.is_frozen(*i));
+                frozen.for_each(|(slope, _)| slope.fill(0.0));
+            }
         });
         let mut memory = std::mem::take(&mut self.zeros).into_iter();
         let axes = h.symmetry_axes_at(&self.m);

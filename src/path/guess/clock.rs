@@ -69,7 +69,9 @@ fn line(p: Vector, q: Vector) -> Vector {
 
 /// The ways of all spins, the nearly opposite ones about one axis: [`common_axis`].
 pub fn ways(a: &Spins, b: &Spins, axis: Direction) -> Vec<Way> {
-    Ways::between(a, b).about(axis)
+    let ways = Ways::between(a, b);
+    let about = ways.about(axis);
+    (0..a.sites()).map(|i| *about.of(i)).collect()
 }
 
 /// The axis about which all nearly opposite spins turn: the given one, unless one of these spins lies along it. Then it is the
@@ -78,28 +80,61 @@ pub fn common_axis(a: &Spins, b: &Spins, axis: Direction) -> Direction {
     Ways::between(a, b).common_axis(axis)
 }
 
-/// The ways between two states about any axis: what does not depend on the axis is worked out once.
+/// The ways between two states about any axis: what does not depend on the axis is worked out once, and once for neighbours
+/// that are alike in both states.
 #[derive(Clone, Debug)]
 pub struct Ways<'a> {
     /// From here
     pub a: &'a Spins,
     /// to here.
     pub b: &'a Spins,
-    /// The ways, those of the nearly opposite ones still to be filled in.
+    /// The first spin of each row of spins that are alike.
+    firsts: Vec<usize>,
+    /// Which row a spin belongs to.
+    rows: Vec<u32>,
+    /// The ways of the rows, those of nearly opposite spins still to be filled in.
     direct: Vec<Way>,
+    /// Rows of nearly opposite spins.
     opposite: Vec<usize>,
+}
+
+/// The ways about one axis.
+#[derive(Clone, Debug)]
+pub struct About<'w> {
+    rows: &'w [u32],
+    ways: Vec<Way>,
+}
+
+impl About<'_> {
+    /// The way of spin i.
+    pub fn of(&self, i: usize) -> &Way {
+        &self.ways[self.rows[i] as usize]
+    }
+
+    /// The lengths of all spins' ways (rad).
+    pub fn lengths(&self) -> Vec<f64> {
+        let lengths: Vec<f64> = self.ways.iter().map(Way::length).collect();
+        self.rows.iter().map(|row| lengths[*row as usize]).collect()
+    }
 }
 
 impl<'a> Ways<'a> {
     /// From state a to state b of as many spins.
     pub fn between(a: &'a Spins, b: &'a Spins) -> Ways<'a> {
-        let sites = 0..a.sites();
-        let opposite: Vec<usize> = sites.clone().filter(|&i| are_nearly_opposite(a.get(i), b.get(i))).collect();
-        let direct = sites.into_par_iter().with_min_len(apiece(3, MADE)).map(|i| match opposite.binary_search(&i) {
-            Ok(_) => Way::Rest(a.get(i)),
-            Err(_) => Way::new(a.get(i), b.get(i), Direction::X),
-        });
-        Ways { a, b, direct: direct.collect(), opposite }
+        let (mut firsts, mut rows) = (Vec::new(), Vec::with_capacity(a.sites()));
+        for i in 0..a.sites() {
+            if i == 0 || (a.get(i), b.get(i)) != (a.get(i - 1), b.get(i - 1)) {
+                firsts.push(i);
+            }
+            rows.push(firsts.len() as u32 - 1);
+        }
+        let way = |&i: &usize| {
+            let (p, q) = (a.get(i), b.get(i));
+            if are_nearly_opposite(p, q) { (Way::Rest(p), true) } else { (Way::new(p, q, Direction::X), false) }
+        };
+        let each: Vec<(Way, bool)> = firsts.par_iter().with_min_len(apiece(3, MADE)).map(way).collect();
+        let opposite = (0..each.len()).filter(|&row| each[row].1).collect();
+        Ways { a, b, firsts, rows, direct: each.into_iter().map(|(way, _)| way).collect(), opposite }
     }
 
     /// Whether some spin's way depends on the axis.
@@ -108,26 +143,20 @@ impl<'a> Ways<'a> {
     }
 
     /// The ways of all spins, the nearly opposite ones about one axis: [`common_axis`].
-    pub fn about(&self, axis: Direction) -> Vec<Way> {
+    pub fn about(&self, axis: Direction) -> About<'_> {
         let axis = self.common_axis(axis);
         let mut ways = self.direct.clone();
-        let mut last: Option<(Vector, Vector, Way)> = None;
-        for &i in &self.opposite {
-            let (p, q) = (self.a.get(i), self.b.get(i));
-            // of uniform states all ways are one
-            let way = match last {
-                Some((before, after, way)) if (before, after) == (p, q) => way,
-                _ => Way::new(p, q, axis),
-            };
-            last = Some((p, q, way));
-            ways[i] = way;
+        for &row in &self.opposite {
+            let i = self.firsts[row];
+            ways[row] = Way::new(self.a.get(i), self.b.get(i), axis);
         }
-        ways
+        About { rows: &self.rows, ways }
     }
 
     fn common_axis(&self, axis: Direction) -> Direction {
         let closest = |k: Direction| {
-            let sine = |&i: &usize| vector::norm(vector::cross(line(self.a.get(i), self.b.get(i)), k.vector()));
+            let line = |i: usize| line(self.a.get(i), self.b.get(i));
+            let sine = |&row: &usize| vector::norm(vector::cross(line(self.firsts[row]), k.vector()));
             self.opposite.iter().map(sine).fold(f64::INFINITY, f64::min)
         };
         let candidates = [axis, next_axis(axis), next_axis(next_axis(axis))];
@@ -159,14 +188,15 @@ pub(super) fn next_axis(axis: Direction) -> Direction {
 }
 
 /// The path with spin i at fraction `clock(k, i)` of its way in image k, 0 to 1; ends exact.
-pub fn clocked(a: &Spins, b: &Spins, images: usize, ways: &[Way], clock: impl Fn(usize, usize) -> f64 + Sync) -> Path {
+pub fn clocked(ways: &Ways, about: &About, images: usize, clock: impl Fn(usize, usize) -> f64 + Sync) -> Path {
+    let (a, b) = (ways.a, ways.b);
     Path::build(images, a.sites(), |k, out| {
         if k == 0 || k + 1 == images {
             return out.copy_from_slice(if k == 0 { a.as_slice() } else { b.as_slice() });
         }
         let mut out = ComponentsMut::new(out);
-        for (i, way) in ways.iter().enumerate() {
-            out.set(i, way.at(clock(k, i)));
+        for i in 0..a.sites() {
+            out.set(i, about.of(i).at(clock(k, i)));
         }
     })
 }

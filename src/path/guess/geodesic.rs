@@ -37,6 +37,6 @@ impl Geodesic {
     /// The path along ways that are known.
     pub(crate) fn along(&self, ways: &Ways, images: usize, context: &GuessContext) -> Path {
         let about = ways.about(self.axis.unwrap_or(context.default_axis));
-        clocked(ways.a, ways.b, images, &about, |k, _| fraction(k, images))
+        clocked(ways, &about, images, |k, _| fraction(k, images))
     }
 }

@@ -5,7 +5,7 @@
 //! ```
 //! h = π/2 where a spin goes around by a common axis: it waits at one end, then at the other.
 
-use super::clock::{clocked, fraction, ways};
+use super::clock::{Ways, clocked, fraction};
 use super::{FirstGuess, GuessContext};
 use crate::error::Result;
 use crate::geometry::{Direction, lerp, vector};
@@ -33,8 +33,9 @@ impl Described for Nlerp {
 
 impl FirstGuess for Nlerp {
     fn path(&self, a: &Spins, b: &Spins, images: usize, context: &GuessContext) -> Result<Path> {
-        let ways = ways(a, b, self.axis.unwrap_or(context.default_axis));
-        Ok(clocked(a, b, images, &ways, |k, i| uneven(fraction(k, images), 0.5 * ways[i].length())))
+        let ways = Ways::between(a, b);
+        let about = ways.about(self.axis.unwrap_or(context.default_axis));
+        Ok(clocked(&ways, &about, images, |k, i| uneven(fraction(k, images), 0.5 * about.of(i).length())))
     }
 }
 

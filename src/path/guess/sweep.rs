@@ -5,7 +5,7 @@
 //! ```
 //! at times T of equal distances √Σ(θ_i Δu_i)². Only sites that move by more than 0.3 rad count for the x_i.
 
-use super::clock::{Way, Ways, clocked, fraction};
+use super::clock::{Ways, clocked, fraction};
 use super::{FirstGuess, GuessContext};
 use crate::error::{Error, Result};
 use crate::geometry::{Direction, angle};
@@ -89,7 +89,7 @@ impl Sweep {
     pub(crate) fn along(&self, ways: &Ways, images: usize, context: &GuessContext) -> Result<Path> {
         let sites = ways.a.sites();
         let about = ways.about(self.axis.unwrap_or(context.default_axis));
-        let lengths: Vec<f64> = about.iter().map(Way::length).collect();
+        let lengths = about.lengths();
         let moving = moving(sites, |i| lengths[i]);
         let (first, n) = (moving.start as f64, moving.len() as f64);
         let width = self.width.unwrap_or((4.0 * context.states.wall_width_sites).clamp(2.0, n.max(2.0)));
@@ -110,7 +110,7 @@ impl Sweep {
         };
         let entries: Vec<f64> = (0..sites).map(entry).collect();
         let times = even_times(&entries, &lengths, width, images);
-        Ok(clocked(ways.a, ways.b, images, &about, |k, i| reached(times[k], entries[i], width)))
+        Ok(clocked(ways, &about, images, |k, i| reached(times[k], entries[i], width)))
     }
 }
 
