@@ -90,3 +90,15 @@ fn dzyaloshinskii_rings_and_their_mirror_images_have_one_barrier() {
         assert!((forward(&a) - forward(&b)).abs() < 1e-10, "D = ±{d}: {} {}", forward(&a), forward(&b));
     }
 }
+
+#[test]
+fn a_wall_between_flat_sides_is_followed_to_both_ends() {
+    // far from the ends the energy does not depend on the wall's place to double precision: the top of the path is a plateau
+    for (sites, k) in [(300, 0.01), (1000, 0.002)] {
+        let wide = certified("hard axis", &Build::open(sites).easy(k).hard(0.5 * k).reversal());
+        // a wall in the easy plane does not feel the hard axis
+        let uniaxial = certified("uniaxial", &Build::open(sites).easy(k).reversal());
+        assert!((forward(&wide) - forward(&uniaxial)).abs() < 1e-12, "{} {}", forward(&wide), forward(&uniaxial));
+        assert_eq!(wide.saddles.len(), 1);
+    }
+}

@@ -135,7 +135,7 @@ fn falling(found: &Found) -> Vec<f64> {
 }
 
 /// A saddle with the minima on its two sides.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Link {
     /// The saddle.
     pub found: Found,

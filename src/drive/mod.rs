@@ -7,6 +7,7 @@ mod connect;
 mod ends;
 mod explore;
 mod join;
+mod lower;
 mod minimum;
 mod outcome;
 mod problem;

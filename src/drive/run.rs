@@ -6,6 +6,7 @@ use super::connect::{Sequence, follow};
 use super::ends::{Relaxed, judge_end, kept, relax_to_minimum};
 use super::explore::{natural_guesses, turning_axis};
 use super::join::{Joined, Tools, joined};
+use super::lower::lowered;
 use super::minimum::{Link, Minimum};
 use super::outcome::*;
 use super::relaxation::{Goal, Relaxation, height, image_levels, needs_laplacian, refined};
@@ -212,6 +213,9 @@ impl<'a, 'o> Run<'a, 'o> {
         let found = self.all_saddles(&c)?;
         if self.problem.certify && self.problem.seeks_saddles() {
             let proof = self.prove(&c, &found)?;
+            if let Some(lower) = self.lowered(&mut c, &proof)? {
+                return Ok(Settled { candidate: c, found, proof: lower });
+            }
             if self.needs_joining(&c, &proof) && self.join(&mut c, &proof)? {
                 return Ok(Settled { candidate: c, found, proof });
             }
@@ -222,6 +226,19 @@ impl<'a, 'o> Run<'a, 'o> {
         self.relax_resolved(&mut c, usize::MAX)?;
         let found = self.all_saddles(&c)?;
         self.seated(c, found, None)
+    }
+
+    /// The proof of a path over a lower saddle beside the highest, if there is one and the path could be led over it.
+    fn lowered(&mut self, c: &mut Candidate<'a>, proof: &Proof) -> Result<Option<Proof>> {
+        if !proof.doubts.is_empty() || !self.problem.relax_ends {
+            return Ok(None);
+        }
+        let scale = self.scales.stiffness_mev;
+        let Some(links) = lowered(&self.problem.hamiltonian, &proof.links, scale, self.recorder)? else {
+            return Ok(None);
+        };
+        let lower = Proof { ends: proof.ends.clone(), links, doubts: Vec::new() };
+        Ok(self.join(c, &lower)?.then_some(lower))
     }
 
     /// Relaxes tightly with as many images as it takes, each time with at most `more` evaluations.

@@ -34,6 +34,12 @@ const ASTRAY: f64 = 0.5;
 const AS_TOLD: f64 = 1.25;
 /// A valley whose slope is less than this part of the steepest has left its top behind.
 const LESS_STEEP: f64 = 0.8;
+/// Slopes below this part of the stiffness (a radian) may be rounding error: the top is flat there.
+const FLAT: f64 = 256.0 * f64::EPSILON;
+/// A slope below this part of the torque is not the valley's, but of what is left across it.
+const ROUGH: f64 = 1e-3;
+/// Most steps across a valley more, where that is so.
+const SETTLE: usize = 2;
 /// Most steps down the gradient.
 const STEPS: usize = 20_000;
 /// So many steps down the gradient shorter than this (rad, any spin) are a crawl.
@@ -136,12 +142,13 @@ impl Walk<'_> {
     /// Along the valley as long as it falls, and its slope is more than a part of the steepest.
     fn march(&mut self, part: f64) {
         let noise = 64.0 * f64::EPSILON * self.h.stiffness_mev();
+        let flat = FLAT * self.h.stiffness_mev();
         let (mut slope, mut steepest) = (0.0f64, 0.0f64);
         let mut step = FIRST;
         self.last = None;
         for _ in 0..MARCH {
             let length = self.predict(step);
-            let kept = self.cross(step);
+            let kept = self.cross(step) && self.settle(noise, flat);
             let fallen = self.here.above_mev(&self.next);
             if fallen < -noise || self.h.is_stopped() {
                 break;
@@ -157,7 +164,7 @@ impl Walk<'_> {
             slope = there;
             swap(&mut self.here, &mut self.next);
             self.trail.pass(&self.here.m);
-            if slope < part * steepest {
+            if slope < part * steepest - flat {
                 break;
             }
             steepest = steepest.max(slope);
@@ -198,6 +205,23 @@ impl Walk<'_> {
             }
             if rotation < ON_THE_WAY * step {
                 break;
+            }
+        }
+        true
+    }
+
+    /// More steps across the valley, where the energy seems to rise or what is left of the torque across could hide the slope;
+    /// whether the valley is still there.
+    fn settle(&mut self, noise: f64, flat: f64) -> bool {
+        for _ in 0..SETTLE {
+            let rises = self.here.above_mev(&self.next) < -noise;
+            let torque = self.next.max_torque_mev();
+            let hidden = torque > flat && self.slope_ahead() < ROUGH * torque;
+            if !(rises || hidden) {
+                break;
+            }
+            if self.correct().is_none() {
+                return false;
             }
         }
         true
