@@ -4,7 +4,8 @@
 //! given. Everything is a default but the guess (a wall enters from the left) and the number of images (17). Band
 //! evaluations count all levels; solves are the factorisations of the saddle's refinement; the error is against a Newton's
 //! method of this file, in one angle a spin, that shares nothing with the library.
-//! Times are those of the quickest of up to 99 runs, on all cores.
+//! Times are those of the quickest of up to 99 runs, on one thread and on all cores, taken in three rounds over all sizes, so that
+//! a busy spell of the machine does not meet one size alone.
 
 use spinneb::band::Band;
 use spinneb::drive::{Images, Outcome, Problem, Silent, run, tops};
@@ -15,45 +16,95 @@ use spinneb::path::guess::{Edge, GuessSpec, Sweep};
 use spinneb::saddle::refine;
 use spinneb::spins::Spins;
 
+/// The allocator of the binary.
+#[cfg(feature = "mimalloc")]
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 /// Exchange (meV).
 const J: f64 = 10.0;
 const IMAGES: usize = 17;
+const ROUNDS: usize = 3;
 
 fn main() {
     let given: Vec<usize> = std::env::args().filter_map(|a| a.parse().ok()).collect();
     let sizes = if given.is_empty() { (0..12).map(|k| 50 << k).collect() } else { given };
+    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread to measure with");
     println!(
-        "{:>8} {:>5} {:>7} {:>20} {:>9} {:>9} {:>10} {:>7} {:>9}",
-        "sites", "evals", "solves", "barrier_meV", "error", "certified", "lowest/c", "µs/spin", "peak_GB"
+        "{:>8} {:>5} {:>7} {:>20} {:>9} {:>9} {:>10}",
+        "sites", "evals", "solves", "barrier_meV", "error", "certified", "lowest/c"
     );
-    for sites in sizes {
-        let problem = problem(sites);
-        let outcome = quickest(&problem);
-        let solves = saddle_solves(&problem, &outcome);
+    let mut series: Vec<Size> = sizes.into_iter().map(Size::new).collect();
+    series.iter_mut().for_each(|size| size.seconds[1] = size.first_run());
+    for round in 0..ROUNDS {
+        for size in &mut series {
+            for _ in 0..size.repetitions(round) {
+                size.seconds[0] = size.seconds[0].min(one.install(|| size.run().work.seconds));
+                size.seconds[1] = size.seconds[1].min(size.run().work.seconds);
+            }
+        }
+    }
+    println!("{:>8} {:>14} {:>13}", "sites", "µs/spin: one", "all threads");
+    for size in &series {
+        let [one, all] = size.microseconds_per_spin();
+        println!("{:>8} {one:>14.2} {all:>13.2}", size.sites);
+    }
+    let extremes = |k: usize| {
+        let all = series.iter().map(|size| size.microseconds_per_spin()[k]);
+        all.fold((f64::INFINITY, 0.0f64), |(least, most), t| (least.min(t), most.max(t)))
+    };
+    let [one, all] = [0, 1].map(extremes).map(|(least, most)| most / least);
+    println!("slowest over quickest: one thread {one:.2}, all threads {all:.2}");
+    println!("most memory held: {}", peak_gb().map_or("unknown".into(), |gb| format!("{gb:.2} GB")));
+}
+
+/// One member of the series.
+struct Size {
+    sites: usize,
+    problem: Problem,
+    /// The quickest run so far, on one thread and on all.
+    seconds: [f64; 2],
+}
+
+impl Size {
+    fn new(sites: usize) -> Size {
+        Size { sites, problem: problem(sites), seconds: [f64::INFINITY; 2] }
+    }
+
+    fn run(&self) -> Outcome {
+        run(&self.problem, &mut Silent).expect("a valid problem")
+    }
+
+    /// Runs it and tells what came out; the run's time (s).
+    fn first_run(&self) -> f64 {
+        let (sites, outcome) = (self.sites, self.run());
         let barrier = outcome.barrier.map_or(f64::NAN, |b| b.forward_mev);
-        let exact = wall_energy(sites);
         let soft = outcome.saddles.first().and_then(|s| s.lowest_eigenvalues_mev.first()).map_or(f64::NAN, |l| *l);
         println!(
-            "{sites:>8} {:>5} {solves:>7} {barrier:>20.15} {:>9.1e} {:>9} {:>10.1e} {:>7.2} {:>9}",
+            "{sites:>8} {:>5} {:>7} {barrier:>20.15} {:>9.1e} {:>9} {:>10.1e}",
             outcome.history.len(),
-            (barrier / exact - 1.0).abs(),
+            saddle_solves(&self.problem, &outcome),
+            (barrier / wall_energy(sites) - 1.0).abs(),
             outcome.certified,
             soft / (2.0 * anisotropy(sites)),
-            1e6 * outcome.work.seconds / sites as f64,
-            peak_gb().map_or("unknown".into(), |gb| format!("{gb:.2}")),
         );
         for warning in &outcome.warnings {
             println!("{:>8} {warning}", "");
         }
+        outcome.work.seconds
     }
-}
 
-/// A run; of short ones the quickest of several.
-fn quickest(problem: &Problem) -> Outcome {
-    let once = || run(problem, &mut Silent).expect("a valid problem");
-    let repetitions = (1_000_000 / problem.chain.sites).clamp(1, 99);
-    let runs = (0..repetitions).map(|_| once());
-    runs.min_by(|a, b| a.work.seconds.total_cmp(&b.work.seconds)).expect("at least one")
+    /// How often it is run in a round: up to 33 times if it is short, in one round only if it is long.
+    fn repetitions(&self, round: usize) -> usize {
+        match 1_000_000 / ROUNDS / self.sites {
+            0 => usize::from(round == 0),
+            n => n.min(33),
+        }
+    }
+
+    fn microseconds_per_spin(&self) -> [f64; 2] {
+        self.seconds.map(|s| 1e6 * s / self.sites as f64)
+    }
 }
 
 /// K (meV): walls are √10 sites wide on 50 sites, and as wide in comparison on any other number.

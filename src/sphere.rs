@@ -1,7 +1,7 @@
 //! Products of spheres: moving many unit vectors along tangent vectors by the exponential map, and angles between them.
 
 use crate::field::{Components, ComponentsMut, TILE, tiles};
-use crate::geometry::{Vector, exp, exp_short, log, vector};
+use crate::geometry::{Direction, Vector, exp, exp_short, log, rotate, vector};
 use crate::linalg::slab;
 use crate::threads::{MADE, apiece};
 use multiversion::multiversion;
@@ -21,6 +21,15 @@ pub fn move_points(points: &mut [f64], v: &[f64], slab: usize, s: f64) {
             }
         }
     });
+}
+
+/// Rotates the spins of some sites of one image by the same angle (rad, right-handed) about an axis.
+pub fn rotate_sites(m: &mut [f64], sites: impl Iterator<Item = usize>, axis: Direction, angle: f64) {
+    let mut m = ComponentsMut::new(m);
+    for i in sites {
+        let v = rotate(m.as_read().get(i), axis, angle);
+        m.set(i, vector::unit_or(v, v));
+    }
 }
 
 /// No component over ¼, so that |s v| ≤ √3/4 < ½.

@@ -11,9 +11,10 @@ use super::recorder::Recorder;
 use super::top::Top;
 use crate::energy::Hamiltonian;
 use crate::error::Result;
-use crate::field::{Components, ComponentsMut};
-use crate::geometry::{Direction, Vector, rotate, vector};
+use crate::field::Components;
+use crate::geometry::{Direction, Vector, vector};
 use crate::saddle::{Point, follow_modes};
+use crate::sphere::rotate_sites;
 use std::f64::consts::PI;
 use std::ops::Range;
 
@@ -94,12 +95,9 @@ fn turned_walls(h: &Hamiltonian, m: &[f64], most: f64) -> Vec<Vec<f64>> {
 
 /// A state with the spins of a row of sites turned about an axis; the row may go on at the start of a ring.
 fn turned(m: &[f64], row: Range<usize>, axis: Direction, angle: f64) -> Vec<f64> {
-    let mut out = m.to_vec();
     let sites = m.len() / 3;
-    for i in row.map(|i| i % sites) {
-        let v = rotate(Components::new(m).get(i), axis, angle);
-        ComponentsMut::new(&mut out).set(i, vector::unit_or(v, v));
-    }
+    let mut out = m.to_vec();
+    rotate_sites(&mut out, row.map(|i| i % sites), axis, angle);
     out
 }
 

@@ -5,12 +5,12 @@ use super::ends::relax_to_minimum;
 use super::recorder::Recorder;
 use crate::energy::Hamiltonian;
 use crate::error::Result;
-use crate::field::{Components, ComponentsMut};
-use crate::geometry::{Direction, rotate, vector};
+use crate::geometry::Direction;
 use crate::linalg::slab;
 use crate::path::guess::best_turn;
 use crate::path::largest_angle;
 use crate::saddle::{Spectrum, State, descend};
+use crate::sphere::rotate_sites;
 use crate::spins::Spins;
 use crate::threads::both;
 
@@ -106,13 +106,9 @@ pub fn turned(spins: &Spins, turns: &[(Direction, f64)]) -> Spins {
 }
 
 fn rotated(spins: &Spins, axis: Direction, angle: f64) -> Spins {
-    let m = Components::new(spins.as_slice());
-    let mut out = vec![0.0; 3 * m.sites()];
-    for i in 0..m.sites() {
-        let v = rotate(m.get(i), axis, angle);
-        ComponentsMut::new(&mut out).set(i, vector::unit_or(v, v));
-    }
-    Spins::from_unit_components(&out)
+    let mut m = spins.as_slice().to_vec();
+    rotate_sites(&mut m, 0..spins.sites(), axis, angle);
+    Spins::from_unit_components(&m)
 }
 
 /// The direction (3N) in which a saddle falls: the valley that its search followed, or, where that is a mixture of soft modes,

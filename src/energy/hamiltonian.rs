@@ -160,12 +160,7 @@ impl Hamiltonian {
             self.near_tile(m, first, g, density);
             slab::sum(density)
         };
-        let sums: Vec<f64> = if self.sites >= LONG {
-            tiles(g).collect::<Vec<_>>().into_par_iter().with_min_len(TILES).map(tile).collect()
-        } else {
-            tiles(g).map(tile).collect()
-        };
-        far.map_or(0.0, |density| slab::sum(&density)) + slab::sum(&sums)
+        far.map_or(0.0, |density| slab::sum(&density)) + self.total(tiles(g), tile)
     }
 
     /// The same, and the energy density of every site above the reference (meV). `each` is called for every tile of sites, with
@@ -180,8 +175,8 @@ impl Hamiltonian {
     ) -> f64 {
         self.evaluations.fetch_add(1, Ordering::Relaxed);
         let far = self.add_far(m, g);
-        density.fill(0.0);
         let tile = |(((first, mut g), density), row): (((usize, ComponentsMut), &mut [f64]), R)| -> f64 {
+            density.fill(0.0);
             self.near_tile(m, first, g.reborrow(), density);
             let sites = first..first + density.len();
             if let Some(far) = &far {
@@ -190,7 +185,11 @@ impl Hamiltonian {
             each(sites, g.as_read(), row);
             slab::sum(density)
         };
-        let tiles = tiles(g).zip(density.chunks_mut(TILE)).zip(rows);
+        self.total(tiles(g).zip(density.chunks_mut(TILE)).zip(rows), tile)
+    }
+
+    /// The sum of what `tile` gives for every tile of sites; of long chains they are done side by side.
+    fn total<T: Send>(&self, tiles: impl Iterator<Item = T>, tile: impl Fn(T) -> f64 + Send + Sync) -> f64 {
         let sums: Vec<f64> = if self.sites >= LONG {
             tiles.collect::<Vec<_>>().into_par_iter().with_min_len(TILES).map(tile).collect()
         } else {

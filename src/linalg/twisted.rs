@@ -100,7 +100,10 @@ pub fn eliminate<const W: usize, const S: usize, const C: usize>(m: &mut Banded,
             band[(n - 1 - h - p - q) * S + q] += bottom;
         }
     }
-    negatives += eliminate_middle::<S>(band, h, middle, floor);
+    negatives += match middle == W {
+        true => eliminate_middle::<W, S>(&mut band[h * S..], floor),
+        false => eliminate_middle::<S, S>(&mut band[h * S..], floor),
+    };
     take_from_middle::<W, S, C>(x, n, h, rows);
     negatives
 }
@@ -115,21 +118,21 @@ fn inverses(d: Lanes, floor: f64) -> Lanes {
     Lanes::ONE / d
 }
 
-/// Dense elimination of the `middle` unknowns from h on, which are all within the band.
-fn eliminate_middle<const S: usize>(band: &mut [f64], h: usize, middle: usize, floor: f64) -> usize {
+/// Dense elimination of the M unknowns in the middle, where `band` begins; they are all within the band.
+fn eliminate_middle<const M: usize, const S: usize>(band: &mut [f64], floor: f64) -> usize {
+    let band = &mut band[..M * S];
     let mut negatives = 0;
-    for j in 0..middle {
-        let inverse = 1.0 / guarded(band[(h + j) * S], floor);
+    for j in 0..M {
+        let mut column = [0.0; S];
+        column.copy_from_slice(&band[j * S..][..S]);
+        let inverse = 1.0 / guarded(column[0], floor);
         negatives += usize::from(inverse < 0.0);
-        band[(h + j) * S] = inverse;
-        for b in j + 1..middle {
-            for a in b..middle {
-                let (cb, ca) = (band[(h + j) * S + b - j], band[(h + j) * S + a - j]);
-                band[(h + b) * S + a - b] -= cb * ca * inverse;
+        band[j * S] = inverse;
+        for b in j + 1..M {
+            for a in b..M {
+                band[b * S + a - b] -= column[b - j] * column[a - j] * inverse;
             }
-        }
-        for a in j + 1..middle {
-            band[(h + j) * S + a - j] *= inverse;
+            band[j * S + b - j] = column[b - j] * inverse;
         }
     }
     negatives
@@ -213,7 +216,10 @@ fn take_from_middle<const W: usize, const S: usize, const C: usize>(
 /// The rest of the substitution: the middle, and from there to both ends.
 pub fn substitute_back<const W: usize, const S: usize, const C: usize>(m: &Banded, x: &mut [f64]) {
     let (n, h, band) = (m.inner, half(m), &m.band[..]);
-    substitute_middle::<S, C>(band, h, n - 2 * h, x);
+    match n - 2 * h == W {
+        true => substitute_middle::<W, S, C>(&band[h * S..], &mut x[h * C..]),
+        false => substitute_middle::<S, S, C>(&band[h * S..], &mut x[h * C..]),
+    }
     let mut rows = [[Lanes::ZERO; C]; S];
     for k in 0..W {
         rows[k + 1] = row::<C>(x, n, h + k);
@@ -234,19 +240,19 @@ pub fn substitute_back<const W: usize, const S: usize, const C: usize>(m: &Bande
     }
 }
 
-/// Solves for the middle.
-fn substitute_middle<const S: usize, const C: usize>(band: &[f64], h: usize, middle: usize, x: &mut [f64]) {
-    let l = |a: usize, b: usize| band[(h + b) * S + a - b];
+/// Solves for the M unknowns in the middle, where `band` and `x` begin.
+fn substitute_middle<const M: usize, const S: usize, const C: usize>(band: &[f64], x: &mut [f64]) {
+    let (band, x) = (&band[..M * S], &mut x[..M * C]);
+    let l = |a: usize, b: usize| band[b * S + a - b];
     for q in 0..C {
-        let at = |a: usize| (h + a) * C + q;
-        for b in 0..middle {
-            for a in b + 1..middle {
-                x[at(a)] -= l(a, b) * x[at(b)];
+        for b in 0..M {
+            for a in b + 1..M {
+                x[a * C + q] -= l(a, b) * x[b * C + q];
             }
         }
-        for b in (0..middle).rev() {
-            let later: f64 = (b + 1..middle).map(|a| l(a, b) * x[at(a)]).sum();
-            x[at(b)] = x[at(b)] * l(b, b) - later;
+        for b in (0..M).rev() {
+            let later: f64 = (b + 1..M).map(|a| l(a, b) * x[a * C + q]).sum();
+            x[b * C + q] = x[b * C + q] * l(b, b) - later;
         }
     }
 }
