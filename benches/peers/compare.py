@@ -193,7 +193,12 @@ def goal(name, table):
     met = "met" if min(unaided) >= wanted and own["certified"] and own["right"] else "NOT met"
     aided = min(r["cpu_s"] for r in rows) / own["cpu_s"]
     words = f"{name}: the goal, 1/{wanted} of the CPU time of spirit's best until it says that it has converged, is {met}"
-    return f"{words}: {min(unaided):.2g} times; with the answer known and images to suit, {aided:.2g} times"
+    return f"{words}: {ratio(min(unaided))} times; with the answer known and images to suit, {ratio(aided)} times"
+
+
+def ratio(x):
+    """Two digits, or all before the point."""
+    return f"{x:.0f}" if x >= 10 else f"{x:.2g}"
 
 
 HEAD = ["program", "given", "images", "stops", "CPU ms, solving", "CPU ms, process", "evaluations"]
@@ -212,7 +217,7 @@ def cells(row, own):
         f"{row['barrier_meV']:.9f}",
         short(row["error"]) if row["right"] else f"{row['error']:.2g}: wrong",
         {True: "yes", False: "no", None: "–"}[row["certified"]],
-        f"{row['cpu_s'] / own['cpu_s']:.2g}" if row["right"] else "",
+        ratio(row["cpu_s"] / own["cpu_s"]) if row["right"] else "",
     ]
 
 
