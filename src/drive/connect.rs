@@ -22,6 +22,8 @@ use std::borrow::Cow;
 
 /// Most stretches of one path.
 const MOST: usize = 600;
+/// Most saddles off the path, both sides of which lead to one minimum or back to where the path came from.
+const MOST_STRAYS: usize = 24;
 /// Images of a stretch, at least.
 const FEWEST: usize = 9;
 /// Band evaluations a stretch may take.
@@ -72,6 +74,7 @@ pub fn follow(
     // the part of the path that comes first is on top
     let mut stretches = vec![Stretch { a, b, path: Cow::Borrowed(band.path()), saddle: Some(saddle) }];
     let mut open: Vec<(Minimum, Link)> = Vec::new();
+    let mut strays: Vec<Found> = Vec::new();
     let mut count = 0;
     while let Some(stretch) = stretches.pop() {
         count += 1;
@@ -79,7 +82,7 @@ pub fn follow(
             sequence.gap = Some(format!("the path has more than {MOST} stretches between minima"));
             break;
         }
-        if stretch.saddle.is_none() && is_flat(relaxation, h, &stretch)? {
+        if stretch.saddle.is_none() && (stretch.a.is_identical(h, &stretch.b) || is_flat(relaxation, h, &stretch)?) {
             close(&mut sequence, &mut open, &stretch.b, h);
             continue;
         }
@@ -87,8 +90,8 @@ pub fn follow(
         let found = match stretch.saddle {
             Some(found) => Some(found),
             None => {
-                let known: Vec<&Found> =
-                    sequence.links.iter().chain(open.iter().map(|o| &o.1)).map(|l| &l.found).collect();
+                let links = sequence.links.iter().chain(open.iter().map(|o| &o.1));
+                let known: Vec<&Found> = links.map(|l| &l.found).chain(&strays).collect();
                 let found = new_saddle(relaxation, h, &stretch, &known, c)?;
                 again = found.as_ref().is_some_and(|f| known.iter().any(|k| k.is_same(h, f)));
                 found
@@ -106,10 +109,19 @@ pub fn follow(
         }
         let left_done = link.before.is_same(h, &stretch.a);
         let right_done = link.after.is_same(h, &stretch.b);
+        let both_done = left_done && right_done;
+        // from one side of it to the other a spin or a wall turns all the way round
+        let returns = !both_done && link.before.is_identical(h, &link.after);
         // a saddle met a second time is of use only where it joins the two ends
-        let astray = (again && !(left_done && right_done))
+        let astray = (again && !both_done)
+            || returns
             || (!left_done && link.before.is_same(h, &stretch.b))
             || (!right_done && link.after.is_same(h, &stretch.a));
+        if astray && !again && strays.len() < MOST_STRAYS {
+            strays.push(link.found);
+            stretches.push(Stretch { saddle: None, ..stretch });
+            continue;
+        }
         if astray {
             sequence.gap = Some("a descent from a saddle leads back to where it came from".into());
         }

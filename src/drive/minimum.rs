@@ -64,16 +64,19 @@ impl Minimum {
         self.spectrum.negative == 0 && self.spectrum.is_stationary(self.max_torque_mev)
     }
 
-    /// Whether `other` is this minimum: the same spins, also after the best rotation about the symmetry axes, or, where the
-    /// energy is flat, the same energy.
+    /// Whether `other` is this minimum, or one along a valley that is flat as far as double precision tells: the same energy.
     pub fn is_same(&self, h: &Hamiltonian, other: &Minimum) -> bool {
-        let a = self.spins.as_slice();
-        if largest_angle(a, other.spins.as_slice()) < SAME || self.is_turned(h, other) {
+        if self.is_identical(h, other) {
             return true;
         }
         let noise = 1e-12 * h.stiffness_mev();
         let both_flat = self.spectrum.flat > 0 && other.spectrum.flat > 0;
-        both_flat && h.difference_mev(a, other.spins.as_slice()).abs() < noise
+        both_flat && h.difference_mev(self.spins.as_slice(), other.spins.as_slice()).abs() < noise
+    }
+
+    /// Whether `other` has the same spins, perhaps after a rotation about the symmetry axes.
+    pub fn is_identical(&self, h: &Hamiltonian, other: &Minimum) -> bool {
+        largest_angle(self.spins.as_slice(), other.spins.as_slice()) < SAME || self.is_turned(h, other)
     }
 
     /// Whether a rotation about the symmetry axes makes `other` of this minimum.

@@ -213,10 +213,8 @@ impl<'a, 'o> Run<'a, 'o> {
         let found = self.all_saddles(&c)?;
         if self.problem.certify && self.problem.seeks_saddles() {
             let proof = self.prove(&c, &found)?;
-            if let Some(lower) = self.lowered(&mut c, &proof)? {
-                return Ok(Settled { candidate: c, found, proof: lower });
-            }
-            if self.needs_joining(&c, &proof) && self.join(&mut c, &proof)? {
+            let (proof, joined) = self.put_together(&mut c, proof)?;
+            if joined {
                 return Ok(Settled { candidate: c, found, proof });
             }
             if c.stop.is_converged() && !self.is_coarse(&c) {
@@ -225,7 +223,19 @@ impl<'a, 'o> Run<'a, 'o> {
         }
         self.relax_resolved(&mut c, usize::MAX)?;
         let found = self.all_saddles(&c)?;
-        self.seated(c, found, None)
+        let Settled { candidate: mut c, found, proof } = self.seated(c, found, None)?;
+        let (proof, _) = self.put_together(&mut c, proof)?;
+        Ok(Settled { candidate: c, found, proof })
+    }
+
+    /// The path from proven stretch to stretch in the place of the band, over a lower saddle if there is one beside its highest,
+    /// where the band needs it; the proof of the path that there is then, and whether the band was replaced.
+    fn put_together(&mut self, c: &mut Candidate<'a>, proof: Proof) -> Result<(Proof, bool)> {
+        if let Some(lower) = self.lowered(c, &proof)? {
+            return Ok((lower, true));
+        }
+        let joined = self.needs_joining(c, &proof) && self.join(c, &proof)?;
+        Ok((proof, joined))
     }
 
     /// The proof of a path over a lower saddle beside the highest, if there is one and the path could be led over it.
