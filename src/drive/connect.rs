@@ -2,11 +2,12 @@
 //!
 //! A saddle's two descents either end in the ends of its stretch of path, or in minima on the way; there the stretch is split,
 //! and the parts are treated alike. On a row of shallow minima a stretch's top may lead to a saddle beside it that is known
-//! already; then its other maxima are tried, and then the way up from either end along a soft mode. Minima joined by a valley
-//! that is flat to rounding have no saddle between them and count as one.
+//! already; then its other maxima are tried, then the way up from either end along a soft mode, and then the geodesic between
+//! its ends. A saddle with one minimum on both sides (where of two walls one turns all the way round) is not on the way. Minima
+//! joined by a valley that is flat to rounding have no saddle between them and count as one.
 
 use super::climb::{Found, ZOOMS, zoomed};
-use super::minimum::{Link, Minimum};
+use super::minimum::{Link, Minimum, turned, turns};
 use super::relaxation::{Goal, Relaxation};
 use super::top::{Top, direction, highest, tops};
 use crate::band::Band;
@@ -59,6 +60,16 @@ struct Stretch<'p> {
     saddle: Option<Found>,
 }
 
+impl<'p> Stretch<'p> {
+    /// The geodesic between its ends, the second turned about the symmetry axes to lie near the first.
+    fn straightened(&self, h: &Hamiltonian) -> Stretch<'p> {
+        let (a, mut b) = (self.a.clone(), self.b.clone());
+        b.spins = turned(&b.spins, &turns(h, &b.spins, &a.spins));
+        let path = Path::new(&[a.spins.clone(), b.spins.clone()]).resampled(FEWEST);
+        Stretch { a, b, path: Cow::Owned(path), saddle: None }
+    }
+}
+
 /// Follows a relaxed path from `a` to `b`; `saddle` is its highest saddle.
 pub fn follow(
     relaxation: &mut Relaxation,
@@ -76,7 +87,7 @@ pub fn follow(
     let mut open: Vec<(Minimum, Link)> = Vec::new();
     let mut strays: Vec<Found> = Vec::new();
     let mut count = 0;
-    while let Some(stretch) = stretches.pop() {
+    while let Some(mut stretch) = stretches.pop() {
         count += 1;
         if count > MOST {
             sequence.gap = Some(format!("the path has more than {MOST} stretches between minima"));
@@ -87,13 +98,21 @@ pub fn follow(
             continue;
         }
         let mut again = false;
-        let found = match stretch.saddle {
+        let found = match stretch.saddle.take() {
             Some(found) => Some(found),
             None => {
                 let links = sequence.links.iter().chain(open.iter().map(|o| &o.1));
                 let known: Vec<&Found> = links.map(|l| &l.found).chain(&strays).collect();
-                let found = new_saddle(relaxation, h, &stretch, &known, c)?;
-                again = found.as_ref().is_some_and(|f| known.iter().any(|k| k.is_same(h, f)));
+                let is_known = |f: &Found| known.iter().any(|k| k.is_same(h, f));
+                let mut found = new_saddle(relaxation, h, &stretch, &known, c)?;
+                if found.as_ref().is_none_or(is_known) {
+                    let direct = stretch.straightened(h);
+                    let other = new_saddle(relaxation, h, &direct, &known, c)?;
+                    if other.as_ref().is_some_and(|f| !is_known(f)) {
+                        (found, stretch) = (other, direct);
+                    }
+                }
+                again = found.as_ref().is_some_and(is_known);
                 found
             }
         };
