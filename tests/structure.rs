@@ -92,6 +92,27 @@ fn dzyaloshinskii_rings_and_their_mirror_images_have_one_barrier() {
 }
 
 #[test]
+fn two_walls_on_a_ring_pass_each_other_over_the_lower_azimuth() {
+    // beside these there are saddles on both sides of which lies one minimum: one wall turns all the way round
+    for (sites, k, d) in [(30, 0.4, 0.1), (41, 0.2, 0.3)] {
+        let [a, b] = [d, -d].map(|d| certified("a ring", &Build::ring(sites).easy(k).dmi(d, Direction::Z).reversal()));
+        assert!((forward(&a) - forward(&b)).abs() < 1e-10, "D = ±{d}: {} {}", forward(&a), forward(&b));
+    }
+}
+
+#[test]
+fn two_walls_far_apart_on_a_ring_cost_what_each_does_alone() {
+    let (k, d) = (0.4, 0.3);
+    let ring = certified("a ring", &Build::ring(41).easy(k).dmi(d, Direction::Z).reversal());
+    // one of them at rest between two sites, the other on the top of its hop
+    let chain = certified("an open chain", &Build::open(41).easy(k).dmi(d, Direction::Z).reversal());
+    let rests = chain.intermediate_minima.iter().map(|m| m.state.energy_mev - chain.initial.energy_mev);
+    let rest = rests.fold(0.0, f64::max);
+    let apart = forward(&ring) - (forward(&chain) + rest);
+    assert!(apart < 0.0 && apart > -1e-6, "{apart}");
+}
+
+#[test]
 fn a_wall_between_flat_sides_is_followed_to_both_ends() {
     // far from the ends the energy does not depend on the wall's place to double precision: the top of the path is a plateau
     for (sites, k) in [(300, 0.01), (1000, 0.002)] {
