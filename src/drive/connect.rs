@@ -61,6 +61,18 @@ struct Stretch<'p> {
 }
 
 impl<'p> Stretch<'p> {
+    /// The part up to a minimum on the way.
+    fn before(&self, b: &Minimum, context: &GuessContext) -> Result<Stretch<'p>> {
+        let path = Cow::Owned(between(&self.path, &self.a.spins, &b.spins, true, context)?);
+        Ok(Stretch { a: self.a.clone(), b: b.clone(), path, saddle: None })
+    }
+
+    /// The part from a minimum on the way on.
+    fn after(&self, a: &Minimum, context: &GuessContext) -> Result<Stretch<'p>> {
+        let path = Cow::Owned(between(&self.path, &a.spins, &self.b.spins, false, context)?);
+        Ok(Stretch { a: a.clone(), b: self.b.clone(), path, saddle: None })
+    }
+
     /// The geodesic between its ends, the second turned about the symmetry axes to lie near the first.
     fn straightened(&self, h: &Hamiltonian) -> Stretch<'p> {
         let (a, mut b) = (self.a.clone(), self.b.clone());
@@ -129,7 +141,7 @@ pub fn follow(
         let left_done = link.before.is_same(h, &stretch.a);
         let right_done = link.after.is_same(h, &stretch.b);
         let both_done = left_done && right_done;
-        // from one side of it to the other a spin or a wall turns all the way round
+        // from one side of it to the other a spin or a wall turns all the way round: it is not on the way, its minimum may be
         let returns = !both_done && link.before.is_identical(h, &link.after);
         // a saddle met a second time is of use only where it joins the two ends
         let astray = (again && !both_done)
@@ -137,20 +149,23 @@ pub fn follow(
             || (!left_done && link.before.is_same(h, &stretch.b))
             || (!right_done && link.after.is_same(h, &stretch.a));
         if astray && !again && strays.len() < MOST_STRAYS {
+            if returns && !left_done && !right_done {
+                stretches.push(stretch.after(&link.after, context)?);
+                stretches.push(stretch.before(&link.before, context)?);
+            } else {
+                stretches.push(stretch);
+            }
             strays.push(link.found);
-            stretches.push(Stretch { saddle: None, ..stretch });
             continue;
         }
         if astray {
             sequence.gap = Some("a descent from a saddle leads back to where it came from".into());
         }
         if !right_done && !astray {
-            let path = Cow::Owned(between(&stretch.path, &link.after.spins, &stretch.b.spins, false, context)?);
-            stretches.push(Stretch { a: link.after.clone(), b: stretch.b.clone(), path, saddle: None });
+            stretches.push(stretch.after(&link.after, context)?);
         }
         if !left_done && !astray {
-            let path = Cow::Owned(between(&stretch.path, &stretch.a.spins, &link.before.spins, true, context)?);
-            stretches.push(Stretch { a: stretch.a.clone(), b: link.before.clone(), path, saddle: None });
+            stretches.push(stretch.before(&link.before, context)?);
             open.push((link.before.clone(), link));
             continue;
         }
