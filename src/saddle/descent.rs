@@ -19,8 +19,10 @@ use std::mem::{swap, take};
 
 /// Largest rotation of a spin in one step (rad).
 const CAP: f64 = 0.3;
-/// The first step along a valley, the longest one, and how fast they grow (rad, any spin).
+/// The first step along a valley, the longest one, and how fast they grow (rad, any spin). Between two soft modes the first one
+/// may be shorter, down to the shortest.
 const FIRST: f64 = 0.05;
+const SHORTEST: f64 = 1e-4;
 const LONGEST: f64 = 0.4;
 const GROWTH: f64 = 1.4;
 /// Most steps along a valley at a time.
@@ -116,9 +118,12 @@ impl Walk<'_> {
     /// To a minimum; whether it is one.
     fn down(&mut self) -> bool {
         let mut less_steep = LESS_STEEP;
+        let mut in_vain = 0;
         for _ in 0..ROUNDS {
-            self.march(less_steep);
+            let from = self.here.energy_mev;
+            let moved = self.march(less_steep);
             let end = self.fall();
+            in_vain = if moved || self.here.energy_mev != from { 0 } else { in_vain + 1 };
             if matches!(end, Fall::Crawling) {
                 less_steep = 0.0;
                 continue;
@@ -126,6 +131,10 @@ impl Walk<'_> {
             less_steep = LESS_STEEP;
             if Spectrum::negatives(self.h, &self.here, &mut self.room.matrix) == 0 || self.h.is_stopped() {
                 return matches!(end, Fall::Arrived);
+            }
+            // once along the direction that was given, and once along the lowest mode
+            if in_vain > 1 {
+                return false;
             }
             project(&self.here.m, &mut self.tau);
             let state = State::of(self.h, self.here.clone());
@@ -139,17 +148,23 @@ impl Walk<'_> {
         false
     }
 
-    /// Along the valley as long as it falls, and its slope is more than a part of the steepest.
-    fn march(&mut self, part: f64) {
+    /// Along the valley as long as it falls, and its slope is more than a part of the steepest; whether it went any way.
+    fn march(&mut self, part: f64) -> bool {
         let noise = 64.0 * f64::EPSILON * self.h.stiffness_mev();
         let flat = FLAT * self.h.stiffness_mev();
         let (mut slope, mut steepest) = (0.0f64, 0.0f64);
         let mut step = FIRST;
+        let mut moved = false;
         self.last = None;
         for _ in 0..MARCH {
             let length = self.predict(step);
             let kept = self.cross(step) && self.settle(noise, flat);
             let fallen = self.here.above_mev(&self.next);
+            if fallen < -noise && !moved && step > SHORTEST && !self.h.is_stopped() {
+                self.turn_back();
+                step /= 4.0;
+                continue;
+            }
             if fallen < -noise || self.h.is_stopped() {
                 break;
             }
@@ -164,12 +179,14 @@ impl Walk<'_> {
             slope = there;
             swap(&mut self.here, &mut self.next);
             self.trail.pass(&self.here.m);
+            moved = true;
             if slope < part * steepest - flat {
                 break;
             }
             steepest = steepest.max(slope);
             step = (GROWTH * step).min(LONGEST);
         }
+        moved
     }
 
     /// A step along the valley, bent as the last one was: ds (t + ½ ds ∂t/∂s), the change ∂t/∂s of its direction from
