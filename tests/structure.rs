@@ -113,6 +113,15 @@ fn two_walls_far_apart_on_a_ring_cost_what_each_does_alone() {
 }
 
 #[test]
+fn two_equal_soft_modes_at_the_top_do_not_stop_a_descent() {
+    // two walls half a ring apart: their distance and their azimuths cost some millionths of J
+    let ring = certified("a ring", &Build::ring(60).easy(0.1).reversal());
+    let chain = certified("an open chain", &Build::open(60).easy(0.1).reversal());
+    let apart = forward(&ring) - 2.0 * forward(&chain);
+    assert!(apart < 0.0 && apart > -2e-5, "{apart}");
+}
+
+#[test]
 fn a_wall_between_flat_sides_is_followed_to_both_ends() {
     // far from the ends the energy does not depend on the wall's place to double precision: the top of the path is a plateau
     for (sites, k) in [(300, 0.01), (1000, 0.002)] {
