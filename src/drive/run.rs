@@ -606,8 +606,12 @@ fn relaxed_ends(h: &Hamiltonian, given: [&Spins; 2]) -> Result<[Relaxed; 2]> {
 /// Whether a saddle is image k of a band, and higher than its neighbours.
 fn is_seated(band: &Band, k: usize, saddle: &Found) -> bool {
     let e = band.energies_mev();
-    let highest = e[k] >= e[k - 1] && e[k] >= e[k + 1];
-    highest && band.is_held(k) && band.path().image(k) == saddle.refined.state.m
+    let between_ends = k > 0 && k + 1 < e.len();
+    between_ends
+        && e[k] >= e[k - 1]
+        && e[k] >= e[k + 1]
+        && band.is_held(k)
+        && band.path().image(k) == saddle.refined.state.m
 }
 
 /// Puts refined saddles in the place of the images nearest to them, where they fit between the neighbours; says whether any did.
