@@ -109,23 +109,12 @@ pub fn follow(
             close(&mut sequence, &mut open, &stretch.b, h);
             continue;
         }
-        let mut again = false;
-        let found = match stretch.saddle.take() {
-            Some(found) => Some(found),
+        let (found, again) = match stretch.saddle.take() {
+            Some(found) => (Some(found), false),
             None => {
                 let links = sequence.links.iter().chain(open.iter().map(|o| &o.1));
                 let known: Vec<&Found> = links.map(|l| &l.found).chain(&strays).collect();
-                let is_known = |f: &Found| known.iter().any(|k| k.is_same(h, f));
-                let mut found = new_saddle(relaxation, h, &stretch, &known, c)?;
-                if found.as_ref().is_none_or(is_known) {
-                    let direct = stretch.straightened(h);
-                    let other = new_saddle(relaxation, h, &direct, &known, c)?;
-                    if other.as_ref().is_some_and(|f| !is_known(f)) {
-                        (found, stretch) = (other, direct);
-                    }
-                }
-                again = found.as_ref().is_some_and(is_known);
-                found
+                search(relaxation, h, &mut stretch, &known, c)?
             }
         };
         let Some(found) = found.filter(|f| f.is_saddle(c)) else {
@@ -202,6 +191,29 @@ fn is_flat(relaxation: &mut Relaxation, h: &Hamiltonian, stretch: &Stretch) -> R
     let start = stretch.a.spins.as_slice();
     Ok(band.path().largest_rotation() < 1.0
         && (0..band.images()).all(|k| h.difference_mev(band.path().image(k), start).abs() < flat))
+}
+
+/// A saddle on a stretch, which is made straight if only then it shows one that is not known; and whether it is a known one.
+fn search(
+    relaxation: &mut Relaxation,
+    h: &Hamiltonian,
+    stretch: &mut Stretch,
+    known: &[&Found],
+    c: f64,
+) -> Result<(Option<Found>, bool)> {
+    let is_known = |f: &Found| known.iter().any(|k| k.is_same(h, f));
+    let found = new_saddle(relaxation, h, stretch, known, c)?;
+    if found.as_ref().is_some_and(|f| !is_known(f)) {
+        return Ok((found, false));
+    }
+    let direct = stretch.straightened(h);
+    let other = new_saddle(relaxation, h, &direct, known, c)?;
+    if other.as_ref().is_some_and(|f| !is_known(f)) {
+        *stretch = direct;
+        return Ok((other, false));
+    }
+    let again = found.is_some();
+    Ok((found, again))
 }
 
 /// A saddle on a stretch after a loose relaxation: one that is none of the known ones, if there is any.
