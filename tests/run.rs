@@ -148,3 +148,55 @@ fn threads_do_not_change_a_result() {
     };
     assert_eq!(bytes("1"), bytes("2"));
 }
+
+#[test]
+fn more_threads_than_cores_can_be_of_use_to_are_refused() {
+    let folder = folder(&["short"]);
+    let cores = std::thread::available_parallelism().unwrap().get();
+    let many = (16 * cores + 1).to_string();
+    for command in [["run", "short.json"], ["relax", "short.json"]] {
+        let (code, _, said) = spinneb(folder.path(), &[&command[..], &["--threads", &many]].concat());
+        assert_eq!(code, Some(2), "{said}");
+        let most = 16 * cores;
+        let words = format!(
+            "error: --threads: found {many}, but this machine has {cores} cores: at most 16 threads a core, {most} in all"
+        );
+        assert!(said.starts_with(&words), "{said}");
+    }
+    assert!(!folder.path().join("results").exists());
+    let most = (16 * cores).to_string();
+    assert_eq!(spinneb(folder.path(), &["run", "short.json", "--threads", &most]).0, Some(0));
+}
+
+#[test]
+#[cfg(unix)]
+fn a_pipe_or_a_device_in_the_place_of_a_file_is_refused_at_once() {
+    let folder = folder(&[]);
+    assert!(Command::new("mkfifo").arg(folder.path().join("pipe")).status().unwrap().success());
+    fs::write(
+        folder.path().join("material.json"),
+        CONFIG
+            .replace("\"material\": {\"name\": \"toy\", \"energy\": [", "\"material\": \"./pipe\", \"energy\": [")
+            .replace("  ]},\n  \"lattice\"", "  ],\n  \"lattice\""),
+    )
+    .unwrap();
+    let spins = |path: &str| {
+        CONFIG.replace(r#"{"uniform": {"direction": [0, 0, 1]}}"#, &format!(r#"{{"file": {{"path": "{path}"}}}}"#))
+    };
+    fs::write(folder.path().join("spins.json"), spins("pipe")).unwrap();
+    fs::write(folder.path().join("device.json"), spins("/dev/zero")).unwrap();
+    for (config, place, found) in [
+        ("pipe", "pipe", "pipe or a device"),
+        ("material.json", "material", "pipe or a device"),
+        ("spins.json", "initial.file.path", "pipe or a device"),
+        ("device.json", "initial.file.path", "pipe or a device"),
+        (".", ".", "folder"),
+    ] {
+        let (code, _, said) = spinneb(folder.path(), &["run", config]);
+        assert!(matches!(code, Some(1 | 2)), "{said}");
+        assert!(
+            said.contains(&format!("{place}: ")) && said.contains(&format!("it is a {found}, not a file")),
+            "{said}"
+        );
+    }
+}

@@ -276,3 +276,49 @@ fn a_nucleus_that_slides_over_the_lattice_at_hardly_any_cost_is_certified_where_
         assert!(-0.046 * 2.0 * k / 10.0 < deviation && deviation < 0.0, "{k}: {deviation}");
     }
 }
+
+/// The processes that work at a point of the sweep in this folder.
+#[cfg(target_os = "linux")]
+fn at_work(folder: &Path) -> usize {
+    let of = |entry: fs::DirEntry| {
+        let line = fs::read(entry.path().join("cmdline")).ok()?;
+        let here = fs::read_link(entry.path().join("cwd")).ok()?;
+        let point = line.split(|b| *b == 0).any(|word| word == b"--index");
+        // who has ended and was not asked for its code has no working directory
+        (point && here == folder.canonicalize().ok()?).then_some(())
+    };
+    fs::read_dir("/proc").unwrap().flatten().filter_map(of).count()
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_killed_sweep_leaves_no_points_at_work_and_they_go_on_afterwards() {
+    use std::time::{Duration, Instant};
+    let folder = folder(
+        r#"{"config": "chain.json", "grid": {"lattice.chain.sites": [40, 41]},
+            "set": {"neb": {"optimiser": {"velocity_projection": {}}, "tolerance": 1e-300, "max_evaluations": 2000000}}}"#,
+    );
+    let mut sweep = Command::new(env!("CARGO_BIN_EXE_spinneb"));
+    sweep.current_dir(folder.path()).args(["sweep", "many.json", "--jobs", "2"]).stderr(std::process::Stdio::null());
+    let mut sweep = sweep.spawn().unwrap();
+    let wait = |count: usize| {
+        let started = Instant::now();
+        while at_work(folder.path()) != count {
+            assert!(
+                started.elapsed() < Duration::from_secs(60),
+                "{} points at work, not {count}",
+                at_work(folder.path())
+            );
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    };
+    wait(2);
+    std::thread::sleep(Duration::from_millis(300));
+    sweep.kill().unwrap();
+    sweep.wait().unwrap();
+    wait(0);
+    for sites in ["40", "41"] {
+        let point = folder.path().join("results/many").join(format!("sites_{sites}"));
+        assert!(point.join("partial.json").is_file() && point.join("checkpoint/journal").is_file(), "{sites}");
+    }
+}

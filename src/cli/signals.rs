@@ -3,6 +3,7 @@
 use anyhow::{Context, Result};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
+use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
@@ -27,6 +28,16 @@ impl Signals {
         };
         KNOWN.into_iter().try_for_each(register).context("signals cannot be watched for")?;
         Ok(Signals { stop, caught })
+    }
+
+    /// From now on the end of standard input is a request to terminate: whoever held its other end is gone.
+    pub fn end_with_stdin(&self) {
+        let (stop, caught) = (Arc::clone(&self.stop), Arc::clone(&self.caught));
+        std::thread::spawn(move || {
+            let _ = io::copy(&mut io::stdin(), &mut io::sink());
+            caught.store(usize::from(KNOWN[1].1), Ordering::SeqCst);
+            stop.store(true, Ordering::SeqCst);
+        });
     }
 
     /// True once a signal has come.

@@ -1,10 +1,11 @@
 //! `sweep`: a config at many values, the points one by one or several at a time.
 //!
 //! Each point of a local sweep is a process of its own: what happens to one, be it killed for its memory, does not touch the others.
+//! When the sweep itself is killed its points stop as if they were terminated, since their standard input ends.
 
 use super::collect::{self, json_line, states};
 use super::jobs::{Ended, run_all};
-use super::run::{run_one, start_threads};
+use super::run::{check_threads, run_one, start_threads};
 use super::signals::Signals;
 use super::{Run, UNFINISHED, USAGE, note, report, worse};
 use anyhow::{Context, Result};
@@ -81,6 +82,10 @@ pub struct Arguments {
     /// Print one line of JSON for each point on stdout
     #[arg(long)]
     pub json: bool,
+
+    /// Stop, as when terminated, at the end of standard input: the whole sweep has ended
+    #[arg(long, hide = true, requires = "index")]
+    pub leashed: bool,
 }
 
 impl Arguments {
@@ -99,6 +104,7 @@ pub fn sweep(arguments: &Arguments) -> Result<u8> {
         writeln!(io::stdout(), "{}", sweep.len())?;
         return Ok(0);
     }
+    check_threads(arguments.jobs.map_or(1, NonZeroUsize::get), arguments.threads.map_or(1, NonZeroUsize::get))?;
     if let Some(point) = arguments.index {
         return one(arguments, &sweep, &dir, point);
     }
@@ -178,7 +184,11 @@ fn one(arguments: &Arguments, sweep: &Sweep, dir: &Path, point: usize) -> Result
         resume: !arguments.force,
         checkpoint_every: super::Interval::default(),
     };
-    run_one(&run, &Signals::watch()?, &loaded, &dir.join(sweep.directory(point)))
+    let signals = Signals::watch()?;
+    if arguments.leashed {
+        signals.end_with_stdin();
+    }
+    run_one(&run, &signals, &loaded, &dir.join(sweep.directory(point)))
 }
 
 /// A line a point.
@@ -244,11 +254,14 @@ fn all(arguments: &Arguments, index: &SweepIndex, dir: &Path, before: &[PointSta
     let start = |point: usize| {
         let mut command = Command::new(&program);
         command.arg("sweep").arg(&arguments.file).arg("--out").arg(dir);
-        command.args(["--index", &point.to_string(), "--threads", &threads.to_string(), "--quiet"]);
+        command.args(["--index", &point.to_string(), "--threads", &threads.to_string(), "--quiet", "--leashed"]);
         if arguments.force {
             command.arg("--force");
         }
-        command.stdin(Stdio::null()).stdout(Stdio::null()).output()
+        let mut child = command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn()?;
+        // held until the point is done: the system lets go of it with this process, however that ends
+        let _leash = child.stdin.take();
+        child.wait_with_output()
     };
     let mut failed: Vec<(usize, String, u8)> = Vec::new();
     let mut count = 0;

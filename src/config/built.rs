@@ -183,9 +183,7 @@ impl Loaded {
 
     /// Refuses what no memory can hold; `images` are the path's, where it has come to them.
     fn affordable(&self, bytes: f64, images: Option<usize>) -> Result<()> {
-        if bytes <= memory::machine_bytes() {
-            return Ok(());
-        }
+        let Some(whose) = memory::exceeded(bytes) else { return Ok(()) };
         let sites = self.chain().sites;
         let automatic = self.config.path.images.0 == Images::Auto;
         let (place, what, way_out) = match images {
@@ -197,7 +195,7 @@ impl Loaded {
             Some(n) => ("path.images", format!("{sites} sites and {n} images"), ""),
         };
         let size = memory::shown(bytes);
-        let message = format!("{what} need about {size} of memory, more than this machine has{way_out}");
+        let message = format!("{what} need about {size} of memory, more than {whose}{way_out}");
         Err(self.text.locate(Error::invalid(place, message)))
     }
 }

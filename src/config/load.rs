@@ -6,11 +6,11 @@ use super::material::{Material, MaterialChoice};
 use super::text::{apply_set, at_place, decode, nearest, parse};
 use super::{Config, Name};
 use crate::error::{Error, Result};
+use crate::files::open_file;
 use crate::output;
 use crate::words::quoted;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
-use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
@@ -107,7 +107,7 @@ pub(super) fn read(path: &Path) -> Result<String> {
 
 fn bytes(path: &Path) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    File::open(path)?.take(LONGEST + 1).read_to_end(&mut bytes)?;
+    open_file(path)?.take(LONGEST + 1).read_to_end(&mut bytes)?;
     match bytes.len() as u64 > LONGEST {
         true => {
             Err(io::Error::new(io::ErrorKind::FileTooLarge, "the file is larger than 1 GiB, too large for a config"))
@@ -122,9 +122,8 @@ fn name(path: &Path, config: &Config) -> Result<String> {
         return Ok(name.to_string());
     }
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    Name::new(&stem).map(|name| name.to_string()).map_err(|_| {
-        let message =
-            format!("the file's name {} cannot name the run: give a \"name\" of A-Z a-z 0-9 . _ -", quoted(&stem));
+    Name::new(&stem).map(|name| name.to_string()).map_err(|e| {
+        let message = format!("the file's name cannot name the run, which needs a \"name\" of its own: {e}");
         Error::invalid("", message)
     })
 }
@@ -144,7 +143,7 @@ fn material_file(config: &Path, named: &str) -> Result<Text> {
     match bytes(&path) {
         Ok(bytes) => decode(&file, bytes).map(|text| Text { file, text }),
         Err(e) => {
-            let (what, said) = (quoted(named), e.kind());
+            let (what, said) = (quoted(named), &e);
             let message = match e.kind() {
                 io::ErrorKind::NotFound => format!(
                     "no material {what}: there is no file {file}{}, and no library material of this name",

@@ -1,9 +1,12 @@
 //! How much memory a run needs, estimated before anything is allocated.
 
 use std::fs;
+use std::path::Path;
 
 /// Memory that is taken for granted where the system does not say (bytes).
 const USUAL: f64 = 64e9;
+/// Limits of a process that its memory counts against, as `/proc/self/limits` names them.
+const LIMITS: [&str; 2] = ["Max address space", "Max data size"];
 
 /// Memory of one image (bytes): spins, gradients, forces, tangents and moves of the band, and its banded Hessian with its
 /// factors; `reach` is how many sites away the furthest partner is.
@@ -36,12 +39,58 @@ pub fn run_bytes(sites: usize, images: usize, reach: usize, terms: usize, period
     hamiltonian_bytes(sites, reach, terms) + images as f64 * image_bytes(sites, reach, periodic)
 }
 
-/// What this machine has (bytes); a usual amount where that is not known.
-pub fn machine_bytes() -> f64 {
-    let text = fs::read_to_string("/proc/meminfo").unwrap_or_default();
-    let total =
-        text.lines().find_map(|line| line.strip_prefix("MemTotal:")?.strip_suffix("kB")?.trim().parse::<f64>().ok());
-    total.map_or(USUAL, |kib| 1024.0 * kib)
+/// Who does not give so many bytes, in words: the machine, the limits of the process (`ulimit -v`, `-d`) or its control group
+/// (a container, a batch job); nothing where there is room.
+pub fn exceeded(bytes: f64) -> Option<String> {
+    let read = |path: &Path| fs::read_to_string(path).unwrap_or_default();
+    first_exceeded(
+        bytes,
+        machine(&read(Path::new("/proc/meminfo"))),
+        process(&read(Path::new("/proc/self/limits"))),
+        control_group(&read(Path::new("/proc/self/cgroup")), read),
+    )
+}
+
+fn first_exceeded(bytes: f64, machine: Option<f64>, process: Option<f64>, group: Option<f64>) -> Option<String> {
+    let below = |most: &f64| *most < bytes;
+    if below(&machine.unwrap_or(USUAL)) {
+        return Some("this machine has".into());
+    }
+    let allowed = |whose: &str, most: f64| format!("{whose} may have, {}", shown(most));
+    let process = process.filter(below).map(|most| allowed("this process (ulimit)", most));
+    process.or_else(|| group.filter(below).map(|most| allowed("its control group (a container, a batch job)", most)))
+}
+
+fn machine(meminfo: &str) -> Option<f64> {
+    let total = meminfo.lines().find_map(|line| line.strip_prefix("MemTotal:")?.strip_suffix("kB"));
+    total?.trim().parse::<f64>().ok().map(|kib| 1024.0 * kib)
+}
+
+/// The smallest of the limits on a process's memory.
+fn process(limits: &str) -> Option<f64> {
+    let soft = |line: &str| {
+        let rest = LIMITS.iter().find_map(|name| line.strip_prefix(name))?;
+        rest.split_whitespace().next()?.parse::<f64>().ok()
+    };
+    limits.lines().filter_map(soft).min_by(f64::total_cmp)
+}
+
+/// The smallest limit of a process's control group and of those that it is in; of either version, and seen from inside a
+/// container, where the group is the root.
+fn control_group(groups: &str, read: impl Fn(&Path) -> String) -> Option<f64> {
+    let of = |line: &str| {
+        let (kinds, group) = line.split_once(':')?.1.split_once(':')?;
+        let (root, file) = match kinds {
+            "" => ("/sys/fs/cgroup", "memory.max"),
+            _ if kinds.split(',').any(|kind| kind == "memory") => ("/sys/fs/cgroup/memory", "memory.limit_in_bytes"),
+            _ => return None,
+        };
+        let within = Path::new(group.trim_start_matches('/')).ancestors();
+        let limits =
+            within.filter_map(|group| read(&Path::new(root).join(group).join(file)).trim().parse::<f64>().ok());
+        limits.min_by(f64::total_cmp)
+    };
+    groups.lines().filter_map(of).min_by(f64::total_cmp)
 }
 
 /// Bytes as a person would say them: `1.5 GB`.
@@ -55,6 +104,36 @@ pub fn shown(bytes: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_a_run_can_have_ends_at_the_machine_the_process_and_its_control_group() {
+        assert_eq!(machine("MemTotal:       24684096 kB\nMemFree: 1 kB\n"), Some(24684096.0 * 1024.0));
+        let limits = "Max data size             unlimited            unlimited            bytes\n\
+                      Max open files            1024                 4096                 files\n\
+                      Max address space         2000000000           unlimited            bytes\n";
+        assert_eq!(process(limits), Some(2e9));
+        assert_eq!(process(&limits.replace("2000000000", "unlimited ")), None);
+        // version 2: the group itself has no limit, that around it has
+        let read = |path: &Path| match path.to_str() {
+            Some("/sys/fs/cgroup/job/step/memory.max") => "max\n".into(),
+            Some("/sys/fs/cgroup/job/memory.max") => "4000000000\n".into(),
+            Some("/sys/fs/cgroup/memory/batch/7/memory.limit_in_bytes") => "3000000000\n".into(),
+            Some("/sys/fs/cgroup/memory/memory.limit_in_bytes") => "9223372036854771712\n".into(),
+            _ => String::new(),
+        };
+        assert_eq!(control_group("0::/job/step\n", read), Some(4e9));
+        // version 1, beside an empty version 2, and inside a container where the group is the root
+        assert_eq!(control_group("9:cpu:/job\n4:cpu,memory:/batch/7\n0::/\n", read), Some(3e9));
+        assert_eq!(control_group("4:memory:/elsewhere\n", read), Some(9223372036854771712.0));
+        assert_eq!(control_group("0::/\n", |_| "max\n".into()), None);
+        let whose = |bytes, process, group| first_exceeded(bytes, Some(8e9), process, group);
+        assert_eq!(whose(1e10, Some(2e9), None).unwrap(), "this machine has");
+        assert_eq!(whose(3e9, Some(2e9), Some(1e9)).unwrap(), "this process (ulimit) may have, 2.0 GB");
+        let group = "its control group (a container, a batch job) may have, 1.0 GB";
+        assert_eq!(whose(3e9, None, Some(1e9)).unwrap(), group);
+        assert_eq!(whose(3e9, None, Some(4e9)), None);
+        assert!(first_exceeded(2.0 * USUAL, None, None, None).is_some());
+    }
 
     #[test]
     fn bytes_are_shown_with_a_unit_that_fits() {

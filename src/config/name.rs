@@ -10,7 +10,12 @@ use std::fmt;
 /// Longest name, so that every file system takes it.
 const LONGEST: usize = 200;
 
-/// A name of letters, digits, dots, underscores and hyphens.
+/// What Windows takes for a device, whatever ending follows.
+const DEVICES: [&str; 4] = ["con", "prn", "aux", "nul"];
+/// The same of numbered ones: COM1, LPT9.
+const PORTS: [&str; 2] = ["com", "lpt"];
+
+/// A name of letters, digits, dots, underscores and hyphens that no system takes for anything but a folder's.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Name(String);
 
@@ -23,9 +28,15 @@ impl Name {
             "." | ".." => "stands for a folder",
             _ if name.len() > LONGEST => "is too long",
             _ if !name.chars().all(allowed) => "has other characters",
+            _ if name.starts_with('-') => "begins with a hyphen, as an option of a command does",
+            _ if name.starts_with('.') => "begins with a dot, as a hidden folder does",
+            _ if name.ends_with('.') => "ends in a dot, which Windows drops",
+            _ if is_device(name) => "is a device on Windows",
             _ => return Ok(Name(name.into())),
         };
-        let rule = format!("a name is 1 to {LONGEST} of the characters A-Z a-z 0-9 . _ -");
+        let rule = format!(
+            "a name is 1 to {LONGEST} of the characters A-Z a-z 0-9 . _ -, begins with none of . - and does not end in ."
+        );
         Err(Error::invalid("", format!("{} {wrong}: {rule}", quoted(name))))
     }
 
@@ -33,6 +44,13 @@ impl Name {
     pub fn as_str(&self) -> &str {
         &self.0
     }
+}
+
+fn is_device(name: &str) -> bool {
+    let stem = name.split('.').next().unwrap_or_default().to_ascii_lowercase();
+    let is_port =
+        |port: &&str| stem.strip_prefix(*port).is_some_and(|n| n.len() == 1 && n.as_bytes()[0].is_ascii_digit());
+    DEVICES.contains(&stem.as_str()) || PORTS.iter().any(is_port)
 }
 
 impl fmt::Display for Name {
@@ -47,7 +65,12 @@ impl JsonSchema for Name {
     }
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        json_schema!({"type": "string", "pattern": "^[A-Za-z0-9._-]+$", "maxLength": LONGEST})
+        json_schema!({
+            "type": "string",
+            "pattern": "^[A-Za-z0-9_]([A-Za-z0-9._-]*[A-Za-z0-9_-])?$",
+            "not": {"pattern": "^([Cc][Oo][Nn]|[Pp][Rr][Nn]|[Aa][Uu][Xx]|[Nn][Uu][Ll]|([Cc][Oo][Mm]|[Ll][Pp][Tt])[0-9])([.]|$)"},
+            "maxLength": LONGEST
+        })
     }
 }
 
@@ -63,10 +86,12 @@ mod tests {
 
     #[test]
     fn a_name_can_be_a_folder_and_nothing_but_a_folder() {
-        for good in ["wall", "a", "v1.2_x-3", "...", "-"] {
+        for good in ["wall", "a", "v1.2_x-3", "_", "a-", "console", "com", "com10", "nul_1", "lptx"] {
             assert_eq!(Name::new(good).unwrap().as_str(), good);
         }
-        for bad in ["", ".", "..", "a/b", "a b", "a\\b", "ä", &"x".repeat(201)] {
+        let windows = ["CON", "nul", "aux.txt", "Com1", "LPT9.json", "prn", "com0.a.b"];
+        let shells = ["", ".", "..", "...", "-", "-rf", ".hidden", "wall.", "a/b", "a b", "a ", "a\\b", "ä", "a\n"];
+        for bad in windows.into_iter().chain(shells).chain([&*"x".repeat(201)]) {
             assert!(Name::new(bad).is_err(), "{bad}");
         }
     }

@@ -18,7 +18,7 @@ pub use csv::write_csv;
 pub use npy::{Array, write_npy};
 pub use npz::{read_npz_columns, write_npz};
 pub use ovf::{Mesh, OvfData, Segment, write_ovf};
-pub use stored::{LARGEST_FILE, Stored, open};
+pub use stored::{LARGEST_FILE, Stored, open, open_file};
 pub use vtk::{write_pvd, write_vtp};
 
 use crate::error::Result;

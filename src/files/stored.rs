@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::geometry::Vector;
 use crate::words::quoted;
 use sha2::{Digest, Sha256};
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::Path;
 use std::sync::Arc;
@@ -45,13 +45,20 @@ pub fn open(folder: &Path, named: &str, sha256: Option<&str>) -> Result<Arc<Stor
     Ok(Arc::new(Stored { file, content }))
 }
 
+/// Opens what is a file indeed: to open a pipe would wait for a writer, and a device may have no end.
+pub fn open_file(path: &Path) -> io::Result<File> {
+    let kind = fs::metadata(path)?.file_type();
+    let wrong = match kind {
+        _ if kind.is_file() => return File::open(path),
+        _ if kind.is_dir() => "it is a folder, not a file",
+        _ => "it is a pipe or a device, not a file",
+    };
+    Err(io::Error::new(io::ErrorKind::InvalidInput, wrong))
+}
+
 fn bytes(path: &Path) -> io::Result<Vec<u8>> {
-    let file = File::open(path)?;
-    if !file.metadata()?.is_file() {
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is a folder or a device, not a file"));
-    }
     let mut bytes = Vec::new();
-    file.take(LARGEST_FILE + 1).read_to_end(&mut bytes)?;
+    open_file(path)?.take(LARGEST_FILE + 1).read_to_end(&mut bytes)?;
     match bytes.len() as u64 > LARGEST_FILE {
         true => Err(io::Error::new(io::ErrorKind::FileTooLarge, "it is larger than 16 GiB")),
         false => Ok(bytes),

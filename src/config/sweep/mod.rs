@@ -207,9 +207,9 @@ impl Sweep {
 /// The name of a sweep without one of its own.
 fn stem(path: &Path) -> std::result::Result<String, String> {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    Name::new(&stem).map(|name| name.to_string()).map_err(|_| {
-        format!("the file's name {} cannot name the sweep: give a \"name\" of A-Z a-z 0-9 . _ -", quoted(&stem))
-    })
+    Name::new(&stem)
+        .map(|name| name.to_string())
+        .map_err(|e| format!("the file's name cannot name the sweep, which needs a \"name\" of its own: {e}"))
 }
 
 /// The steps of a key that may be swept beside others.
