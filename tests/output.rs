@@ -2,7 +2,7 @@
 
 use spinneb::drive::{
     Barrier, EndPoint, HistoryRow, ImageTable, IntermediateMinimum, Outcome, ProfilePoint, RejectedPath, SaddlePoint,
-    Work,
+    StopCode, Work,
 };
 use spinneb::error::{Error, Result};
 use spinneb::geometry::Direction;
@@ -57,10 +57,12 @@ fn outcome(path: Path, length: f64, energy: impl Fn(f64) -> f64) -> Outcome {
         max_torque_mev: 1e-13,
         negative_modes: Some(0),
         zero_modes: Some(1),
+        moved_rad: Some(0.125),
     };
     Outcome {
         converged: true,
         certified: true,
+        stop_code: StopCode::Converged,
         stop_reason: "converged: largest predicted rotation 3.1e-7 rad".into(),
         warnings: Vec::new(),
         barrier: top.map(|e| Barrier { forward_mev: e, backward_mev: e - energy(length) }),
@@ -118,8 +120,15 @@ fn tiny() -> Outcome {
         zero_modes: None,
         lowest_eigenvalues_mev: vec![-0.1],
     }];
-    o.initial = EndPoint { energy_mev: -0.25, max_torque_mev: 0.0, negative_modes: Some(0), zero_modes: Some(0) };
-    o.final_state = EndPoint { energy_mev: -0.5, max_torque_mev: 1e-13, negative_modes: None, zero_modes: None };
+    o.initial = EndPoint {
+        energy_mev: -0.25,
+        max_torque_mev: 0.0,
+        negative_modes: Some(0),
+        zero_modes: Some(0),
+        moved_rad: Some(0.125),
+    };
+    o.final_state =
+        EndPoint { energy_mev: -0.5, max_torque_mev: 1e-13, negative_modes: None, zero_modes: None, moved_rad: None };
     o.intermediate_minima =
         vec![IntermediateMinimum { image: 1, reaction_coordinate_rad: 0.9, state: o.initial.clone() }];
     o.rejected_paths = vec![RejectedPath {
@@ -189,6 +198,7 @@ fn the_summary_is_exactly_so() {
   "config_sha256": "abc",
   "converged": true,
   "certified": false,
+  "stop_code": "converged",
   "stop_reason": "converged: largest predicted rotation 3.1e-7 rad",
   "warnings": [
     "flat to 1e-12 meV"
@@ -223,13 +233,15 @@ fn the_summary_is_exactly_so() {
     "energy_meV": -0.25,
     "max_torque_meV": 0.0,
     "negative_modes": 0,
-    "zero_modes": 0
+    "zero_modes": 0,
+    "moved_rad": 0.125
   },
   "final": {
     "energy_meV": -0.5,
     "max_torque_meV": 1e-13,
     "negative_modes": null,
-    "zero_modes": null
+    "zero_modes": null,
+    "moved_rad": null
   },
   "intermediate_minima": [
     {

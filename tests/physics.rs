@@ -6,7 +6,7 @@ use common::{Build, forward, solve};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
-use spinneb::drive::{Outcome, Problem};
+use spinneb::drive::{Outcome, Problem, StopCode};
 use spinneb::energy::{Anisotropy, Dmi, Exchange, Hamiltonian, Medium, TangentBasis, TermSpec, Zeeman, assemble};
 use spinneb::geometry::Direction;
 use spinneb::lattice::Chain;
@@ -109,17 +109,13 @@ fn a_wall_hops_in_the_peierls_regime_by_one_and_by_several_sites() {
 }
 
 #[test]
-fn without_a_barrier_the_barrier_is_zero_and_the_reason_is_said() {
+fn states_joined_by_a_flat_valley_have_a_certified_barrier_of_zero_and_the_reason_is_said() {
     // an easy plane: turning within it costs nothing
     let outcome =
         solve(&Build::open(8).hard(0.1).problem(Spins::uniform(8, Direction::Z), Spins::uniform(8, Direction::Y)));
-    assert!(forward(&outcome).abs() < 1e-12);
-    assert!(
-        !outcome.certified && outcome.stop_reason.contains("no barrier"),
-        "{} {:?}",
-        outcome.stop_reason,
-        outcome.warnings
-    );
+    assert_eq!(outcome.stop_code, StopCode::FlatValley, "{} {:?}", outcome.stop_reason, outcome.warnings);
+    assert!(outcome.certified && outcome.converged && outcome.stop_reason.contains("no barrier"));
+    assert!(forward(&outcome) == 0.0 && outcome.saddles.is_empty());
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Relaxing a state to its minimum: Newton's method with a shift that keeps the Hessian positive, and descent checked.
 
+use super::outcome::MOVED_FAR_RAD;
 use crate::energy::Hamiltonian;
 use crate::error::{Error, Result};
 use crate::linalg::{Banded, Ldl, slab};
@@ -15,9 +16,6 @@ const CAP: f64 = 0.5;
 const STEPS: usize = 500;
 /// How often a stationary state that is no minimum is left.
 const KICKS: usize = 8;
-
-/// An end that turned by more than this left the place where it was put (rad).
-const FAR: f64 = 1.0;
 
 /// A relaxed state.
 #[derive(Clone, Debug)]
@@ -146,7 +144,7 @@ pub fn judge_end(r: &Relaxed, which: &str) -> Vec<String> {
     if r.left_saddle {
         warnings.push(format!("the {which} state was stationary but no minimum; it was left along its lowest mode"));
     }
-    if r.largest_rotation_rad > FAR {
+    if r.largest_rotation_rad > MOVED_FAR_RAD {
         warnings.push(format!("the {which} state relaxed far from where it was put: a spin turned by {degrees:.0} degrees, so it may be another state than meant"));
     }
     if !r.converged {

@@ -33,7 +33,7 @@ pub use relaxed::{RelaxedState, relaxed_state};
 pub use report::partial;
 pub use run::{FEWEST_IMAGES, run, run_recorded};
 pub use scales::Scales;
-pub use stop::Stop;
+pub use stop::{Stop, StopCode};
 pub use top::{Top, tops};
 
 /// Watches a run.

@@ -1,8 +1,10 @@
 //! What a run found: everything that is written to disk is a function of an [`Outcome`].
 
+use super::StopCode;
 use crate::path::Path;
 use crate::rates::Rates;
 use crate::spins::Spins;
+use std::f64::consts::FRAC_PI_2;
 
 /// A finished run.
 #[derive(Clone, Debug)]
@@ -11,6 +13,8 @@ pub struct Outcome {
     pub converged: bool,
     /// Saddles and ends were proven to be what they are said to be.
     pub certified: bool,
+    /// Why the run stopped, from a closed list.
+    pub stop_code: StopCode,
     /// Why the run stopped, in words.
     pub stop_reason: String,
     /// What the user should know.
@@ -77,6 +81,9 @@ pub struct SaddlePoint {
     pub lowest_eigenvalues_mev: Vec<f64>,
 }
 
+/// An end of which a spin turned by more than this while it relaxed may be another state than meant (rad).
+pub const MOVED_FAR_RAD: f64 = FRAC_PI_2;
+
 /// An end of the path.
 #[derive(Clone, Debug)]
 pub struct EndPoint {
@@ -88,6 +95,15 @@ pub struct EndPoint {
     pub negative_modes: Option<usize>,
     /// Zero modes, where counted.
     pub zero_modes: Option<usize>,
+    /// Largest rotation of any spin from where the state was put (rad), where it was relaxed.
+    pub moved_rad: Option<f64>,
+}
+
+impl EndPoint {
+    /// Whether it relaxed so far, any spin by more than 90°, that it may be another state than meant.
+    pub fn moved_far(&self) -> bool {
+        self.moved_rad.is_some_and(|angle| angle > MOVED_FAR_RAD)
+    }
 }
 
 /// A minimum between the ends.

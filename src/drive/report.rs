@@ -7,7 +7,7 @@ use super::minimum::{Link, Minimum};
 use super::outcome::*;
 use super::rates::{self, Known};
 use super::relaxation::{height, prominent_maxima};
-use super::{Partial, Problem};
+use super::{Partial, Problem, StopCode};
 use crate::band::{Band, Extremum};
 use crate::energy::Hamiltonian;
 use crate::linalg::slab;
@@ -47,6 +47,12 @@ impl Summary<'_> {
             threads: rayon::current_num_threads(),
         }
     }
+
+    /// The two ends as they are reported.
+    fn end_points(&self, ends: &[Minimum; 2]) -> [EndPoint; 2] {
+        let moved = |k: usize| self.problem.relax_ends.then_some(self.ends[k].largest_rotation_rad);
+        [0, 1].map(|k| EndPoint { moved_rad: moved(k), ..end_of(&ends[k]) })
+    }
 }
 
 /// The outcome of a path.
@@ -68,29 +74,33 @@ pub fn outcome(
         band_saddles(run.problem, band)
     };
     let mut warnings = run.warnings.clone();
-    let mut stop_reason = c.stop.to_string();
-    let mut doubts = proof.doubts;
-    let barrier = barrier(run.problem, band, &saddles, above_final, &c, &mut doubts, &mut stop_reason);
+    let seen = Seen { problem: run.problem, band, saddles: &saddles, above_final, ends: &proof.ends };
+    let mut judged = seen.judge(&c, proof.doubts);
+    let saddles = if judged.stop_code == StopCode::FlatValley { Vec::new() } else { saddles };
+    let doubts = std::mem::take(&mut judged.doubts);
     let rates = run.problem.rates.as_ref().map(|settings| {
         let known = Known { h, links: &proof.links, saddles: &saddles, above_final, doubts: &doubts };
         rates::of_path(&known, settings)
     });
-    let converged = c.stop.is_converged() && barrier.is_some();
-    let certified = doubts.is_empty() && barrier.is_some();
+    let flat = judged.stop_code == StopCode::FlatValley;
+    let converged = (c.stop.is_converged() || flat) && judged.barrier.is_some();
+    let certified = doubts.is_empty() && judged.barrier.is_some();
     warnings.extend(doubts.into_iter().map(|d| format!("not certified: {d}")));
     warnings.extend(flat_warnings(&proof.ends, &proof.links));
     warnings.extend(rates.as_ref().map(rates::warnings).unwrap_or_default());
     let (images, profile) = (image_table(h, band), profile(band));
     let minima = if proof.links.len() > 1 { link_minima(band, &proof.links) } else { band_minima(h, band) };
     let work = run.work(band.evaluations());
+    let [initial, final_state] = run.end_points(&proof.ends);
     Outcome {
         converged,
         certified,
-        stop_reason,
+        stop_code: judged.stop_code,
+        stop_reason: judged.stop_reason,
         warnings,
-        barrier,
-        initial: end_of(&proof.ends[0]),
-        final_state: end_of(&proof.ends[1]),
+        barrier: judged.barrier,
+        initial,
+        final_state,
         intermediate_minima: minima,
         rates,
         rejected_paths,
@@ -105,42 +115,94 @@ pub fn outcome(
     }
 }
 
-/// Energy to climb, from the highest saddle or, where the path has an image above all of them, from that.
-fn barrier(
-    problem: &Problem,
-    band: &Band,
-    saddles: &[SaddlePoint],
+/// What a path shows of its barrier.
+struct Seen<'a> {
+    problem: &'a Problem,
+    band: &'a Band<'a>,
+    saddles: &'a [SaddlePoint],
+    /// Final above initial state (meV).
     above_final: f64,
-    c: &Candidate,
-    doubts: &mut Vec<String>,
-    stop_reason: &mut String,
-) -> Option<Barrier> {
-    let top = saddles.iter().map(|s| s.above_initial_mev).fold(f64::NEG_INFINITY, f64::max);
-    let seen = band.energies_mev()[band.highest()] - band.energies_mev()[0];
-    let ends = above_final.max(0.0);
-    if problem.seeks_saddles()
-        && c.found.as_ref().is_some_and(|f| f.refined.index > 1)
-        && saddles.iter().all(|s| s.negative_modes != Some(1))
-    {
-        stop_reason.push_str("; only a saddle of higher index was found, which is no barrier");
-        doubts.push("the path passes a saddle of higher index".into());
-        return None;
+    ends: &'a [Minimum; 2],
+}
+
+/// What is said of a barrier.
+struct Judged {
+    barrier: Option<Barrier>,
+    stop_code: StopCode,
+    stop_reason: String,
+    /// What stands against a certificate.
+    doubts: Vec<String>,
+}
+
+impl Judged {
+    fn add(&mut self, code: StopCode, reason: &str) {
+        self.stop_code = code;
+        self.stop_reason.push_str("; ");
+        self.stop_reason.push_str(reason);
     }
-    let mut highest = top;
-    if seen > top + 1e-6 * height(band) && seen > ends + 1e-9 * height(band) {
-        highest = seen;
-        if problem.seeks_saddles() {
-            doubts.push(
-                "an image of the path lies above every refined saddle; the barrier is that image's energy".into(),
-            );
+}
+
+impl Seen<'_> {
+    /// Energy to climb, from the highest saddle or, where the path has an image above all of them, from that.
+    fn judge(&self, c: &Candidate, doubts: Vec<String>) -> Judged {
+        let mut judged = Judged { barrier: None, stop_code: c.stop.code(), stop_reason: c.stop.to_string(), doubts };
+        if self.is_flat() {
+            // what no saddle search could find or prove there does not count against it
+            judged.doubts.clear();
+            judged.barrier = Some(Barrier { forward_mev: 0.0, backward_mev: 0.0 });
+            judged.stop_code = StopCode::FlatValley;
+            judged.stop_reason = "a valley that is flat to rounding joins the two minima: there is no barrier".into();
+            return judged;
         }
+        if self.is_of_higher_index(c) {
+            judged.add(StopCode::HigherIndex, "only a saddle of higher index was found, which is no barrier");
+            judged.doubts.push("the path passes a saddle of higher index".into());
+            return judged;
+        }
+        let mut highest = self.saddles.iter().map(|s| s.above_initial_mev).fold(f64::NEG_INFINITY, f64::max);
+        let seen = self.band.energies_mev()[self.band.highest()] - self.band.energies_mev()[0];
+        let (ends, height) = (self.above_final.max(0.0), height(self.band));
+        if seen > highest + 1e-6 * height && seen > ends + 1e-9 * height {
+            highest = seen;
+            if self.problem.seeks_saddles() {
+                let doubt = "an image of the path lies above every refined saddle; the barrier is that image's energy";
+                judged.doubts.push(doubt.into());
+            }
+        }
+        if highest <= ends && !self.problem.relax_ends {
+            let which = if self.above_final > 0.0 { "final" } else { "initial" };
+            let reason =
+                format!("the highest point of the path is the {which} state, kept as given: that is no barrier");
+            judged.doubts.push(reason.clone());
+            judged.add(StopCode::KeptEnd, &reason);
+            return judged;
+        }
+        if highest <= ends {
+            highest = ends;
+            let reason = "the path rises to no maximum between its ends, so there is no barrier beyond the higher end";
+            judged.add(StopCode::NoMaximum, reason);
+        }
+        judged.barrier = Some(Barrier { forward_mev: highest, backward_mev: highest - self.above_final });
+        judged
     }
-    if highest <= ends {
-        highest = ends;
-        stop_reason
-            .push_str("; the path rises to no maximum between its ends, so there is no barrier beyond the higher end");
+
+    /// Whether the path joins two proven minima and no image of it differs from the first by more than rounding.
+    fn is_flat(&self) -> bool {
+        let (h, path) = (self.band.hamiltonian(), self.band.path());
+        let rounding = h.rounding_mev();
+        let level = |k: usize| h.difference_mev(path.image(k), path.image(0)).abs() <= rounding;
+        self.problem.relax_ends
+            && self.ends.iter().all(Minimum::is_proven)
+            && height(self.band) <= 1e3 * rounding
+            && path.largest_rotation() <= 1.0
+            && (1..path.images()).all(level)
     }
-    Some(Barrier { forward_mev: highest, backward_mev: highest - above_final })
+
+    fn is_of_higher_index(&self, c: &Candidate) -> bool {
+        self.problem.seeks_saddles()
+            && c.found.as_ref().is_some_and(|f| f.refined.index > 1)
+            && self.saddles.iter().all(|s| s.negative_modes != Some(1))
+    }
 }
 
 /// Both ends relaxed to one minimum: a result without a path.
@@ -152,15 +214,17 @@ pub fn same_minimum(run: Summary) -> Outcome {
     let mut warnings = run.warnings.clone();
     warnings.push("there is no path between a minimum and itself".into());
     let work = run.work(0);
+    let [initial, final_state] = run.end_points(&ends);
     Outcome {
         converged: false,
         certified: false,
+        stop_code: StopCode::SameMinimum,
         stop_reason: "the initial and the final state relaxed to the same minimum".into(),
         warnings,
         barrier: None,
         saddles: Vec::new(),
-        initial: end_of(&ends[0]),
-        final_state: end_of(&ends[1]),
+        initial,
+        final_state,
         intermediate_minima: Vec::new(),
         rates: None,
         rejected_paths: Vec::new(),
@@ -184,10 +248,12 @@ pub fn partial(problem: &Problem, partial: &Partial, why: &str) -> Outcome {
         max_torque_mev: torque(&band, k),
         negative_modes: None,
         zero_modes: None,
+        moved_rad: None,
     };
     Outcome {
         converged: false,
         certified: false,
+        stop_code: StopCode::Interrupted,
         stop_reason: why.into(),
         warnings: Vec::new(),
         barrier: None,
@@ -230,6 +296,7 @@ fn end_of(m: &Minimum) -> EndPoint {
         max_torque_mev: m.max_torque_mev,
         negative_modes: Some(m.spectrum.negative),
         zero_modes: Some(m.spectrum.zero_and_flat()),
+        moved_rad: None,
     }
 }
 
@@ -334,6 +401,7 @@ fn band_minima(h: &Hamiltonian, band: &Band) -> Vec<IntermediateMinimum> {
         max_torque_mev: torque(band, k),
         negative_modes: None,
         zero_modes: None,
+        moved_rad: None,
     };
     prominent_maxima(&upside_down, 1e-3 * height(band))
         .into_iter()

@@ -418,8 +418,7 @@ impl<'a, 'o> Run<'a, 'o> {
         }
         let stop = Stop::Converged { rotation: 0.0, tolerance: self.problem.neb.tolerance };
         let c = Candidate::new("rotation".into(), band, stop);
-        let doubt =
-            "the two states are one minimum turned about a symmetry axis: between them there is no saddle to prove";
+        let doubt = "the two states are one minimum turned about a symmetry axis, but the turn between them is not flat to rounding";
         let proof = Proof { ends, links: Vec::new(), doubts: vec![doubt.into()] };
         Ok(Some(report::outcome(self.summary(), c, &[], proof, Vec::new())))
     }

@@ -129,6 +129,11 @@ impl Hamiltonian {
         self.stiffness
     }
 
+    /// What the energy of a configuration is uncertain by (meV): a site's share of it by some ulp of the largest stiffness.
+    pub fn rounding_mev(&self) -> f64 {
+        8.0 * f64::EPSILON * self.stiffness * self.sites as f64
+    }
+
     /// Unit vectors about which a rotation of all spins leaves every term as it is: none, one, or x, y and z.
     pub fn symmetry_axes(&self) -> &[Vector] {
         &self.axes

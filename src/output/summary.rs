@@ -5,7 +5,7 @@
 
 use super::rates_summary::{self, RateEntry, TransitionEntry};
 use super::{Format, RunReport};
-use crate::drive::{Barrier, EndPoint, IntermediateMinimum, Outcome, RejectedPath, SaddlePoint, Work};
+use crate::drive::{Barrier, EndPoint, IntermediateMinimum, Outcome, RejectedPath, SaddlePoint, StopCode, Work};
 use crate::error::{Error, Result};
 use serde::{Serialize, Serializer, ser::Error as _};
 
@@ -57,6 +57,7 @@ struct Document<'a> {
     config_sha256: &'a str,
     converged: bool,
     certified: bool,
+    stop_code: StopCode,
     stop_reason: &'a str,
     warnings: &'a [String],
     barrier_meV: Option<BothWays>,
@@ -101,6 +102,7 @@ struct EndEntry {
     max_torque_meV: Number,
     negative_modes: Option<usize>,
     zero_modes: Option<usize>,
+    moved_rad: Option<Number>,
 }
 
 #[derive(Serialize)]
@@ -149,6 +151,7 @@ fn document<'a>(run: &RunReport<'a>) -> Document<'a> {
         config_sha256: run.config_sha256,
         converged: outcome.converged,
         certified: outcome.certified,
+        stop_code: outcome.stop_code,
         stop_reason: &outcome.stop_reason,
         warnings: &outcome.warnings,
         barrier_meV: barrier(|mev| mev),
@@ -189,11 +192,12 @@ fn end(e: &EndPoint) -> EndEntry {
         max_torque_meV: Number(e.max_torque_mev),
         negative_modes: e.negative_modes,
         zero_modes: e.zero_modes,
+        moved_rad: e.moved_rad.map(Number),
     }
 }
 
 fn minimum(m: &IntermediateMinimum) -> MinimumEntry {
-    let EndEntry { energy_meV, max_torque_meV, negative_modes, zero_modes } = end(&m.state);
+    let EndEntry { energy_meV, max_torque_meV, negative_modes, zero_modes, .. } = end(&m.state);
     let reaction_coordinate_rad = Number(m.reaction_coordinate_rad);
     MinimumEntry { image: m.image, reaction_coordinate_rad, energy_meV, max_torque_meV, negative_modes, zero_modes }
 }
