@@ -98,7 +98,7 @@ fn problem(case: &Case) -> Result<Problem> {
     let hard = Anisotropy::uniform(SITES, -case.hard_mev, Direction::X);
     let terms: Vec<Box<dyn EnergyTerm>> =
         vec![Box::new(Exchange::uniform(&chain, &[J])), Box::new(easy), Box::new(hard)];
-    let context = StateContext { chain: &chain, wall_width_sites: (J / (2.0 * K)).sqrt() };
+    let context = StateContext::new(&chain, (J / (2.0 * K)).sqrt());
     let wall = |(center, through): (f64, Direction)| {
         let wall =
             DomainWall { center, width: None, left: None, right: None, through: Some(through), staggered: false };
@@ -129,7 +129,7 @@ fn measure(case: &Case) -> Result<Vec<Row>> {
 
 fn row(case: &Case, start: &'static str, guess: GuessSpec, a: &Spins, b: &Spins) -> Result<Row> {
     let of = problem(case)?;
-    let states = StateContext { chain: &of.chain, wall_width_sites: (J / (2.0 * K)).sqrt() };
+    let states = StateContext::new(&of.chain, (J / (2.0 * K)).sqrt());
     let context = GuessContext { states, default_axis: Direction::Z };
     let path: Path = guess.member().path(a, b, IMAGES, &context)?;
     let spacing = path.spacings();

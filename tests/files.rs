@@ -272,7 +272,7 @@ fn an_image_is_chosen_by_its_number_from_either_end() {
         let StateSpec::File(file) = &mut spec else { panic!("{json}") };
         file.load(folder.path())?;
         let chain = Chain::open(6);
-        file.vectors(&StateContext { chain: &chain, wall_width_sites: 1.0 })
+        file.vectors(&StateContext::new(&chain, 1.0))
     };
     assert_eq!(state(r#"{"file": {"path": "m.ovf", "segment": 2}}"#).unwrap(), given[2]);
     assert_eq!(state(r#"{"file": {"path": "m.ovf", "segment": -1}}"#).unwrap(), given[3]);
@@ -292,7 +292,7 @@ fn a_path_from_a_file_is_taken_as_it_is_or_spaced_evenly_along_it() {
     let guess = PathFile { path: "p.npz".into(), sha256: None, stored: Some(stored.into()) };
     let ends = [0, 4].map(|k| Spins::from_vectors(&given[k]).unwrap());
     let chain = Chain::open(6);
-    let states = StateContext { chain: &chain, wall_width_sites: 1.0 };
+    let states = StateContext::new(&chain, 1.0);
     let context = GuessContext { states, default_axis: Direction::X };
     let path = |images| guess.path(&ends[0], &ends[1], images, &context).unwrap();
     let all: Vec<Spins> = given.iter().map(|image| Spins::from_vectors(image).unwrap()).collect();

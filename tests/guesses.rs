@@ -16,7 +16,7 @@ const EPS: f64 = f64::EPSILON;
 
 fn try_state(text: &str, chain: &Chain) -> Result<Spins, String> {
     let spec: StateSpec = serde_json::from_str(text).map_err(|e| e.to_string())?;
-    spec.build(&StateContext { chain, wall_width_sites: 1.5 }).map_err(|e| e.to_string())
+    spec.build(&StateContext::new(chain, 1.5)).map_err(|e| e.to_string())
 }
 
 fn state(text: &str, sites: usize) -> Spins {
@@ -25,7 +25,7 @@ fn state(text: &str, sites: usize) -> Spins {
 
 fn try_path(text: &str, a: &Spins, b: &Spins, images: usize, chain: &Chain) -> Result<Path, String> {
     let spec: GuessSpec = serde_json::from_str(text).map_err(|e| e.to_string())?;
-    let states = StateContext { chain, wall_width_sites: 1.5 };
+    let states = StateContext::new(chain, 1.5);
     let context = GuessContext { states, default_axis: Direction::X };
     spec.member().path(a, b, images, &context).map_err(|e| e.to_string())
 }

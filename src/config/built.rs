@@ -14,7 +14,7 @@ use crate::path::guess::{GuessContext, moving_sites};
 use crate::path::largest_angle;
 use crate::rates::RateSettings;
 use crate::spins::Spins;
-use crate::state::{StateContext, StateSpec};
+use crate::state::{Sense, StateContext, StateSpec};
 
 /// Largest torque on a site (meV) that is taken for meant: 1e20 meV is 16 mJ.
 const LARGEST_MEV: f64 = 1e20;
@@ -36,6 +36,8 @@ pub struct States {
     pub initial: Spins,
     /// The final state, where it was wanted.
     pub final_state: Option<Spins>,
+    /// The sense that the initial state has taken, where it had a choice.
+    pub sense: Option<Sense>,
 }
 
 impl Loaded {
@@ -68,13 +70,14 @@ impl Loaded {
     pub fn problem(&self) -> Result<Problem> {
         let config = &self.config;
         let here = |e: Error| self.text.locate(e);
-        let States { chain, hamiltonian, scales, initial, final_state } = self.states(true)?;
+        let States { chain, hamiltonian, scales, initial, final_state, sense } = self.states(true)?;
         let final_state = final_state.unwrap_or_else(|| initial.clone());
         if largest_angle(initial.as_slice(), final_state.as_slice()) < SAME {
             let message = "the initial and the final state are identical: there is no path between them";
             return Err(here(Error::invalid("final", message)));
         }
         let mut problem = Problem::new(chain, hamiltonian, initial, final_state);
+        problem.sense = sense;
         problem.relax_ends = config.relax_ends;
         problem.images = config.path.images.0;
         problem.guess = config.path.guess.clone();
@@ -107,16 +110,18 @@ impl Loaded {
         let chain = chain.clone().with_vacancies_frozen(idle);
         let hamiltonian = Hamiltonian::new(&chain, terms).map_err(here)?;
         let scales = Scales::of_terms(&hamiltonian);
-        let context = StateContext { chain: &chain, wall_width_sites: scales.wall_width_sites };
-        let state = |spec: &StateSpec, key: &str| -> Result<Spins> {
-            spec.build(&context).map_err(|e| here(e.within(&format!("{key}.{}", spec.name()))))
-        };
+        let free =
+            StateContext { hamiltonian: Some(&hamiltonian), ..StateContext::new(&chain, scales.wall_width_sites) };
+        let within = |spec: &StateSpec, key: &str, e: Error| here(e.within(&format!("{key}.{}", spec.name())));
+        let sense = config.initial.sense(&free).map_err(|e| within(&config.initial, "initial", e))?;
+        let context = StateContext { sense, ..free };
+        let state = |spec: &StateSpec, key: &str| spec.build(&context).map_err(|e| within(spec, key, e));
         let initial = state(&config.initial, "initial")?;
         let final_state = match with_final {
             true => Some(frozen(&chain, &initial, state(&config.final_state, "final")?).map_err(here)?),
             false => None,
         };
-        Ok(States { chain, hamiltonian, scales, initial, final_state })
+        Ok(States { chain, hamiltonian, scales, initial, final_state, sense })
     }
 
     /// What rates are asked for, with the moments of the sites.
@@ -316,8 +321,7 @@ fn guess(problem: &Problem, scales: &Scales) -> Result<()> {
             _ => Ok(()),
         };
     };
-    let states = StateContext { chain: &problem.chain, wall_width_sites: scales.wall_width_sites };
-    let context = GuessContext { states, default_axis: Direction::X };
+    let context = GuessContext { states: problem.states(scales.wall_width_sites), default_axis: Direction::X };
     let images = match problem.images {
         Images::Count(n) => n.min(5),
         Images::Auto => 5,
@@ -325,3 +329,6 @@ fn guess(problem: &Problem, scales: &Scales) -> Result<()> {
     let made = guess.member().path(&problem.initial, &problem.final_state, images, &context);
     made.map(|_| ()).map_err(|e| e.within(&format!("path.guess.{}", guess.name())))
 }
+
+#[cfg(test)]
+mod tests;

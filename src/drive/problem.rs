@@ -6,6 +6,7 @@ use crate::optimise::{Implicit, OptimiserSpec};
 use crate::path::guess::{GuessSpec, NoiseSpec};
 use crate::rates::RateSettings;
 use crate::spins::Spins;
+use crate::state::{Sense, StateContext};
 
 /// Two states of a chain, and how to look for the path between them.
 #[derive(Debug)]
@@ -18,6 +19,8 @@ pub struct Problem {
     pub initial: Spins,
     /// Where it ends.
     pub final_state: Spins,
+    /// The sense that states on the way take where they have a choice; the cheapest if absent.
+    pub sense: Option<Sense>,
     /// Relax both ends to minima first.
     pub relax_ends: bool,
     /// How many images.
@@ -47,6 +50,7 @@ impl Problem {
             hamiltonian,
             initial,
             final_state,
+            sense: None,
             relax_ends: true,
             images: Images::Auto,
             guess: None,
@@ -61,6 +65,12 @@ impl Problem {
 }
 
 impl Problem {
+    /// What states on the way need to know.
+    pub fn states(&self, wall_width_sites: f64) -> StateContext<'_> {
+        let (hamiltonian, sense) = (Some(&self.hamiltonian), self.sense);
+        StateContext { chain: &self.chain, wall_width_sites, hamiltonian, sense }
+    }
+
     /// Whether the maxima are followed to their saddles.
     pub fn seeks_saddles(&self) -> bool {
         self.refine || self.neb.climb

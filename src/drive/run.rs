@@ -20,7 +20,6 @@ use crate::geometry::{Direction, Vector};
 use crate::path::guess::{FirstGuess, GuessContext, GuessSpec, NoiseSpec, Rotation, add_noise, moving_sites, smooth};
 use crate::path::{Path, distance};
 use crate::spins::Spins;
-use crate::state::StateContext;
 use crate::threads::both;
 use std::time::Instant;
 
@@ -152,10 +151,7 @@ impl<'a, 'o> Run<'a, 'o> {
     }
 
     fn context(&self) -> GuessContext<'a> {
-        GuessContext {
-            states: StateContext { chain: &self.problem.chain, wall_width_sites: self.scales.wall_width_sites },
-            default_axis: self.axis,
-        }
+        GuessContext { states: self.problem.states(self.scales.wall_width_sites), default_axis: self.axis }
     }
 
     fn finish(mut self) -> Result<Outcome> {

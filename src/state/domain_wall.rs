@@ -4,10 +4,11 @@
 //! φ_i = Φ (2/π) atan exp((i − center)/δ)      from the left direction (φ = 0) to the right one (φ = Φ)
 //! ```
 //! the profile of a wall in a uniaxial chain, δ = √(J/2K) sites (L. Landau, E. Lifshitz, Phys. Z. Sowjetunion 8, 153 (1935)).
-//! The spins turn on the great circle of the two directions, the way on which `through` lies (the shorter one if absent).
+//! The spins turn on the great circle of the two directions, the way on which `through` lies (the shorter one if it is "auto").
 //! Opposite directions, 3 rad apart or more, have no great circle of their own: there the spins turn by way of the part of
-//! `through` normal to them.
+//! `through` normal to them, and "auto" is the cheapest of four ways, see [`Sense`].
 
+use super::sense::{Sense, along_a_domain, auto_or_direction, auto_or_direction_schema};
 use super::{StateBuilder, StateContext};
 use crate::error::{Error, Result};
 use crate::geometry::{Arc, Direction, Vector, vector};
@@ -21,6 +22,9 @@ const OPPOSITE: f64 = 3.0;
 
 /// The least sine between the domains' line and a direction across it.
 const ACROSS: f64 = 1e-6;
+
+/// A wall leaves no trace where no spin has this share of the turn on one of its sides: 1.8° of half a turn, 4.2 δ from its center.
+const NO_TRACE: f64 = 0.01;
 
 /// `{"domain_wall": {"center": 39.5}}`.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
@@ -37,8 +41,9 @@ pub struct DomainWall {
     /// Right of the wall; −z if absent.
     #[serde(default)]
     pub right: Option<Direction>,
-    /// Where the wall passes; between opposite domains +x if absent, or +y where they lie along x.
-    #[serde(default)]
+    /// Where the wall passes; "auto" (or absent): the shorter way, and between opposite domains the cheapest for the energy.
+    #[serde(default, deserialize_with = "auto_or_direction")]
+    #[schemars(schema_with = "auto_or_direction_schema")]
     pub through: Option<Direction>,
     /// Reverse odd sites.
     #[serde(default)]
@@ -51,67 +56,99 @@ impl Described for DomainWall {
     const EXAMPLE: &'static str = r#"{"domain_wall": {"center": 5.5, "width": 2, "through": [0, 1, 0]}}"#;
 }
 
+impl DomainWall {
+    /// The directions left and right of the wall.
+    fn domains(&self) -> [Vector; 2] {
+        let [left, right] = [(self.left, Direction::Z), (self.right, Direction::Z.reversed())];
+        [left, right].map(|(given, default)| given.unwrap_or(default).vector())
+    }
+
+    /// The two halves of the turn from left to right.
+    fn turn(&self, context: &StateContext) -> Result<[Arc; 2]> {
+        let [left, right] = self.domains();
+        let short = Arc::new(left, right, Direction::X);
+        let through = self.through.map(Direction::vector);
+        let middle = if short.angle() < OPPOSITE {
+            let behind = through.is_some_and(|t| vector::dot(t, short.middle()) < 0.0);
+            vector::scale(if behind { -1.0 } else { 1.0 }, short.middle())
+        } else {
+            let line = line(left, right);
+            let through = through.or(context.sense_among(&self.senses()).map(|sense| sense.through));
+            let across = through.map_or([0.0; 3], |t| vector::normal_part(t, line));
+            if vector::norm(across) < ACROSS {
+                return Err(along_a_domain("wall"));
+            }
+            vector::unit_or(across, line)
+        };
+        let halves = [Arc::new(left, middle, Direction::X), Arc::new(middle, right, Direction::X)];
+        // a wall all the way round, between equal domains, has no plane
+        if halves[0].angle() >= OPPOSITE { Err(along_a_domain("wall")) } else { Ok(halves) }
+    }
+}
+
 impl StateBuilder for DomainWall {
     fn vectors(&self, context: &StateContext) -> Result<Vec<Vector>> {
-        if !self.center.is_finite() {
-            return Err(Error::invalid("center", "a wall's center is a finite number of sites"));
-        }
         let width = self.width.unwrap_or(context.wall_width_sites);
-        if !(width.is_finite() && width >= 0.0) {
-            return Err(Error::invalid("width", format!("found {width}, but a width is a number of sites, 0 or more")));
-        }
-        let left = self.left.unwrap_or(Direction::Z).vector();
-        let right = self.right.unwrap_or(Direction::Z.reversed()).vector();
-        let ways = turn(left, right, self.through.map(Direction::vector))?;
-        let fraction = |i: usize| {
-            let x = i as f64 - self.center;
-            if width == 0.0 {
-                return if x < 0.0 {
-                    0.0
-                } else if x > 0.0 {
-                    1.0
-                } else {
-                    0.5
-                };
-            }
-            libm::atan(libm::exp((x / width).clamp(-700.0, 700.0))) / FRAC_PI_2
-        };
-        Ok((0..context.chain.sites).map(|i| at(&ways, fraction(i))).collect())
+        let fractions = fractions("wall", self.center, width, context.chain.sites)?;
+        let ways = self.turn(context)?;
+        Ok(fractions.into_iter().map(|f| at(&ways, f)).collect())
     }
 
     fn staggered(&self) -> bool {
         self.staggered
     }
+
+    fn senses(&self) -> Vec<Sense> {
+        let [left, right] = self.domains();
+        match self.through {
+            None if Arc::new(left, right, Direction::X).angle() >= OPPOSITE => {
+                Sense::across(left, line(left, right)).into()
+            }
+            _ => Vec::new(),
+        }
+    }
 }
 
-/// The two halves of the turn from left to right.
-fn turn(left: Vector, right: Vector, through: Option<Vector>) -> Result<[Arc; 2]> {
-    let short = Arc::new(left, right, Direction::X);
-    let middle = if short.angle() < OPPOSITE {
-        let behind = through.is_some_and(|t| vector::dot(t, short.middle()) < 0.0);
-        vector::scale(if behind { -1.0 } else { 1.0 }, short.middle())
-    } else {
-        let line = vector::unit_or(vector::sub(left, right), left);
-        let across = |v: Vector| vector::normal_part(v, line);
-        let default = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(across);
-        let default = if vector::norm(default[0]) > 0.1 { default[0] } else { default[1] };
-        let middle = through.map_or(default, across);
-        if vector::norm(middle) < ACROSS {
-            return Err(along_a_domain());
+/// The line of opposite domains.
+fn line(left: Vector, right: Vector) -> Vector {
+    vector::unit_or(vector::sub(left, right), left)
+}
+
+/// How much of a turn each site has behind it, from 0 to 1: (2/π) atan exp((i − center)/width). An error where the turn lies
+/// wholly outside; `what` names it.
+pub(super) fn fractions(what: &str, center: f64, width: f64, sites: usize) -> Result<Vec<f64>> {
+    if !center.is_finite() {
+        return Err(Error::invalid("center", format!("a {what}'s center is a finite number of sites")));
+    }
+    if !(width.is_finite() && width >= 0.0) {
+        return Err(Error::invalid("width", format!("found {width}, but a width is a number of sites, 0 or more")));
+    }
+    let fraction = |i: usize| {
+        let x = i as f64 - center;
+        if width == 0.0 {
+            return if x < 0.0 {
+                0.0
+            } else if x > 0.0 {
+                1.0
+            } else {
+                0.5
+            };
         }
-        vector::unit_or(middle, line)
+        libm::atan(libm::exp((x / width).clamp(-700.0, 700.0))) / FRAC_PI_2
     };
-    let halves = [Arc::new(left, middle, Direction::X), Arc::new(middle, right, Direction::X)];
-    // a wall all the way round, between equal domains, has no plane
-    if halves[0].angle() >= OPPOSITE { Err(along_a_domain()) } else { Ok(halves) }
+    let (first, last) = (fraction(0), fraction(sites - 1));
+    if first > 1.0 - NO_TRACE || last < NO_TRACE {
+        let message = format!(
+            "found {center}, but a {what} there lies wholly outside the chain, whose sites are counted from 0 to {}, and leaves \
+             no trace in it: move it inside, or write {{\"uniform\": {{\"direction\": […]}}}}",
+            sites - 1
+        );
+        return Err(Error::invalid("center", message));
+    }
+    Ok((0..sites).map(fraction).collect())
 }
 
 /// The spin at a fraction of the turn.
 fn at(halves: &[Arc; 2], fraction: f64) -> Vector {
     if fraction <= 0.5 { halves[0].at(2.0 * fraction) } else { halves[1].at(2.0 * fraction - 1.0) }
-}
-
-fn along_a_domain() -> Error {
-    let message = "the wall is to pass through a domain's own direction: give a direction across it";
-    Error::invalid("through", message)
 }

@@ -5,6 +5,7 @@
 mod domain_wall;
 mod file;
 mod random;
+mod sense;
 mod spiral;
 mod uniform;
 mod vectors;
@@ -12,10 +13,12 @@ mod vectors;
 pub use domain_wall::DomainWall;
 pub use file::File;
 pub use random::Random;
+pub use sense::Sense;
 pub use spiral::Spiral;
 pub use uniform::Uniform;
 pub use vectors::Vectors;
 
+use crate::energy::Hamiltonian;
 use crate::error::Result;
 use crate::geometry::{Vector, vector};
 use crate::lattice::Chain;
@@ -41,6 +44,23 @@ pub struct StateContext<'a> {
     pub chain: &'a Chain,
     /// Width δ of a domain wall in sites, for walls without a width of their own.
     pub wall_width_sites: f64,
+    /// The energy, for which a state that is free to turn this way or that takes the cheapest one. Without an energy it takes the
+    /// first: a wall between opposite domains passes through +u, see [`Sense`].
+    pub hamiltonian: Option<&'a Hamiltonian>,
+    /// The sense that another state has taken; states that could take it too do.
+    pub sense: Option<Sense>,
+}
+
+impl<'a> StateContext<'a> {
+    /// Of a chain whose energy is not known.
+    pub fn new(chain: &'a Chain, wall_width_sites: f64) -> StateContext<'a> {
+        StateContext { chain, wall_width_sites, hamiltonian: None, sense: None }
+    }
+
+    /// Of these senses the one to take.
+    fn sense_among(&self, open: &[Sense]) -> Option<Sense> {
+        self.sense.filter(|sense| open.contains(sense)).or(open.first().copied())
+    }
 }
 
 /// A state's config that becomes spins.
@@ -50,11 +70,34 @@ pub trait StateBuilder {
 
     /// Whether odd sites are reversed.
     fn staggered(&self) -> bool;
+
+    /// The senses that are open to it, the one to take without an energy first; none where it has no choice.
+    fn senses(&self) -> Vec<Sense> {
+        Vec::new()
+    }
 }
 
 impl StateSpec {
     /// The spins: staggered if wished, frozen spins with a direction put in that direction.
     pub fn build(&self, context: &StateContext) -> Result<Spins> {
+        self.spins(&StateContext { sense: self.sense(context)?, ..*context })
+    }
+
+    /// The sense that it takes where it has a choice: that of the context, or the cheapest.
+    pub fn sense(&self, context: &StateContext) -> Result<Option<Sense>> {
+        let open = self.member().senses();
+        match (context.hamiltonian, context.sense) {
+            (_, Some(taken)) if open.contains(&taken) => Ok(Some(taken)),
+            (Some(h), _) if !open.is_empty() => {
+                let state = |k: usize| self.spins(&StateContext { sense: Some(open[k]), ..*context });
+                Ok(Some(open[sense::cheapest(h, open.len(), state)?]))
+            }
+            _ => Ok(open.first().copied()),
+        }
+    }
+
+    /// The spins in the context's sense.
+    fn spins(&self, context: &StateContext) -> Result<Spins> {
         let member = self.member();
         let mut vectors = member.vectors(context)?;
         if member.staggered() {

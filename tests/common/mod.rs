@@ -89,7 +89,7 @@ impl Build {
             through: Some(through),
             staggered: false,
         };
-        let context = StateContext { chain: &self.chain, wall_width_sites: width };
+        let context = StateContext::new(&self.chain, width);
         StateSpec::DomainWall(wall).build(&context).expect("a wall")
     }
 }

@@ -33,7 +33,8 @@ impl FirstGuess for Waypoints {
         let frozen = frozen(context.states.chain);
         let mut stops = vec![a.clone()];
         for (k, state) in self.states.iter().enumerate() {
-            let at_stop = state.build(&context.states).map_err(|e| e.within(&format!("states[{k}]")))?;
+            let at_stop =
+                state.build(&context.states).map_err(|e| e.within(&format!("states[{k}].{}", state.name())))?;
             let mut m = at_stop.as_slice().to_vec();
             let mut held = ComponentsMut::new(&mut m);
             for i in (0..a.sites()).filter(|i| frozen[*i]) {
