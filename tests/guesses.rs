@@ -94,7 +94,7 @@ fn every_entry_parses_into_the_member_of_its_name_and_summarises_itself_in_a_lin
         assert!(!entry.summary.is_empty() && !entry.summary.contains('\n'));
     }
     let names = |entries: &[Entry]| entries.iter().map(|e| e.name).collect::<Vec<_>>().join(" ");
-    assert_eq!(names(StateSpec::ENTRIES), "uniform domain_wall spiral random vectors file");
+    assert_eq!(names(StateSpec::ENTRIES), "uniform domain_wall soliton spiral random vectors file");
     assert_eq!(names(GuessSpec::ENTRIES), "geodesic sweep rotation nlerp waypoints file");
 }
 

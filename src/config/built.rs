@@ -110,8 +110,7 @@ impl Loaded {
         let chain = chain.clone().with_vacancies_frozen(idle);
         let hamiltonian = Hamiltonian::new(&chain, terms).map_err(here)?;
         let scales = Scales::of_terms(&hamiltonian);
-        let free =
-            StateContext { hamiltonian: Some(&hamiltonian), ..StateContext::new(&chain, scales.wall_width_sites) };
+        let free = scales.states(&chain, &hamiltonian);
         let within = |spec: &StateSpec, key: &str, e: Error| here(e.within(&format!("{key}.{}", spec.name())));
         let sense = config.initial.sense(&free).map_err(|e| within(&config.initial, "initial", e))?;
         let context = StateContext { sense, ..free };
@@ -321,7 +320,7 @@ fn guess(problem: &Problem, scales: &Scales) -> Result<()> {
             _ => Ok(()),
         };
     };
-    let context = GuessContext { states: problem.states(scales.wall_width_sites), default_axis: Direction::X };
+    let context = GuessContext { states: problem.states(scales), default_axis: Direction::X };
     let images = match problem.images {
         Images::Count(n) => n.min(5),
         Images::Auto => 5,

@@ -1,5 +1,6 @@
 //! What a run is given.
 
+use super::Scales;
 use crate::energy::Hamiltonian;
 use crate::lattice::Chain;
 use crate::optimise::{Implicit, OptimiserSpec};
@@ -66,9 +67,8 @@ impl Problem {
 
 impl Problem {
     /// What states on the way need to know.
-    pub fn states(&self, wall_width_sites: f64) -> StateContext<'_> {
-        let (hamiltonian, sense) = (Some(&self.hamiltonian), self.sense);
-        StateContext { chain: &self.chain, wall_width_sites, hamiltonian, sense }
+    pub fn states(&self, scales: &Scales) -> StateContext<'_> {
+        StateContext { sense: self.sense, ..scales.states(&self.chain, &self.hamiltonian) }
     }
 
     /// Whether the maxima are followed to their saddles.

@@ -151,7 +151,7 @@ impl<'a, 'o> Run<'a, 'o> {
     }
 
     fn context(&self) -> GuessContext<'a> {
-        GuessContext { states: self.problem.states(self.scales.wall_width_sites), default_axis: self.axis }
+        GuessContext { states: self.problem.states(&self.scales), default_axis: self.axis }
     }
 
     fn finish(mut self) -> Result<Outcome> {

@@ -2,8 +2,10 @@
 
 use crate::energy::Hamiltonian;
 use crate::field::Components;
+use crate::lattice::Chain;
 use crate::linalg::{eigenvalues_symmetric, slab};
 use crate::saddle::State;
+use crate::state::StateContext;
 use crate::threads::both;
 
 /// Scales from which tolerances, shifts and image counts follow.
@@ -36,6 +38,12 @@ impl Scales {
         let c = c.max(floor);
         let width = (exchange / c).sqrt().clamp(0.25, h.sites().max(1) as f64);
         Scales { stiffness_mev: c, exchange_mev: exchange, wall_width_sites: width }
+    }
+
+    /// What states of a chain need to know.
+    pub fn states<'a>(&self, chain: &'a Chain, h: &'a Hamiltonian) -> StateContext<'a> {
+        let (wall_width_sites, exchange_mev) = (self.wall_width_sites, self.exchange_mev);
+        StateContext { chain, wall_width_sites, exchange_mev, hamiltonian: Some(h), sense: None }
     }
 
     /// Largest rotation of a spin (rad) when a wall moves by half a site.

@@ -73,7 +73,7 @@ impl DomainWall {
             vector::scale(if behind { -1.0 } else { 1.0 }, short.middle())
         } else {
             let line = line(left, right);
-            let through = through.or(context.sense_among(&self.senses()).map(|sense| sense.through));
+            let through = through.or(context.sense_among(&self.senses(context)).map(|sense| sense.through));
             let across = through.map_or([0.0; 3], |t| vector::normal_part(t, line));
             if vector::norm(across) < ACROSS {
                 return Err(along_a_domain("wall"));
@@ -98,11 +98,11 @@ impl StateBuilder for DomainWall {
         self.staggered
     }
 
-    fn senses(&self) -> Vec<Sense> {
+    fn senses(&self, _: &StateContext) -> Vec<Sense> {
         let [left, right] = self.domains();
         match self.through {
             None if Arc::new(left, right, Direction::X).angle() >= OPPOSITE => {
-                Sense::across(left, line(left, right)).into()
+                Sense::across(left, line(left, right), Direction::X.vector()).into()
             }
             _ => Vec::new(),
         }

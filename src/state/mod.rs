@@ -6,6 +6,7 @@ mod domain_wall;
 mod file;
 mod random;
 mod sense;
+mod soliton;
 mod spiral;
 mod uniform;
 mod vectors;
@@ -14,6 +15,7 @@ pub use domain_wall::DomainWall;
 pub use file::File;
 pub use random::Random;
 pub use sense::Sense;
+pub use soliton::Soliton;
 pub use spiral::Spiral;
 pub use uniform::Uniform;
 pub use vectors::Vectors;
@@ -30,6 +32,7 @@ family! {
     StateSpec as StateBuilder {
         Uniform(Uniform),
         DomainWall(DomainWall),
+        Soliton(Soliton),
         Spiral(Spiral),
         Random(Random),
         Vectors(Vectors),
@@ -44,6 +47,8 @@ pub struct StateContext<'a> {
     pub chain: &'a Chain,
     /// Width δ of a domain wall in sites, for walls without a width of their own.
     pub wall_width_sites: f64,
+    /// Exchange a bond (meV), without sign, for solitons without a width of their own; 0 where it is not known.
+    pub exchange_mev: f64,
     /// The energy, for which a state that is free to turn this way or that takes the cheapest one. Without an energy it takes the
     /// first: a wall between opposite domains passes through +u, see [`Sense`].
     pub hamiltonian: Option<&'a Hamiltonian>,
@@ -54,7 +59,7 @@ pub struct StateContext<'a> {
 impl<'a> StateContext<'a> {
     /// Of a chain whose energy is not known.
     pub fn new(chain: &'a Chain, wall_width_sites: f64) -> StateContext<'a> {
-        StateContext { chain, wall_width_sites, hamiltonian: None, sense: None }
+        StateContext { chain, wall_width_sites, exchange_mev: 0.0, hamiltonian: None, sense: None }
     }
 
     /// Of these senses the one to take.
@@ -72,7 +77,7 @@ pub trait StateBuilder {
     fn staggered(&self) -> bool;
 
     /// The senses that are open to it, the one to take without an energy first; none where it has no choice.
-    fn senses(&self) -> Vec<Sense> {
+    fn senses(&self, _: &StateContext) -> Vec<Sense> {
         Vec::new()
     }
 }
@@ -85,7 +90,7 @@ impl StateSpec {
 
     /// The sense that it takes where it has a choice: that of the context, or the cheapest.
     pub fn sense(&self, context: &StateContext) -> Result<Option<Sense>> {
-        let open = self.member().senses();
+        let open = self.member().senses(context);
         match (context.hamiltonian, context.sense) {
             (_, Some(taken)) if open.contains(&taken) => Ok(Some(taken)),
             (Some(h), _) if !open.is_empty() => {

@@ -21,7 +21,7 @@ use std::fmt;
 /// Rounding errors of a site's energy, in units of ε κ.
 const ROUNDING: f64 = 32.0;
 
-/// The least sine between the domains' line and x̂ for x̂ to be the first way across it.
+/// The least sine between the domains' line and a direction for that to be a way across it.
 const ACROSS: f64 = 0.1;
 
 /// A turn out of one direction by way of another.
@@ -34,10 +34,12 @@ pub struct Sense {
 }
 
 impl Sense {
-    /// By way of +u, −u, +v and −v, in this order; `line` is that of the domains, `from` one of them.
-    pub fn across(from: Vector, line: Vector) -> [Sense; 4] {
-        let [x, y] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(|axis| vector::normal_part(axis, line));
-        let u = vector::unit_or(if vector::norm(x) > ACROSS { x } else { y }, line);
+    /// By way of +u, −u, +v and −v, in this order; `line` is that of the domains, `from` one of them. u is the part of `along`
+    /// normal to the line, or that of ŷ, or of x̂, where that before is within 0.1 of the line.
+    pub fn across(from: Vector, line: Vector, along: Vector) -> [Sense; 4] {
+        let mut ways =
+            [along, [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]].map(|axis| vector::normal_part(axis, line)).into_iter();
+        let u = vector::unit_or(ways.find(|way| vector::norm(*way) > ACROSS).unwrap_or(along), line);
         let v = vector::cross(from, u);
         [u, vector::scale(-1.0, u), v, vector::scale(-1.0, v)].map(|through| Sense { from, through })
     }
