@@ -11,7 +11,7 @@ use serde_json::Value;
 use spinneb::config::{Loaded, load};
 use spinneb::drive::{Outcome, Silent, run};
 use spinneb::output::disk::{self, File};
-use spinneb::output::{known_files, render_files};
+use spinneb::output::render_files;
 use std::error::Error;
 use std::fmt::Write;
 use std::fs;
@@ -40,7 +40,7 @@ fn main() -> Result<()> {
         outcome.work.seconds = started.elapsed().as_secs_f64();
         let dir = root.join("results/gallery").join(&loaded.name);
         let files = files(&loaded, &outcome, &dir)?;
-        disk::write_result(&dir, &files, &known_files())?;
+        disk::replace(&dir, &files, |_, _| true, true)?;
         let purpose = purposes.iter().find(|(name, _)| *name == loaded.name).map_or("", |(_, words)| words);
         section(&mut page, &loaded.name, purpose, &outcome, &files)?;
         println!("{}: {:.1} s", loaded.name, outcome.work.seconds);

@@ -271,9 +271,9 @@ fn a_damaged_checkpoint_is_said_and_used_as_far_as_it_is_whole() {
     let read = |name: &&str| fs::read(checkpoint.join(name)).or_else(|_| fs::read(checkpoint.join(names[2]))).unwrap();
     let good: Vec<Vec<u8>> = names.iter().map(read).collect();
     let restore = || {
+        fs::remove_dir_all(folder.path().join("out")).unwrap();
         fs::create_dir_all(&checkpoint).unwrap();
         names.iter().zip(&good).for_each(|(name, bytes)| fs::write(checkpoint.join(name), bytes).unwrap());
-        let _ = fs::remove_file(folder.path().join("out/summary.json"));
     };
     let spoiled = |bytes: &[u8], at: usize| {
         let mut bytes = bytes.to_vec();
@@ -317,11 +317,28 @@ fn a_directory_without_room_is_found_before_the_work() {
     let folder = folder();
     let (code, said) = with_little_room(folder.path(), 8, "");
     assert_eq!(code, Some(1), "{said}");
-    assert!(said.starts_with("error: out: cannot write here: "), "{said}");
+    assert!(said.starts_with("error: out: cannot write here: File too large (os error "), "{said}");
     assert_eq!(said.lines().count(), 1, "{said}");
     let (code, _, said) = run(folder.path(), &["--out", "/proc/no_such/place"]);
     assert_eq!(code, Some(1), "{said}");
     assert!(said.contains("the directory cannot be made"), "{said}");
+}
+
+#[test]
+fn more_files_than_may_be_open_are_written() {
+    let folder = folder();
+    let program = env!("CARGO_BIN_EXE_spinneb");
+    let more = "--set 'output.formats=[\"vtk\"]' --set path.images=151 --set neb.max_evaluations=1 --threads 1";
+    let line = format!("ulimit -n 40; exec {program} run slow.json --out out {more}");
+    let done = Command::new("sh").current_dir(folder.path()).args(["-c", &line]).output().unwrap();
+    assert_eq!(done.status.code(), Some(3), "{}", String::from_utf8_lossy(&done.stderr));
+    assert!(fs::read_dir(folder.path().join("out/vtk")).unwrap().count() > 100);
+    // what the system says where a file cannot be made
+    #[cfg(target_os = "linux")]
+    {
+        let (_, _, said) = run(folder.path(), &["--out", "/proc"]);
+        assert!(said.starts_with("error: /proc: cannot write here: ") && said.contains("(os error "), "{said}");
+    }
 }
 
 #[test]
@@ -345,10 +362,11 @@ fn goes_on_or_anew(folder: &Path) {
 #[test]
 fn when_files_cannot_be_written_the_computation_is_kept() {
     let folder = folder();
+    let child = at_work(folder.path(), &[]);
     fs::create_dir_all(folder.path().join("out/path.csv/in_the_way")).unwrap();
-    let (code, _, said) = run(folder.path(), &[]);
-    assert_eq!(code, Some(1), "{said}");
-    assert!(said.contains("error: out/path.csv: "), "{said}");
+    let (code, _, said) = ended(child);
+    assert_eq!(code, Some(2), "{said}");
+    assert!(said.contains("error: out/path.csv: is a folder"), "{said}");
     assert!(
         said.contains("slow: the checkpoint is kept: once files can be written, --resume makes the result"),
         "{said}"

@@ -4,18 +4,16 @@ use spinneb::drive::{
     Barrier, EndPoint, HistoryRow, ImageTable, IntermediateMinimum, Outcome, ProfilePoint, RejectedPath, SaddlePoint,
     StopCode, Work,
 };
-use spinneb::error::{Error, Result};
 use spinneb::geometry::Direction;
 use spinneb::lattice::Chain;
 use spinneb::output::canvas::{Look, Style};
-use spinneb::output::disk::{self, Destination, File};
+use spinneb::output::disk;
 use spinneb::output::{
     EnergyPath, EnergyPathPlot, Format, HistoryCsv, KINDS, PLOTS, PathCsv, Picture, PlotFile, ProfileCsv, ReportPage,
-    RunReport, Summary, draw_energy_paths, known_files, render_files,
+    RunReport, Summary, draw_energy_paths, file_names, render_files,
 };
 use spinneb::path::Path;
 use spinneb::spins::Spins;
-use std::io::ErrorKind;
 use std::sync::LazyLock;
 
 /// A path along which a tanh wall of width 4 sites moves through a chain, its plane turning by a right angle.
@@ -311,10 +309,10 @@ fn columns_of_different_lengths_are_an_error() {
 #[test]
 fn every_kind_has_a_name_a_summary_and_files_that_no_other_kind_has() {
     assert!(KINDS.iter().all(|k| !k.name.is_empty() && !k.summary.is_empty() && !(k.formats)().is_empty()));
-    let mut names = known_files();
+    let mut names = file_names(|_| true);
     names.sort();
     names.dedup();
-    assert_eq!(names.len(), known_files().len());
+    assert_eq!(names.len(), file_names(|_| true).len());
 }
 
 #[test]
@@ -534,95 +532,4 @@ fn a_long_config_is_named_but_not_repeated_and_a_number_that_is_not_finite_is_an
     o.images.above_initial_mev[2] = f64::INFINITY;
     let error = ReportPage.render(&report(&o)).unwrap_err().to_string();
     assert_eq!(error, "report.html: energy_above_initial_meV, row 3: inf is not a finite number");
-}
-
-fn file(name: &str, content: &str) -> File {
-    File { name: name.into(), bytes: content.into() }
-}
-
-fn names(dir: &std::path::Path) -> Vec<String> {
-    let mut names: Vec<String> =
-        std::fs::read_dir(dir).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
-    names.sort();
-    names
-}
-
-fn kind_of(result: Result<Destination>) -> (ErrorKind, String) {
-    match result {
-        Err(e @ Error::Io { .. }) => {
-            let words = e.to_string();
-            let Error::Io { source, .. } = e else { unreachable!() };
-            (source.kind(), words)
-        }
-        other => panic!("{other:?}"),
-    }
-}
-
-#[test]
-fn a_result_is_written_found_again_refused_and_replaced() {
-    let top = tempfile::tempdir().unwrap();
-    let dir = top.path().join("results/tiny");
-    assert_eq!(disk::prepare(&dir, "0.1.0", "abc", false).unwrap(), Destination::Ready);
-    assert_eq!(names(&dir), [""; 0]);
-
-    let o = tiny();
-    let files = render_files(&report(&o), |kind| kind.name == "csv").unwrap();
-    assert_eq!(files.last().unwrap().name, "summary.json");
-    disk::write_result(&dir, &files, &known_files()).unwrap();
-    std::fs::write(dir.join("notes.txt"), "mine").unwrap();
-    let tables = ["config.json", "energy_terms.csv", "history.csv", "magnetisation.csv"];
-    assert_eq!(names(&dir), [&tables[..], &["notes.txt", "path.csv", "profile.csv", "summary.json"]].concat());
-
-    match disk::prepare(&dir, "0.1.0", "abc", false).unwrap() {
-        Destination::Finished(stored) => assert_eq!(stored.exit_code(), 3),
-        Destination::Ready => panic!("the result was not seen"),
-    }
-    let (kind, words) = kind_of(disk::prepare(&dir, "0.1.0", "other", false));
-    assert_eq!(kind, ErrorKind::AlreadyExists);
-    assert!(words.contains("tiny: holds a result of another config; use --force"), "{words}");
-    let (_, words) = kind_of(disk::prepare(&dir, "0.2.0", "abc", false));
-    assert!(words.contains("of this config by version 0.1.0 (this is 0.2.0)"), "{words}");
-
-    assert_eq!(disk::prepare(&dir, "0.1.0", "other", true).unwrap(), Destination::Ready);
-    disk::write_result(&dir, &[file("summary.json", "{}"), file("path.csv", "new")], &known_files()).unwrap();
-    assert_eq!(names(&dir), ["notes.txt", "path.csv", "summary.json"]);
-    assert_eq!(std::fs::read_to_string(dir.join("path.csv")).unwrap(), "new");
-}
-
-#[test]
-fn a_file_of_a_result_without_its_mark_is_not_taken_away() {
-    let dir = tempfile::tempdir().unwrap();
-    std::fs::write(dir.path().join("path.csv"), "mine").unwrap();
-    disk::write_result(dir.path(), &[file("summary.json", "{}")], &known_files()).unwrap();
-    assert_eq!(names(dir.path()), ["path.csv", "summary.json"]);
-}
-
-#[test]
-fn a_directory_that_is_a_file_is_refused_in_words() {
-    let dir = tempfile::tempdir().unwrap();
-    let path = dir.path().join("out");
-    std::fs::write(&path, "").unwrap();
-    let (kind, words) = kind_of(disk::prepare(&path, "v", "c", false));
-    assert_eq!(kind, ErrorKind::NotADirectory);
-    assert!(words.contains("is a file, and results need a directory"), "{words}");
-    let (_, words) = kind_of(disk::prepare(&path.join("deeper"), "v", "c", false));
-    assert!(words.contains("the directory cannot be made"), "{words}");
-}
-
-#[test]
-fn a_summary_that_is_not_ours_is_refused() {
-    let dir = tempfile::tempdir().unwrap();
-    std::fs::write(dir.path().join("summary.json"), "[1, 2]").unwrap();
-    let (kind, words) = kind_of(disk::prepare(dir.path(), "v", "c", false));
-    assert_eq!(kind, ErrorKind::AlreadyExists);
-    assert!(words.contains("summary.json: is there but is not a result"), "{words}");
-}
-
-#[test]
-fn a_failed_write_leaves_the_old_result_as_it_was() {
-    let dir = tempfile::tempdir().unwrap();
-    disk::write_result(dir.path(), &[file("path.csv", "old"), file("summary.json", "{}")], &[]).unwrap();
-    let bad = [file("path.csv", "new"), file("path.csv/x", ""), file("summary.json", "{}")];
-    assert!(disk::write_result(dir.path(), &bad, &[]).is_err());
-    assert!(!names(dir.path()).iter().any(|n| n.starts_with(".spinneb")), "temporary files stay behind");
 }

@@ -103,6 +103,19 @@ fn one_result_is_drawn_again_from_its_files_to_the_last_byte() {
     let tables = ["energy_terms.csv", "magnetisation.csv"].map(String::from);
     assert_eq!(names(&folder.path().join("elsewhere")), pngs.chain(tables).collect());
     assert_eq!(read(&a, "summary.json"), summary);
+    // in another style the figures are other files of the same result; one that was changed by hand is left
+    assert_eq!(spinneb(folder.path(), &["plot", "a", "--style", "dark", "-q"]), (Some(0), String::new()));
+    assert_eq!(spinneb(folder.path(), &["run", "a.json", "-q", "--out", "a"]), (Some(0), String::new()), "no damage");
+    let edited = text(&a, "spins.svg").replace("#181A1F", "#000000");
+    fs::write(a.join("spins.svg"), &edited).unwrap();
+    let (code, said) = spinneb(folder.path(), &["plot", "a"]);
+    assert_eq!(code, Some(2));
+    assert!(
+        said.starts_with("error: a/spins.svg: is there, was not written by an earlier run or was changed"),
+        "{said}"
+    );
+    assert_eq!(text(&a, "spins.svg"), edited);
+    assert_eq!(spinneb(folder.path(), &["plot", "a", "--force", "-q"]), (Some(0), String::new()));
 }
 
 #[test]
@@ -256,6 +269,15 @@ fn what_is_missing_or_damaged_is_named_with_the_way_out() {
     assert!(!here.join("energy_paths.svg").exists());
 
     let a = here.join("a");
+    // one figure changed by hand is left alone; what is read must be as it was written
+    fs::write(a.join("profile.csv"), text(&a, "profile.csv").replace('1', "2")).unwrap();
+    let said = refused(&["plot", "a"]);
+    assert!(said.starts_with("error: a: the result here is damaged: profile.csv is not as the run wrote it"), "{said}");
+    // without a manifest, as of version 0.1.0, the files themselves tell
+    let summary = text(&a, "summary.json");
+    let end = summary.find(",\n  \"manifest\"").unwrap();
+    fs::write(a.join("summary.json"), format!("{}\n}}\n", &summary[..end])).unwrap();
+    fs::copy(here.join("b/profile.csv"), a.join("profile.csv")).unwrap();
     let damage = |file: &str, content: &str, said: &str| {
         let whole = read(&a, file);
         fs::write(a.join(file), content).unwrap();
@@ -266,8 +288,8 @@ fn what_is_missing_or_damaged_is_named_with_the_way_out() {
     let table = text(&a, "path.csv");
     let cut = &table[..table.len() / 2];
     let cut_line = format!("line {}: ", cut.lines().count());
-    damage("summary.json", "{\"name\": \"a\"", "EOF while parsing");
-    damage("summary.json", "{\"name\": 3}", "invalid type");
+    damage("summary.json", "{\"name\": \"a\"", "is damaged: EOF while parsing");
+    damage("summary.json", "{\"name\": 3}", "is damaged: invalid type");
     damage("path.csv", cut, &cut_line);
     damage("path.csv", &table[..table.trim_end().rfind('\n').unwrap() + 1], "has ");
     damage("path.csv", &table.replace("exchange_meV", "exchange_meV,"), "line 2: found ");
@@ -321,7 +343,8 @@ fn a_file_that_is_not_this_figure_is_left_as_it_is() {
         fs::write(here.join(file), content).unwrap();
         let (code, said) = spinneb(here, arguments);
         assert_eq!(code, Some(2), "{said}");
-        let words = "is there and is not this figure; use --force to replace it, or another place with --out";
+        let words =
+            "is there and is not an earlier one of this file; use --force to replace it, or another place with --out";
         assert_eq!(said, format!("error: {file}: {words}\n"));
         assert_eq!(read(here, file), content);
         assert_eq!(spinneb(here, &[arguments, &["--force", "-q"]].concat()), (Some(0), String::new()));
@@ -338,12 +361,12 @@ fn a_file_that_is_not_this_figure_is_left_as_it_is() {
     assert_eq!(spinneb(here, &["plot", "a", "--out", "shared", "-q"]).0, Some(0));
     let (code, said) = spinneb(here, &["plot", "b", "--out", "shared"]);
     assert_eq!(code, Some(2));
-    assert!(said.starts_with("error: shared/energy_path.svg: is there and is not this figure"), "{said}");
+    assert!(said.starts_with("error: shared/energy_path.svg: is there and is not an earlier one"), "{said}");
     // a folder is never replaced, whatever is said
     fs::create_dir_all(here.join("folder/spins.svg")).unwrap();
     let (code, said) = spinneb(here, &["plot", "a", "--out", "folder", "--force"]);
     assert_eq!(code, Some(2));
-    assert!(said.starts_with("error: folder/spins.svg: is a directory"), "{said}");
+    assert!(said.starts_with("error: folder/spins.svg: is a folder or a device"), "{said}");
     assert_eq!(names(&here.join("folder")), ["spins.svg".to_string()].into());
 }
 

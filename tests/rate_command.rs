@@ -158,7 +158,7 @@ fn a_folder_without_a_result_or_without_moments_is_refused_in_words() {
     fs::write(&config, changed).unwrap();
     let (code, _, said) = spinneb(folder.path(), &["rate", "results/chain", "-T", "3 K"]);
     assert_eq!(code, Some(2));
-    assert!(said.contains("is not the config of summary.json"), "{said}");
+    assert!(said.contains("the result here is damaged: config.json is not as the run wrote it"), "{said}");
 }
 
 #[test]

@@ -156,7 +156,10 @@ fn a_run_writes_the_files_the_keys_and_the_barrier_that_are_told() {
     assert_eq!(told, summary.as_object().unwrap().keys().cloned().collect());
     let inner: BTreeSet<String> = tables[keys_from..codes].iter().flat_map(|row| quoted(&row.join(" "))).collect();
     let mut all = BTreeSet::new();
-    keys(&summary, &mut all);
+    let mut without = summary.clone();
+    // the keys of this one are names of files
+    without["manifest"]["files"].take();
+    keys(&without, &mut all);
     assert_eq!(all.difference(&inner).collect::<Vec<_>>(), Vec::<&String>::new(), "keys the README does not explain");
 
     let readme = text("README.md");

@@ -175,7 +175,9 @@ fn results_of_another_config_are_refused_before_anything_runs_and_replaced_only_
     let (code, _, said) = spinneb(folder.path(), &["sweep", "many.json"]);
     assert_eq!(code, Some(2));
     assert!(
-        said.starts_with("error: 1 of 6 points have a folder with a result of another config or version, "),
+        said.starts_with(
+            "error: 1 of 6 points have a folder with a damaged result or one of another config or version, "
+        ),
         "{said}"
     );
     assert!(!folder.path().join("results/many/sites_3__K_0.2meV").exists());

@@ -7,7 +7,7 @@ use clap::Args;
 use serde_json::{Value, json};
 use spinneb::config::sweep::Sweep;
 use spinneb::output::Picture;
-use spinneb::output::disk;
+use spinneb::output::disk::File;
 use spinneb::output::sweep::{Found, POINTS, PointState, SweepIndex, draw_sweep, look, sweep_table};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -20,7 +20,7 @@ const TOLD: usize = 12;
 #[command(after_help = "\
 barriers.csv has a row a point: index, swept values with their units, barriers in meV, whether they are certified, prefactors if
 there are rates, and the folder. A point without a result has empty cells. barriers.svg and .png show the forward barrier
-against the key with the most values, a curve for each value of the others. Older ones are replaced.
+against the key with the most values, a curve for each value of the others. Older ones are replaced, unless they were changed.
 
 Examples:
   spinneb collect field.json
@@ -69,31 +69,31 @@ pub fn collect(arguments: &Collect) -> Result<u8> {
             writeln!(out, "{}", json_line(&index, &dir, k, state))?;
         }
     }
-    write(&index, &dir, &states, arguments.quiet)?;
+    write(&index, &dir, &states, arguments.quiet, false)?;
     let proven = |state: &PointState| state.found().is_some_and(Found::is_proven);
     Ok(if states.iter().all(proven) { 0 } else { UNFINISHED })
 }
 
-/// What is there for each point. What cannot be read is said and taken for another result.
+/// What is there for each point. What cannot be read is said and taken for damaged.
 pub(super) fn states(dir: &Path, index: &SweepIndex) -> Vec<PointState> {
     let state = |k: usize| {
         look(dir, index, k).unwrap_or_else(|e| {
             note(&format!("error: {e}"));
-            PointState::Other
+            PointState::Damaged
         })
     };
     (0..index.points.len()).map(state).collect()
 }
 
 /// Writes the table and the figure, and says what is in them and what is missing.
-pub(super) fn write(index: &SweepIndex, dir: &Path, states: &[PointState], quiet: bool) -> Result<()> {
+pub(super) fn write(index: &SweepIndex, dir: &Path, states: &[PointState], quiet: bool, force: bool) -> Result<()> {
     let say = |line: &str| {
         if !quiet {
             note(&format!("{}: {line}", index.name))
         }
     };
     let of = |word: &str| (0..states.len()).filter(|k| states[*k].word() == word).collect::<Vec<_>>();
-    let counts = ["certified", "not certified", "missing", "another result"].map(|word| (word, of(word)));
+    let counts = ["certified", "not certified", "missing", "another result", "damaged"].map(|word| (word, of(word)));
     let counted: Vec<String> =
         counts.iter().filter(|(_, points)| !points.is_empty()).map(|(word, p)| format!("{} {word}", p.len())).collect();
     say(&format!("{} points: {}", states.len(), counted.join(", ")));
@@ -104,17 +104,18 @@ pub(super) fn write(index: &SweepIndex, dir: &Path, states: &[PointState], quiet
         say(&format!("no point has a result in {}: nothing is collected", dir.display()));
         return Ok(());
     }
-    disk::write_file(&dir.join("barriers.csv"), &sweep_table(index, states)?)?;
     let place = dir.join("barriers.csv");
-    match draw_sweep(index, states)? {
-        Some(canvas) => {
-            for picture in [Picture::Svg, Picture::Png] {
-                let file = dir.join(format!("barriers.{}", picture.extension()));
-                disk::write_file(&file, &picture.render(&canvas)?)?;
-            }
-            say(&format!("{}, barriers.svg and barriers.png are written", place.display()));
+    let mut files = vec![File { name: "barriers.csv".into(), bytes: sweep_table(index, states)? }];
+    if let Some(canvas) = draw_sweep(index, states)? {
+        for picture in [Picture::Svg, Picture::Png] {
+            let name = format!("barriers.{}", picture.extension());
+            files.push(File { name, bytes: picture.render(&canvas)? });
         }
-        None => say(&format!("{} is written; no point has a barrier to draw", place.display())),
+    }
+    index.collect(dir, &files, force)?;
+    match files.len() {
+        1 => say(&format!("{} is written; no point has a barrier to draw", place.display())),
+        _ => say(&format!("{}, barriers.svg and barriers.png are written", place.display())),
     }
     Ok(())
 }

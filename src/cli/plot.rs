@@ -6,7 +6,8 @@ use rayon::prelude::*;
 use spinneb::config::load;
 use spinneb::error::Error;
 use spinneb::output::canvas::{Look, Style, description};
-use spinneb::output::disk::{self, File};
+use spinneb::output::disk::File;
+use spinneb::output::folder;
 use spinneb::output::{
     EnergyPath, PLOTS, Picture, PlotData, PlotFile, PlotTable, StoredRun, describe, draw_energy_paths,
 };
@@ -36,7 +37,7 @@ fn single(arguments: &Plot, dir: &Path) -> Result<u8> {
     let data = stored.data();
     let files = figures(arguments, &data, &look)?;
     let out = arguments.out.as_deref().unwrap_or(dir);
-    disk::replace(out, &files, same_file, arguments.force)?;
+    folder::add(out, &files, same_file, arguments.force)?;
     if !arguments.quiet {
         stored.notes.iter().for_each(|words| note(&format!("{}: {words}", data.name)));
         let names: Vec<&str> = files.iter().map(|file| file.name.as_str()).collect();
@@ -86,7 +87,7 @@ fn several(arguments: &Plot) -> Result<u8> {
         Ok(File { name: format!("{stem}.{}", picture.extension()), bytes: picture.render(&canvas)? })
     };
     let files = pictures.iter().map(file).collect::<spinneb::error::Result<Vec<File>>>()?;
-    disk::replace(&out, &files, same_file, arguments.force)?;
+    folder::add(&out, &files, same_file, arguments.force)?;
     if !arguments.quiet {
         for (one, label) in stored.iter().zip(&labels) {
             one.notes.iter().filter(|n| n.contains("profile")).for_each(|words| note(&format!("{label}: {words}")));

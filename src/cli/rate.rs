@@ -1,12 +1,12 @@
 //! `rate`: lifetimes of results that are there already.
 
-use super::run::{Progress, outcome, start_threads, write};
+use super::run::{Earlier, Progress, names, outcome, start_threads, write};
 use super::{Rate, UNFINISHED, USAGE, note, report, worse};
 use anyhow::Result;
 use serde_json::json;
 use spinneb::config::{RatesConfig, load};
 use spinneb::drive::Outcome;
-use spinneb::output::{Lock, disk};
+use spinneb::output::{Lock, folder};
 use spinneb::rates::{Row, Theory, Way};
 use std::f64::consts::LN_10;
 use std::io::{self, Write};
@@ -26,7 +26,7 @@ pub fn rate(arguments: &Rate) -> Result<u8> {
 fn rate_one(arguments: &Rate, directory: &Path) -> Result<u8> {
     let started = Instant::now();
     let place = directory.display();
-    let Some(stored) = disk::stored_result(directory)? else {
+    let Some(stored) = folder::stored_result(directory, |_| true)? else {
         note(&format!("error: {place} holds no finished result: run its config first, then ask for its rates"));
         return Ok(USAGE);
     };
@@ -35,6 +35,12 @@ fn rate_one(arguments: &Rate, directory: &Path) -> Result<u8> {
         note(&format!("error: {place}: config.json is not the config of summary.json: run it anew"));
         return Ok(USAGE);
     }
+    let Some(manifest) = stored.manifest else {
+        let words = "has no manifest of its files, so none of them is replaced: run its config anew";
+        note(&format!("error: {place}: the result of version {} {words}", stored.version));
+        return Ok(USAGE);
+    };
+    folder::are_free(directory, &names(&loaded))?;
     let _lock = Lock::of(directory)?;
     loaded.config.rates = Some(asked(arguments));
     let problem = loaded.problem()?;
@@ -43,7 +49,7 @@ fn rate_one(arguments: &Rate, directory: &Path) -> Result<u8> {
         note(&format!("{name}: the result holds no saddles to all digits; they are found anew from its config"));
     }
     let outcome = outcome(&loaded, &problem, &mut Progress::new(name, arguments.quiet), started)?;
-    write(&loaded, &outcome, directory)?;
+    write(&loaded, &outcome, directory, Earlier::GivesWay(manifest.source.as_deref()), false)?;
     if !arguments.quiet {
         outcome.warnings.iter().for_each(|warning| note(&format!("{name}: warning: {warning}")));
         note(&format!(

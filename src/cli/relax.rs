@@ -8,6 +8,7 @@ use spinneb::config::{Loaded, load_states};
 use spinneb::drive::{RelaxedState, relaxed_state};
 use spinneb::error::Error;
 use spinneb::output::{RelaxReport, disk, relaxed_file_names};
+use std::fs;
 use std::io::{self, ErrorKind, Write};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -83,7 +84,7 @@ fn relax_one(arguments: &Relax, config: &Path) -> Result<u8> {
     let directory = directory(arguments, &loaded);
     if let Some(dir) = &directory {
         let which: Vec<&str> = given.iter().map(|(which, _)| *which).collect();
-        free(dir, &relaxed_file_names(&which, formats), arguments.force)?;
+        free(dir, &relaxed_file_names(&which, formats), arguments.force, &loaded.made_from)?;
     }
     loaded.warnings.iter().for_each(|warning| say(&format!("{name}: warning: {warning}")));
     let h = &states.hamiltonian;
@@ -123,15 +124,20 @@ fn directory(arguments: &Relax, loaded: &Loaded) -> Option<PathBuf> {
     Some(if arguments.configs.len() == 1 { out.clone() } else { out.join(&loaded.name) })
 }
 
-/// Nothing that is there may be replaced unless that is wished.
-fn free(dir: &Path, names: &[String], force: bool) -> Result<()> {
-    match names.iter().map(|name| dir.join(name)).find(|path| path.exists()) {
-        Some(path) if !force => {
-            let words = "exists already; use --force to replace it, or another folder with --out";
-            Err(Error::Io { path, source: io::Error::new(ErrorKind::AlreadyExists, words) }.into())
-        }
-        _ => Ok(()),
+/// Nothing that is there may be replaced unless that is wished, and no link or file that the states are made from even then.
+fn free(dir: &Path, names: &[String], force: bool, made_from: &[PathBuf]) -> Result<()> {
+    for path in names.iter().map(|name| dir.join(name)) {
+        let own = |path: &Path| fs::canonicalize(path).is_ok_and(|path| made_from.contains(&path));
+        let words = match disk::kind(&path)? {
+            disk::Kind::Nothing => continue,
+            disk::Kind::File if own(&path) => "is a file that the states are made from; give another folder with --out",
+            disk::Kind::File if force => continue,
+            disk::Kind::File => "exists already; use --force to replace it, or another folder with --out",
+            _ => "is a symbolic link, a folder or a device, and is not replaced; give another folder with --out",
+        };
+        return Err(Error::Io { path, source: io::Error::new(ErrorKind::AlreadyExists, words) }.into());
     }
+    Ok(())
 }
 
 fn print(arguments: &Relax, found: &RelaxReport, written: bool) -> Result<()> {

@@ -8,10 +8,11 @@ use serde_json::{Value, json};
 use spinneb::config::{Loaded, load};
 use spinneb::drive::{self, Observer, Outcome, Recorder};
 use spinneb::error::Error;
-use spinneb::output::disk::{self, Destination};
+use spinneb::output::disk::{self, File};
+use spinneb::output::folder::{self, Destination, Intent, NewResult};
 use spinneb::output::{
-    Checkpoint, Group, Kind, Lock, StoppedRun, discard_partial, is_partial_left, known_files, partial_files,
-    render_files,
+    Checkpoint, Group, INPUTS, Kind, Lock, StoppedRun, discard_partial, file_names, is_partial_left, partial_files,
+    render_files, write_partial,
 };
 use std::collections::HashMap;
 use std::io::{self, Write};
@@ -124,9 +125,8 @@ pub(super) fn run_one(arguments: &Run, signals: &Signals, loaded: &Loaded, direc
     problem.hamiltonian.obey(signals.switch());
     let (name, place) = (&loaded.name, directory.display());
     let Some(lock) = reserve(arguments, loaded, directory)? else {
-        let stored = Stored::read(directory)?;
         say(&format!("{name}: {place} holds the finished result of this config already; --force runs it again"));
-        return print(arguments, name, directory, &stored);
+        return print(arguments, name, directory);
     };
     if !lock.is_sure() {
         say(&format!("{name}: the file system of {place} has no locks: see to it that no other run writes there"));
@@ -153,13 +153,19 @@ pub(super) fn run_one(arguments: &Run, signals: &Signals, loaded: &Loaded, direc
         },
     };
     drop(progress);
-    if let Err(error) = write(loaded, &outcome, directory) {
-        // what was computed is not lost with the files
-        recorder.save();
-        if Checkpoint::exists(directory) {
-            say(&format!("{name}: the checkpoint is kept: once files can be written, --resume makes the result of it"));
+    let earlier = if arguments.force { Earlier::GivesWay } else { Earlier::IsKept };
+    match write(loaded, &outcome, directory, earlier(source(loaded).as_deref()), arguments.force) {
+        Ok(Some(kept)) => say(&format!("{name}: the earlier result is kept in {}", kept.display())),
+        Ok(None) => {}
+        Err(error) => {
+            // what was computed is not lost with the files
+            recorder.save();
+            if Checkpoint::exists(directory) {
+                let words = "the checkpoint is kept: once files can be written, --resume makes the result of it";
+                say(&format!("{name}: {words}"));
+            }
+            return Err(error.into());
         }
-        return Err(error.into());
     }
     drop(recorder);
     if let Err(error) = discard_leftovers(directory) {
@@ -168,42 +174,80 @@ pub(super) fn run_one(arguments: &Run, signals: &Signals, loaded: &Loaded, direc
     for warning in &outcome.warnings {
         say(&format!("{name}: warning: {warning}"));
     }
-    let stored = Stored::of(&outcome);
     if let Some(line) = super::rate::lifetimes(&outcome) {
         say(&format!("{name}: {line}"));
     }
-    let proof = if outcome.certified { "certified" } else { "not certified" };
-    say(&format!("{name}: {}, {proof}; {}; results in {place}", barrier(&outcome), outcome.stop_reason));
-    print(arguments, name, directory, &stored)
+    print(arguments, name, directory)
 }
 
 /// Sees that the results can be written, and that nobody else writes there; nothing if they are there already.
 fn reserve(arguments: &Run, loaded: &Loaded, directory: &Path) -> Result<Option<Lock>> {
-    let finished = || -> Result<bool> {
-        let found = disk::prepare(directory, VERSION, &loaded.sha256, arguments.force)?;
-        Ok(matches!(found, Destination::Finished(_)))
+    let source = source(loaded);
+    let (names, known) = (names(loaded), known_files(loaded));
+    let intent = Intent {
+        version: VERSION,
+        config_sha256: &loaded.sha256,
+        source: source.as_deref(),
+        names: &names,
+        known: &known,
+        made_from: &loaded.made_from,
+        force: arguments.force,
     };
+    let finished = || -> Result<bool> { Ok(matches!(folder::prepare(directory, &intent)?, Destination::Finished(_))) };
     if finished()? {
         // a run that was killed between its last file and the end leaves some
         let left = Checkpoint::is_left(directory) || Lock::is_left(directory) || is_partial_left(directory);
-        if left && let Ok(_lock) = Lock::of(directory) {
+        if (left || folder::is_note_left(directory))
+            && let Ok(_lock) = Lock::of(directory)
+        {
             discard_leftovers(directory)?;
         }
         return Ok(None);
     }
+    Checkpoint::check(directory, arguments.force)?;
     let lock = Lock::of(directory)?;
     // who held the lock may have finished meanwhile
     if finished()? {
         return Ok(None);
     }
     disk::clean(directory)?;
-    let names = known_files();
-    names.iter().filter_map(|name| name.strip_suffix('/')).try_for_each(|name| disk::clean(&directory.join(name)))?;
+    let all = file_names(|_| true);
+    all.iter().filter_map(|name| name.strip_suffix('/')).try_for_each(|name| disk::clean(&directory.join(name)))?;
     Ok(Some(lock))
+}
+
+/// The config's file, as the manifest of its result names it.
+fn source(loaded: &Loaded) -> Option<String> {
+    loaded.source.as_ref().map(|path| path.to_string_lossy().into_owned())
+}
+
+/// Which kinds of files the config asks for.
+fn wanted(loaded: &Loaded) -> impl Fn(&Kind) -> bool {
+    let output = &loaded.config.output;
+    let named = |list: &[String], kind: &Kind| list.iter().any(|name| name == kind.name);
+    move |kind| match kind.group {
+        Group::Always => true,
+        Group::Formats | Group::OnRequest => named(&output.formats, kind),
+        Group::Plots => named(&output.plots, kind),
+    }
+}
+
+/// Names of all files that the config's result may have.
+pub(super) fn names(loaded: &Loaded) -> Vec<String> {
+    let folder = format!("{INPUTS}/");
+    let names = file_names(wanted(loaded)).into_iter().filter(|name| *name != folder);
+    names.chain(loaded.inputs.iter().map(|file| file.name.clone())).collect()
+}
+
+/// The files of the result that are known before the work.
+fn known_files(loaded: &Loaded) -> Vec<File> {
+    let config = File { name: "config.json".into(), bytes: loaded.as_run.clone().into_bytes() };
+    loaded.inputs.iter().cloned().chain([config]).collect()
 }
 
 /// What only an unfinished run needs.
 fn discard_leftovers(directory: &Path) -> Result<()> {
+    folder::discard_note(directory)?;
     Checkpoint::discard(directory)?;
     Ok(discard_partial(directory)?)
 }
@@ -249,11 +293,7 @@ fn leave_partial(
     let outcome = recorder.partial().map(|band| drive::partial(problem, band, &reason));
     let report = outcome.as_ref().map(|outcome| loaded.report(outcome)).transpose()?;
     let files = partial_files(&stopped, report.as_ref())?;
-    discard_partial(directory)?;
-    for file in files {
-        disk::write_file(&directory.join(file.name), &file.bytes)?;
-    }
-    Ok(())
+    Ok(write_partial(directory, &files)?)
 }
 
 /// The outcome of a config's problem, as it is written.
@@ -279,67 +319,72 @@ fn outcome_recorded(
     Ok(outcome)
 }
 
-pub(super) fn write(loaded: &Loaded, outcome: &Outcome, directory: &Path) -> spinneb::error::Result<()> {
-    let run = loaded.report(outcome)?;
-    let output = &loaded.config.output;
-    let named = |list: &[String], kind: &Kind| list.iter().any(|name| name == kind.name);
-    let files = render_files(&run, |kind| match kind.group {
-        Group::Always => true,
-        Group::Formats | Group::OnRequest => named(&output.formats, kind),
-        Group::Plots => named(&output.plots, kind),
-    })?;
-    disk::write_result(directory, &files, &known_files())
+/// What happens with an earlier result, and the source of the new one.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Earlier<'a> {
+    /// It is kept beside the new one.
+    IsKept(Option<&'a str>),
+    /// The new one takes its place.
+    GivesWay(Option<&'a str>),
 }
 
-fn barrier(outcome: &Outcome) -> String {
-    match outcome.barrier {
-        Some(b) => format!("barrier {:.6} meV forward, {:.6} meV backward", b.forward_mev, b.backward_mev),
-        None => "no barrier".into(),
-    }
+/// Writes the files of a result; where an earlier one is kept.
+pub(super) fn write(
+    loaded: &Loaded,
+    outcome: &Outcome,
+    directory: &Path,
+    earlier: Earlier,
+    force: bool,
+) -> spinneb::error::Result<Option<PathBuf>> {
+    let files = render_files(&loaded.report(outcome)?, wanted(loaded))?;
+    let (Earlier::IsKept(source) | Earlier::GivesWay(source)) = earlier;
+    let keep_earlier = matches!(earlier, Earlier::IsKept(_));
+    folder::write_result(directory, &NewResult { files: &files, source, keep_earlier, force })
 }
 
-/// What is said about a result on stdout: from an outcome, or from its `summary.json`.
-struct Stored {
-    barrier_mev: Value,
-    converged: bool,
-    certified: bool,
-}
-
-impl Stored {
-    fn of(outcome: &Outcome) -> Stored {
-        let both = |b: drive::Barrier| json!({"forward": b.forward_mev, "backward": b.backward_mev});
-        let barrier_mev = outcome.barrier.map_or(Value::Null, both);
-        Stored { barrier_mev, converged: outcome.converged, certified: outcome.certified }
+/// What is said about the result in a folder: its line on standard output, or one of JSON there; the exit code.
+fn print(arguments: &Run, name: &str, directory: &Path) -> Result<u8> {
+    let path = directory.join(disk::MARK);
+    let wrong = |e: serde_json::Error| Error::Io { path: path.clone(), source: io::Error::other(e) };
+    let summary: Value = serde_json::from_slice(&disk::read(&path)?).map_err(wrong)?;
+    let is = |key: &str| summary[key] == true;
+    let code = if is("converged") && is("certified") { 0 } else { UNFINISHED };
+    let words = format!("{name}: {}; results in {}", in_words(&summary), directory.display());
+    let line = match arguments.json {
+        true => json_line(&summary, name, directory, code).to_string(),
+        false => words.clone(),
+    };
+    if arguments.json && !arguments.quiet {
+        note(&words);
     }
-
-    fn read(directory: &Path) -> Result<Stored> {
-        let path = directory.join(disk::MARK);
-        let bytes = std::fs::read(&path).map_err(|source| Error::Io { path: path.clone(), source })?;
-        let summary: Value =
-            serde_json::from_slice(&bytes).map_err(|e| Error::Io { path, source: io::Error::other(e) })?;
-        let flag = |key: &str| summary.get(key).and_then(Value::as_bool).unwrap_or(false);
-        let barrier_mev = summary.get("barrier_meV").cloned().unwrap_or(Value::Null);
-        Ok(Stored { barrier_mev, converged: flag("converged"), certified: flag("certified") })
-    }
-
-    fn exit_code(&self) -> u8 {
-        if self.converged && self.certified { 0 } else { UNFINISHED }
-    }
-}
-
-/// The line of JSON, if asked for; the exit code.
-fn print(arguments: &Run, name: &str, directory: &Path, stored: &Stored) -> Result<u8> {
-    let code = stored.exit_code();
-    if arguments.json {
-        let line = json!({
-            "name": name,
-            "barrier_meV": stored.barrier_mev,
-            "converged": stored.converged,
-            "certified": stored.certified,
-            "exit_code": code,
-            "directory": directory.to_string_lossy(),
-        });
-        writeln!(io::stdout(), "{line}")?;
-    }
+    writeln!(io::stdout(), "{line}")?;
     Ok(code)
+}
+
+/// A result in a line: barrier, certificate, why it ended.
+fn in_words(summary: &Value) -> String {
+    let barrier = &summary["barrier_meV"];
+    let barrier = match (barrier["forward"].as_f64(), barrier["backward"].as_f64()) {
+        (Some(forward), Some(backward)) => format!("barrier {forward:.6} meV forward, {backward:.6} meV backward"),
+        _ => "no barrier".into(),
+    };
+    let proof = if summary["certified"] == true { "certified" } else { "not certified" };
+    format!("{barrier}, {proof}; {}", summary["stop_reason"].as_str().unwrap_or("no reason is given"))
+}
+
+fn json_line(summary: &Value, name: &str, directory: &Path, code: u8) -> Value {
+    let mut line = json!({
+        "name": name,
+        "barrier_meV": summary["barrier_meV"],
+        "converged": summary["converged"],
+        "certified": summary["certified"],
+        "exit_code": code,
+        "directory": directory.to_string_lossy(),
+    });
+    for key in ["stop_code", "warnings"] {
+        if let Some(value) = summary.get(key) {
+            line[key] = value.clone();
+        }
+    }
+    line
 }

@@ -3,6 +3,7 @@
 use super::{Cli, Completions, Init, Man, USAGE, note};
 use anyhow::Result;
 use clap::{CommandFactory, ValueEnum};
+use serde_json::Value;
 use spinneb::config::{SCHEMA_FILE, schema};
 use spinneb::output::disk;
 use std::io::{self, Write};
@@ -37,17 +38,28 @@ impl Template {
 pub fn init(arguments: &Init) -> Result<u8> {
     let file = arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}.json", arguments.template.name())));
     let shown = file.display();
-    if file.exists() && !arguments.force {
+    if disk::kind(&file)? != disk::Kind::Nothing && !arguments.force {
         note(&format!("error: {shown} exists already; use --force to replace it, or another name with --out"));
         return Ok(USAGE);
     }
-    disk::write_file(&file, arguments.template.text().as_bytes())?;
-    // the schema is the program's own: an older one gives way
+    // an older schema gives way
     let beside = file.with_file_name(SCHEMA_FILE);
+    if !arguments.force && !is_schema(disk::read_if_there(&beside)?) {
+        let beside = beside.display();
+        note(&format!("error: {beside} is there and is not the schema of another version; use --force to replace it"));
+        return Ok(USAGE);
+    }
+    disk::write_file(&file, arguments.template.text().as_bytes())?;
     disk::write_file(&beside, schema().as_bytes())?;
     note(&format!("{shown} is written, and {} for editors that complete and check it", beside.display()));
     note(&format!("next: spinneb check {shown}, then spinneb run {shown}"));
     Ok(0)
+}
+
+/// Whether a file is a schema of configs, or not there.
+fn is_schema(bytes: Option<Vec<u8>>) -> bool {
+    let title = |text: &[u8]| Some(serde_json::from_slice::<Value>(text).ok()?.get("title")?.clone());
+    bytes.is_none_or(|bytes| title(&bytes).is_some() && title(&bytes) == title(schema().as_bytes()))
 }
 
 /// Prints the schema.

@@ -11,6 +11,7 @@ use super::{Run, UNFINISHED, USAGE, note, report, worse};
 use anyhow::{Context, Result};
 use clap::Args;
 use rayon::prelude::*;
+use spinneb::config::Loaded;
 use spinneb::config::sweep::Sweep;
 use spinneb::error::Error;
 use spinneb::output::sweep::{IndexedPoint, PointState, SweepIndex, look};
@@ -162,7 +163,8 @@ fn one(arguments: &Arguments, sweep: &Sweep, dir: &Path, point: usize) -> Result
         note(&format!("error: there is no point {point}: {} has the points 0 to {last}", arguments.file.display()));
         return Ok(USAGE);
     }
-    let loaded = sweep.load_point(point)?;
+    // the points of a sweep share their source: each keeps its result
+    let loaded = Loaded { source: None, ..sweep.load_point(point)? };
     sweep.problem(point, &loaded)?;
     let known = |index: &SweepIndex| {
         let same = |p: &IndexedPoint| *p == sweep.indexed(point, loaded.sha256.clone());
@@ -221,7 +223,7 @@ fn list(arguments: &Arguments, index: &SweepIndex, dir: &Path) -> Result<u8> {
 /// Whether folders hold results of other configs or versions, which is said.
 fn occupied(dir: &Path, index: &SweepIndex, before: &[PointState]) -> bool {
     let other = |state: &PointState| match state {
-        PointState::Other => true,
+        PointState::Other | PointState::Damaged => true,
         PointState::Found(found) => found.version != env!("CARGO_PKG_VERSION"),
         PointState::Missing => false,
     };
@@ -229,8 +231,8 @@ fn occupied(dir: &Path, index: &SweepIndex, before: &[PointState]) -> bool {
     if let Some(first) = taken.first() {
         let place = dir.join(&index.points[*first].directory);
         note(&format!(
-            "error: {} of {} points have a folder with a result of another config or version, the first {}; use --force \
-             to replace them, or another folder with --out",
+            "error: {} of {} points have a folder with a damaged result or one of another config or version, the first {}; \
+             use --force to replace them, or another folder with --out",
             taken.len(),
             before.len(),
             place.display()
@@ -241,6 +243,7 @@ fn occupied(dir: &Path, index: &SweepIndex, before: &[PointState]) -> bool {
 
 /// All points that are not done, several at a time.
 fn all(arguments: &Arguments, index: &SweepIndex, dir: &Path, before: &[PointState]) -> Result<u8> {
+    SweepIndex::is_free(dir, arguments.force)?;
     index.write(dir)?;
     let todo: Vec<usize> = (0..before.len()).filter(|k| arguments.force || before[*k].found().is_none()).collect();
     let threads = arguments.threads.map_or(1, NonZeroUsize::get);
@@ -281,7 +284,7 @@ fn all(arguments: &Arguments, index: &SweepIndex, dir: &Path, before: &[PointSta
     failed.sort();
     let after = states(dir, index);
     if stopped.is_none() {
-        collect::write(index, dir, &after, arguments.quiet)?;
+        collect::write(index, dir, &after, arguments.quiet, arguments.force)?;
     }
     if arguments.json {
         let mut out = io::stdout().lock();

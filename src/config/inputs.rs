@@ -11,7 +11,7 @@ use crate::output::disk::File;
 use crate::path::guess::GuessSpec;
 use crate::state::StateSpec;
 use serde_json::Value;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// What was read.
 #[derive(Clone, Debug, Default)]
@@ -20,6 +20,8 @@ pub(super) struct Inputs {
     pub(super) files: Vec<File>,
     /// What the user should know of them.
     pub(super) warnings: Vec<String>,
+    /// Where they were.
+    pub(super) read: Vec<PathBuf>,
     /// Where in the config each is named, as a JSON pointer, and its hash.
     places: Vec<(String, String)>,
 }
@@ -60,6 +62,7 @@ impl Inputs {
 
     fn keep(&mut self, stored: &Stored, images: &[Vec<[f64; 3]>], single: bool, name: &str, pointer: String) {
         let (bytes, hash) = Stored::portable(images, single);
+        self.read.push(PathBuf::from(&stored.file));
         self.files.push(File { name: format!("{INPUTS}/{name}.npy"), bytes });
         self.places.push((pointer, hash));
         for warning in &stored.content.warnings {

@@ -11,6 +11,7 @@ use crate::output;
 use crate::words::quoted;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
+use std::fs;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
@@ -54,17 +55,40 @@ pub struct Loaded {
     pub inputs: Vec<output::disk::File>,
     /// What the user should know of these files.
     pub warnings: Vec<String>,
+    /// The config's file as the system knows it; nothing if it came from standard input.
+    pub source: Option<PathBuf>,
+    /// All files that it was made from, as the system knows them.
+    pub made_from: Vec<PathBuf>,
 }
 
-/// Reads a config, changed by `sets` (`KEY.PATH=JSON`), and the material it names.
+/// What stands on a command line for a config from standard input, and what that is called.
+const STDIN: [&str; 2] = ["-", "stdin"];
+
+/// Reads a config, changed by `sets` (`KEY.PATH=JSON`), and the material it names. The path `-` stands for standard input; a
+/// config from there names files from the working directory on.
 pub fn load(path: &Path, sets: &[String]) -> Result<Loaded> {
-    let text = apply_set(&path.display().to_string(), &read(path)?, sets)?;
-    load_text(path, text)
+    let file = shown(path);
+    let text = apply_set(&file.display().to_string(), &read(path)?, sets)?;
+    from_text(file, text, known_file(path))
+}
+
+fn is_stdin(path: &Path) -> bool {
+    path == Path::new(STDIN[0])
+}
+
+/// What messages call a config.
+fn shown(path: &Path) -> &Path {
+    if is_stdin(path) { Path::new(STDIN[1]) } else { path }
+}
+
+/// A file as the system knows it.
+fn known_file(path: &Path) -> Option<PathBuf> {
+    if is_stdin(path) { None } else { fs::canonicalize(path).ok() }
 }
 
 /// Reads a config whose states alone are wanted; whether it has a `final` one, which it need not.
 pub fn load_states(path: &Path, sets: &[String]) -> Result<(Loaded, bool)> {
-    let file = path.display().to_string();
+    let file = shown(path).display().to_string();
     let mut text = apply_set(&file, &read(path)?, sets)?;
     let value: Value = parse(&file, &text)?;
     let given = !value.is_object() || value.get("final").is_some();
@@ -72,11 +96,15 @@ pub fn load_states(path: &Path, sets: &[String]) -> Result<(Loaded, bool)> {
         // it stands at the end and moves nothing else
         text = apply_set(&file, &text, &[r#"final={"uniform": {"direction": [0, 0, 1]}}"#.into()])?;
     }
-    Ok((load_text(path, text)?, given))
+    Ok((from_text(shown(path), text, known_file(path))?, given))
 }
 
 /// A config's text as if it were read from `path`, and what it names.
 pub fn load_text(path: &Path, text: String) -> Result<Loaded> {
+    from_text(path, text, known_file(path))
+}
+
+fn from_text(path: &Path, text: String, source: Option<PathBuf>) -> Result<Loaded> {
     let file = path.display().to_string();
     let mut config: Config = parse(&file, &text)?;
     let text = Text { file, text };
@@ -95,19 +123,31 @@ pub fn load_text(path: &Path, text: String) -> Result<Loaded> {
     let inputs = Inputs::read(&mut config, path.parent().unwrap_or(Path::new(""))).map_err(|e| text.locate(e))?;
     let as_run = as_run(&text, material_text.as_ref(), &name, &inputs)?;
     let sha256 = Sha256::digest(as_run.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect();
+    let own = material_text.iter().map(|text| Path::new(&text.file)).chain(inputs.read.iter().map(PathBuf::as_path));
+    let made_from = source.iter().cloned().chain(own.filter_map(known_file)).collect();
     let Inputs { files: inputs, warnings, .. } = inputs;
-    Ok(Loaded { text, config, name, material, material_text, as_run, sha256, inputs, warnings })
+    let loaded =
+        Loaded { text, config, name, material, material_text, as_run, sha256, inputs, warnings, source, made_from };
+    Ok(loaded)
 }
 
 /// The text of a file, for messages named as it was given.
 pub(super) fn read(path: &Path) -> Result<String> {
-    let bytes = bytes(path).map_err(|source| Error::Io { path: path.into(), source })?;
-    decode(&path.display().to_string(), bytes)
+    let bytes = match is_stdin(path) {
+        true => whole(io::stdin()),
+        false => bytes(path),
+    };
+    let bytes = bytes.map_err(|source| Error::Io { path: shown(path).into(), source })?;
+    decode(&shown(path).display().to_string(), bytes)
 }
 
 fn bytes(path: &Path) -> io::Result<Vec<u8>> {
+    whole(open_file(path)?)
+}
+
+fn whole(source: impl Read) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    open_file(path)?.take(LONGEST + 1).read_to_end(&mut bytes)?;
+    source.take(LONGEST + 1).read_to_end(&mut bytes)?;
     match bytes.len() as u64 > LONGEST {
         true => {
             Err(io::Error::new(io::ErrorKind::FileTooLarge, "the file is larger than 1 GiB, too large for a config"))

@@ -133,8 +133,42 @@ impl Checkpoint {
         directory.join(FOLDER).exists()
     }
 
+    /// Makes sure that what has the name of a checkpoint in the folder of a result is one, if perhaps a damaged one, or nothing; with
+    /// `force` any files of the names of its own will do.
+    pub fn check(directory: &Path, force: bool) -> Result<()> {
+        let folder = directory.join(FOLDER);
+        let in_the_way = |path: &Path| Err(disk::refused(path, "is in the way of a checkpoint: take it away"));
+        match disk::kind(&folder)? {
+            disk::Kind::Nothing => return Ok(()),
+            disk::Kind::Folder => {}
+            _ => return in_the_way(&folder),
+        }
+        let mut files = Vec::new();
+        for path in [JOURNAL, SNAPSHOT, PREVIOUS].map(|name| folder.join(name)) {
+            match disk::kind(&path)? {
+                disk::Kind::Nothing => {}
+                disk::Kind::File => files.push(path),
+                _ => return in_the_way(&path),
+            }
+        }
+        let mut own = files.is_empty() || force;
+        for path in &files {
+            // a power cut leaves empty files
+            own |= frame::is_begun(path).map_err(|source| Error::Io { path: path.clone(), source })?;
+        }
+        match (own, files.first()) {
+            (false, Some(first)) => {
+                let words = "is there and is no checkpoint: take it away, use --force to replace it, or give another \
+                             directory with --out";
+                Err(disk::refused(first, words))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Takes a checkpoint away, if there is one.
     pub fn discard(directory: &Path) -> Result<()> {
+        Checkpoint::check(directory, false)?;
         let folder = directory.join(FOLDER);
         for name in [SNAPSHOT, PREVIOUS, JOURNAL] {
             disk::remove(&folder.join(name))?;

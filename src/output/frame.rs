@@ -6,7 +6,9 @@
 //! ```
 
 use crc32fast::Hasher;
+use std::fs::File;
 use std::io::{self, ErrorKind, Read, Write};
+use std::path::Path;
 
 /// How every file begins; the number is that of the format.
 const MAGIC: &[u8] = b"spinneb checkpoint 1\n";
@@ -16,6 +18,13 @@ pub const HEAD: u64 = 12;
 /// Begins a file.
 pub fn begin(out: &mut impl Write) -> io::Result<()> {
     out.write_all(MAGIC)
+}
+
+/// Whether a file begins as such a file does, or is empty.
+pub fn is_begun(path: &Path) -> io::Result<bool> {
+    let mut start = Vec::new();
+    File::open(path)?.take(MAGIC.len() as u64).read_to_end(&mut start)?;
+    Ok(start.is_empty() || start == MAGIC)
 }
 
 /// Writes one frame.

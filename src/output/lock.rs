@@ -1,5 +1,6 @@
 //! One run at a time in a folder: a lock that the system takes away when the process ends, however it ends.
 
+use super::disk;
 use crate::error::{Error, Result};
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, ErrorKind, Read, Seek, Write};
@@ -23,6 +24,9 @@ impl Lock {
     pub fn of(directory: &Path) -> Result<Lock> {
         let path = directory.join(NAME);
         let io_error = |source| Error::Io { path: path.clone(), source };
+        if !matches!(disk::kind(&path)?, disk::Kind::Nothing | disk::Kind::File) {
+            return Err(disk::refused(&path, "is a symbolic link, a folder or a device, and no lock: take it away"));
+        }
         for _ in 0..TRIES {
             let mut options = OpenOptions::new();
             let file = options.read(true).write(true).create(true).truncate(false).open(&path).map_err(io_error)?;
@@ -75,7 +79,7 @@ fn is_still(file: &File, path: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
     let place = |m: io::Result<fs::Metadata>| m.ok().map(|m| (m.dev(), m.ino()));
     let open = place(file.metadata());
-    open.is_some() && open == place(fs::metadata(path))
+    open.is_some() && open == place(fs::symlink_metadata(path))
 }
 
 /// An open file keeps its name.
@@ -110,6 +114,22 @@ mod tests {
         // a file that a killed run left is no lock
         fs::write(folder.path().join(NAME), "process 1").unwrap();
         Lock::of(folder.path()).unwrap();
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn a_lock_that_is_a_link_is_refused_and_what_it_leads_to_stays_as_it_is() {
+        let folder = tempfile::tempdir().unwrap();
+        let [precious, nothing] = ["precious", "nothing"].map(|name| folder.path().join(name));
+        fs::write(&precious, "work of years").unwrap();
+        for target in [&precious, &nothing] {
+            std::os::unix::fs::symlink(target, folder.path().join(NAME)).unwrap();
+            let Err(Error::Io { source, .. }) = Lock::of(folder.path()) else { panic!("locked through a link") };
+            assert_eq!(source.kind(), ErrorKind::AlreadyExists);
+            fs::remove_file(folder.path().join(NAME)).unwrap();
+        }
+        assert_eq!(fs::read_to_string(&precious).unwrap(), "work of years");
+        assert!(!nothing.exists());
     }
 
     #[test]

@@ -1,5 +1,5 @@
 //! What is written: each format is a pure function of the outcome, from [`RunReport`] to bytes; only [`disk`] touches the disk,
-//! with the [`Checkpoint`] and the [`Lock`] of a run at work.
+//! with the [`folder`] of a result and the [`Checkpoint`] and the [`Lock`] of a run at work.
 //!
 //! Energies are in meV, angles and path lengths in rad, and every outer name carries its unit. The same outcome gives the same
 //! bytes: there are no time stamps.
@@ -14,10 +14,12 @@ mod csv;
 pub mod disk;
 mod energy_path_plot;
 mod energy_terms_plot;
+pub mod folder;
 mod font;
 mod frame;
 mod lock;
 mod magnetisation_plot;
+mod manifest;
 mod partial;
 mod plot;
 mod plot_data;
@@ -40,7 +42,8 @@ pub use energy_path_plot::{EnergyPath, EnergyPathPlot, draw_energy_paths};
 pub use energy_terms_plot::EnergyTermsPlot;
 pub use lock::Lock;
 pub use magnetisation_plot::MagnetisationPlot;
-pub use partial::{StoppedRun, discard_partial, is_partial_left, partial_files};
+pub use manifest::Manifest;
+pub use partial::{StoppedRun, discard_partial, is_partial_left, partial_files, write_partial};
 pub use plot::{PLOTS, Plot, PlotFile, PlotTable, WriteTable, describe};
 pub use plot_data::{Lifetimes, PlotData, RateRow};
 pub use rates_csv::RatesCsv;
@@ -257,9 +260,10 @@ pub fn render_files(run: &RunReport, wanted: impl Fn(&Kind) -> bool) -> Result<V
     Ok(files.concat())
 }
 
-/// Names of all files that a result can have; a name that ends in `/` is a folder of them.
-pub fn known_files() -> Vec<String> {
-    let formats: Vec<Box<dyn Format>> = KINDS.iter().flat_map(|kind| (kind.formats)()).collect();
+/// Names of all files that a result of these kinds can have; a name that ends in `/` is a folder of them.
+pub fn file_names(wanted: impl Fn(&Kind) -> bool) -> Vec<String> {
+    let kinds = KINDS.iter().filter(|kind| wanted(kind));
+    let formats: Vec<Box<dyn Format>> = kinds.flat_map(|kind| (kind.formats)()).collect();
     let folders = formats.iter().filter_map(|format| format.folder()).map(|folder| format!("{folder}/"));
     formats.iter().map(|format| format.file_name()).chain(folders).collect()
 }

@@ -1,13 +1,16 @@
 //! What a run that was stopped leaves to look at: files whose names say that they are no result.
 
 use super::disk::{self, File};
+use super::manifest::{Owned, There, hash};
 use super::{Format, HistoryCsv, PathCsv, PathNpz, RunReport};
 use crate::error::{Error, Result};
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 use std::path::Path;
 
 /// How their names begin.
 const PARTIAL: &str = "partial";
+/// The file that tells of the others.
+const MARK: &str = "partial.json";
 
 /// Who was stopped, and where.
 #[derive(Clone, Copy, Debug)]
@@ -32,6 +35,7 @@ pub fn partial_files(run: &StoppedRun, band: Option<&RunReport>) -> Result<Vec<F
             files.push(File { name: name(format.as_ref()), bytes: format.render(report)? });
         }
     }
+    let hashes: Map<String, Value> = files.iter().map(|f| (f.name.clone(), hash(&f.name, &f.bytes).into())).collect();
     let last = band.and_then(|report| report.outcome.history.last());
     let number = |x: Option<f64>| x.filter(|x| x.is_finite()).map_or(Value::Null, |x| json!(x));
     let summary = json!({
@@ -47,22 +51,56 @@ pub fn partial_files(run: &StoppedRun, band: Option<&RunReport>) -> Result<Vec<F
         "images": last.map(|row| row.images),
         "highest_image_above_initial_meV": number(last.map(|row| row.highest_image_mev)),
         "largest_predicted_rotation_rad": number(last.map(|row| row.largest_predicted_rotation_rad)),
+        "manifest": {"files": hashes},
     });
     let mut bytes = serde_json::to_vec_pretty(&summary).map_err(|e| Error::Numerical(e.to_string()))?;
     bytes.push(b'\n');
-    files.push(File { name: format!("{PARTIAL}.json"), bytes });
+    // the first to be written and the last to go: whatever else is there, it has its hash
+    files.insert(0, File { name: MARK.into(), bytes });
     Ok(files)
 }
 
 /// Whether some of them are there; `partial.json` is taken away last.
 pub fn is_partial_left(directory: &Path) -> bool {
-    directory.join(format!("{PARTIAL}.json")).exists()
+    directory.join(MARK).exists()
 }
 
-/// Takes them away.
+/// Takes them away, if they are as they were written.
 pub fn discard_partial(directory: &Path) -> Result<()> {
-    let names = formats().into_iter().map(|format| name(format.as_ref()));
-    names.chain([format!("{PARTIAL}.json")]).try_for_each(|name| disk::remove(&directory.join(name)))
+    let mark = directory.join(MARK);
+    let Some(owned) = owned(directory)? else { return Ok(()) };
+    for name in owned.files.keys() {
+        if owned.look(directory, name)? == There::Own {
+            disk::remove(&directory.join(name))?;
+        }
+    }
+    disk::remove(&mark)
+}
+
+/// Writes them; an error where files of others have their names.
+pub fn write_partial(directory: &Path, files: &[File]) -> Result<()> {
+    discard_partial(directory)?;
+    disk::replace(directory, files, |_, _| false, false)
+}
+
+/// The tables that `partial.json` names, with their hashes; nothing where there is no such file of a run.
+fn owned(directory: &Path) -> Result<Option<Owned>> {
+    let path = directory.join(MARK);
+    if disk::kind(&path)? != disk::Kind::File {
+        return Ok(None);
+    }
+    let value: Value = serde_json::from_slice(&disk::read(&path)?).unwrap_or_default();
+    if value["partial"] != true {
+        return Ok(None);
+    }
+    let mut owned = Owned::default();
+    for format in formats() {
+        let name = name(format.as_ref());
+        if let Some(hash) = value["manifest"]["files"][&name].as_str() {
+            owned.add([(name.as_str(), hash)]);
+        }
+    }
+    Ok(Some(owned))
 }
 
 fn formats() -> Vec<Box<dyn Format>> {

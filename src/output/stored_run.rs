@@ -4,7 +4,8 @@
 //! `history.csv`, or a file of spins, some figures cannot be drawn, and `notes` say so. A file that is there must be whole.
 
 use super::columns::{Columns, WAY_OUT};
-use super::disk::MARK;
+use super::disk::{self, MARK};
+use super::folder::stored_result;
 use super::plot_data::above_first;
 use super::{EnergyPath, Lifetimes, PlotData, RateRow};
 use crate::drive::{Barrier, HistoryRow};
@@ -14,12 +15,13 @@ use crate::path::Path as SpinPath;
 use crate::rates::Way;
 use crate::spins::Spins;
 use serde::Deserialize;
-use std::fs;
-use std::io::ErrorKind;
 use std::path::Path;
 
 /// Files of spins, best first.
 const SPINS: [&str; 4] = ["path.npz", "path.ovf", "path_text.ovf", "spins.csv"];
+
+/// How names of figures end.
+const PICTURES: [&str; 2] = [".svg", ".png"];
 
 /// A result as its files tell.
 #[derive(Clone, Debug)]
@@ -84,6 +86,8 @@ impl StoredRun {
     pub fn read(dir: &Path, spins_wanted: bool) -> Result<StoredRun> {
         let mut notes = Vec::new();
         let summary = summary(dir)?;
+        // a figure that somebody changed is not read
+        stored_result(dir, |name| !PICTURES.iter().any(|ending| name.ends_with(ending)))?;
         let images = summary.path.images;
         let table = path_table(dir)?;
         agree(&table.0, table.1.rows(), images)?;
@@ -163,7 +167,7 @@ fn summary(dir: &Path) -> Result<Summary> {
             format!("holds no finished result: there is no {MARK}. Run its config first: spinneb run CONFIG.json");
         return Err(Error::invalid(place, message));
     };
-    serde_json::from_str(&text).map_err(|e| Error::invalid(shown(dir, MARK), format!("{e}: {WAY_OUT}")))
+    serde_json::from_str(&text).map_err(|e| Error::invalid(shown(dir, MARK), format!("is damaged: {e}: {WAY_OUT}")))
 }
 
 /// The table of the images, with the file it is from.
@@ -258,10 +262,5 @@ fn text(dir: &Path, name: &str) -> Result<Option<String>> {
 }
 
 fn bytes(dir: &Path, name: &str) -> Result<Option<Vec<u8>>> {
-    let path = dir.join(name);
-    match fs::read(&path) {
-        Ok(bytes) => Ok(Some(bytes)),
-        Err(e) if e.kind() == ErrorKind::NotFound => Ok(None),
-        Err(source) => Err(Error::Io { path, source }),
-    }
+    disk::read_if_there(&dir.join(name))
 }

@@ -186,6 +186,7 @@ impl Sweep {
     pub fn index(&self, hashes: Vec<String>) -> SweepIndex {
         let key = |k: &SweptKey| IndexedKey { key: k.key.clone(), label: k.label.clone(), log: k.log };
         SweepIndex {
+            collected: Default::default(),
             name: self.name.clone(),
             keys: self.keys.iter().map(key).collect(),
             points: hashes.into_iter().enumerate().map(|(k, hash)| self.indexed(k, hash)).collect(),

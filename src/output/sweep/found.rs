@@ -2,11 +2,10 @@
 
 use super::SweepIndex;
 use crate::drive::Barrier;
-use crate::error::{Error, Result};
-use crate::output::disk::MARK;
+use crate::error::Result;
+use crate::output::disk::{self, MARK};
+use crate::output::folder::stored_result;
 use serde::Deserialize;
-use std::fs;
-use std::io::ErrorKind;
 use std::path::Path;
 
 /// What is there for a point of a sweep.
@@ -16,6 +15,8 @@ pub enum PointState {
     Missing,
     /// A result of another config.
     Other,
+    /// A result whose files are not as they were written.
+    Damaged,
     /// Its result.
     Found(Found),
 }
@@ -26,6 +27,7 @@ impl PointState {
         match self {
             PointState::Missing => "missing",
             PointState::Other => "another result",
+            PointState::Damaged => "damaged",
             PointState::Found(found) if found.is_proven() => "certified",
             PointState::Found(_) => "not certified",
         }
@@ -113,22 +115,16 @@ struct Rate {
     langer_prefactor_Hz: Option<f64>,
 }
 
-/// Looks into the folder of a point.
+/// Looks into the folder of a point; a damaged result is an error.
 pub fn look(dir: &Path, index: &SweepIndex, point: usize) -> Result<PointState> {
     let point = &index.points[point];
-    let path = dir.join(&point.directory).join(MARK);
-    let bytes = match fs::read(&path) {
-        Ok(bytes) => bytes,
-        Err(e) if matches!(e.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => return Ok(PointState::Missing),
-        Err(source) => return Err(Error::Io { path, source }),
-    };
-    let summary: Summary = match serde_json::from_slice(&bytes) {
-        Ok(summary) => summary,
-        Err(e) => {
-            let source = std::io::Error::other(format!("is there but is not a result ({e})"));
-            return Err(Error::Io { path, source });
-        }
-    };
+    let dir = dir.join(&point.directory);
+    if stored_result(&dir, |_| true)?.is_none() {
+        return Ok(PointState::Missing);
+    }
+    let path = dir.join(MARK);
+    let summary: Summary = serde_json::from_slice(&disk::read(&path)?)
+        .map_err(|e| disk::refused(&dir, format!("the result here is damaged: {MARK} is not a whole result ({e})")))?;
     Ok(match summary.config_sha256 == point.config_sha256 {
         true => PointState::Found(found(summary)),
         false => PointState::Other,

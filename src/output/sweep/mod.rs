@@ -10,16 +10,19 @@ pub use plot::draw_sweep;
 pub use table::sweep_table;
 
 use super::disk;
+use super::manifest::{Owned, There, hash};
 use crate::error::{Error, Result};
 use crate::units::AnyQuantity;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use std::fs;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 use std::path::Path;
 
 /// The file that says what is where.
 pub const POINTS: &str = "points.json";
+/// What is collected.
+const COLLECTED: [&str; 3] = ["barriers.csv", "barriers.svg", "barriers.png"];
 
 /// The points of a sweep, as the folder of their results keeps them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -30,6 +33,9 @@ pub struct SweepIndex {
     pub keys: Vec<IndexedKey>,
     /// The points in order, from 0.
     pub points: Vec<IndexedPoint>,
+    /// Hashes of the table and the figures that were collected: they alone are replaced when that is done again.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub collected: BTreeMap<String, BTreeSet<String>>,
 }
 
 /// A swept key.
@@ -59,11 +65,7 @@ impl SweepIndex {
     pub fn read(dir: &Path) -> Result<Option<SweepIndex>> {
         let path = dir.join(POINTS);
         let wrong = |source| Error::Io { path: path.clone(), source };
-        let bytes = match fs::read(&path) {
-            Ok(bytes) => bytes,
-            Err(e) if matches!(e.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) => return Ok(None),
-            Err(e) => return Err(wrong(e)),
-        };
+        let Some(bytes) = disk::read_if_there(&path)? else { return Ok(None) };
         let index: SweepIndex = serde_json::from_slice(&bytes)
             .map_err(|e| wrong(io::Error::other(format!("this is not what `sweep` writes: {e}"))))?;
         match index.points.iter().position(|p| p.values.len() != index.keys.len()) {
@@ -72,14 +74,63 @@ impl SweepIndex {
         }
     }
 
-    /// Writes `points.json`, unless it is there as it should be.
+    /// Writes `points.json`, unless it is there as it should be. What else has its name is an error.
     pub fn write(&self, dir: &Path) -> Result<()> {
+        let there = SweepIndex::read(dir)?;
+        let collected = there.as_ref().map(|there| there.collected.clone()).unwrap_or_default();
+        let new = SweepIndex { collected, ..self.clone() };
+        if there.as_ref() == Some(&new) { Ok(()) } else { new.put(dir) }
+    }
+
+    fn put(&self, dir: &Path) -> Result<()> {
         let text = format!("{:#}\n", serde_json::to_value(self).map_err(|e| Error::Numerical(e.to_string()))?);
-        let path = dir.join(POINTS);
-        match fs::read(&path) {
-            Ok(bytes) if bytes == text.as_bytes() => Ok(()),
-            _ => disk::write_file(&path, text.as_bytes()),
+        disk::write_file(&dir.join(POINTS), text.as_bytes())
+    }
+
+    /// Makes sure that the table and the figures of a sweep may be written: nothing has their names but what was collected before.
+    pub fn is_free(dir: &Path, force: bool) -> Result<()> {
+        let owned = SweepIndex::owned(dir)?;
+        for name in COLLECTED {
+            match owned.look(dir, name)? {
+                There::Nothing | There::Own => {}
+                There::Foreign if force => {}
+                There::Foreign => {
+                    let words = "is there and was not collected here, or was changed since: take it away or rename it";
+                    return Err(disk::refused(&dir.join(name), words));
+                }
+                There::InTheWay(words) => return Err(disk::refused(&dir.join(name), format!("{words}: take it away"))),
+            }
         }
+        Ok(())
+    }
+
+    /// Writes the table and the figures of the sweep in the place of earlier ones.
+    pub fn collect(&self, dir: &Path, files: &[disk::File], force: bool) -> Result<()> {
+        SweepIndex::is_free(dir, force)?;
+        let old = SweepIndex::owned(dir)?;
+        let hashes: Vec<String> = files.iter().map(|file| hash(&file.name, &file.bytes)).collect();
+        let new = || files.iter().zip(&hashes).map(|(file, hash)| (file.name.as_str(), hash.as_str()));
+        // until all of them are there, the older ones are known too
+        let mut all = old.clone();
+        all.add(new());
+        SweepIndex { collected: all.files, ..self.clone() }.put(dir)?;
+        for name in old.files.keys().filter(|name| new().all(|(new, _)| new != name.as_str())) {
+            if old.look(dir, name)? == There::Own {
+                disk::remove(&dir.join(name))?;
+            }
+        }
+        disk::replace(dir, files, |_, _| true, false)?;
+        let mut all = Owned::default();
+        all.add(new());
+        SweepIndex { collected: all.files, ..self.clone() }.put(dir)
+    }
+
+    fn owned(dir: &Path) -> Result<Owned> {
+        let mut owned = Owned::default();
+        if let Some(index) = SweepIndex::read(dir)? {
+            owned.files = index.collected.into_iter().filter(|(name, _)| COLLECTED.contains(&name.as_str())).collect();
+        }
+        Ok(owned)
     }
 
     /// A swept key with its values as numbers, where they are numbers.
