@@ -78,6 +78,7 @@ fn outcome(path: Path, length: f64, energy: impl Fn(f64) -> f64) -> Outcome {
             above_initial_mev: above,
         },
         path,
+        profile_terms_mev: vec![("exchange".into(), profile.iter().map(|p| p.above_initial_mev).collect())],
         profile,
         history: Vec::new(),
         work: Work { iterations: 10, force_evaluations: 200, seconds: 0.5, threads: 2 },
@@ -146,6 +147,7 @@ fn tiny() -> Outcome {
         ProfilePoint { reaction_coordinate_rad: 0.0, above_initial_mev: 0.0 },
         ProfilePoint { reaction_coordinate_rad: 1.0, above_initial_mev: 0.5 },
     ];
+    o.profile_terms_mev = vec![("exchange".into(), vec![0.0; 2]), ("easy axis".into(), vec![0.0, 0.5])];
     o.history = vec![HistoryRow {
         iteration: 1,
         images: 3,
@@ -179,7 +181,8 @@ fn tables_are_exactly_so() {
     );
     assert_eq!(
         text(&ProfileCsv, &o),
-        "reaction_coordinate_rad,energy_meV,energy_above_initial_meV\n0.0,-0.25,0.0\n1.0,0.25,0.5\n"
+        "reaction_coordinate_rad,energy_meV,energy_above_initial_meV,exchange_above_initial_meV,easy_axis_above_initial_meV\n\
+         0.0,-0.25,0.0,0.0,0.0\n1.0,0.25,0.5,0.0,0.5\n"
     );
     assert_eq!(
         text(&HistoryCsv, &o),
@@ -213,6 +216,7 @@ fn the_summary_is_exactly_so() {
     "forward": 5.802259060872792,
     "backward": 8.703388591309189
   },
+  "barrier_uncertainty_meV": 4.650000000000001e-16,
   "saddles": [
     {
       "energy_meV": 0.25,
@@ -419,6 +423,39 @@ fn figures_of_all_outcomes_are_drawn() {
 /// No NaN or inf outside the pixels of an embedded image.
 fn numbers_are_finite(svg: &str) -> bool {
     svg.lines().filter(|line| !line.starts_with("<image")).all(|line| !line.contains("NaN") && !line.contains("inf"))
+}
+
+#[test]
+fn every_figure_of_an_uncertified_path_and_the_head_of_its_page_say_so_without_digits_that_nobody_knows() {
+    let certified = figures().into_iter().find(|(name, _)| *name == "tilted").unwrap().1;
+    let mut open = certified.clone();
+    open.certified = false;
+    open.saddles.iter_mut().for_each(|s| s.max_torque_mev = None);
+    // 6.298 meV of which a hundredth is unknown
+    open.images.above_initial_mev.iter_mut().for_each(|e| *e -= 0.01);
+    for plot in PLOTS.iter().copied().filter(|plot| plot.name() != "arrhenius") {
+        let svg = |o: &Outcome| text(&PlotFile { plot, picture: Picture::Svg }, o);
+        assert!(svg(&open).contains("not certified"), "{}", plot.name());
+        assert!(!svg(&certified).contains("certified"), "{}", plot.name());
+    }
+    let svg = text(&PlotFile { plot: &EnergyPathPlot, picture: Picture::Svg }, &open);
+    let forward = open.barrier.unwrap().forward_mev;
+    let known = format!("≈ {forward:.1} meV");
+    assert!(svg.contains(&known) && !svg.contains(&format!("{forward:.2}")), "{svg}");
+    let told = page(&open, "{}").0["barrier_told"]["forward"][0].clone();
+    assert_eq!(told, known.as_str());
+    assert_eq!(page(&certified, "{}").0["barrier_told"], serde_json::Value::Null);
+}
+
+#[test]
+fn an_end_that_relaxed_far_is_told_in_figures_and_at_the_head_of_the_page() {
+    let mut o = figures().into_iter().find(|(name, _)| *name == "wall").unwrap().1;
+    let svg = |o: &Outcome| text(&PlotFile { plot: &EnergyPathPlot, picture: Picture::Svg }, o);
+    assert!(!svg(&o).contains("relaxed far"));
+    o.final_state.moved_rad = Some(2.7);
+    assert!(svg(&o).contains("the final state relaxed far from where it was put"));
+    let moved = page(&o, "{}").0["moved"].clone();
+    assert_eq!(moved, serde_json::json!(["the final state relaxed far from where it was put (a spin turned by 155°)"]));
 }
 
 #[test]

@@ -174,6 +174,15 @@ fn the_numbers_of_the_figures_are_those_of_the_stored_tables() {
     for (s, e) in sum.iter().zip(column(&path, "energy_above_initial_meV")) {
         assert!((s - e).abs() < 1e-12, "{s} {e}");
     }
+    // between the images too the terms add up to the whole
+    let profile = columns(&text(&a, "profile.csv"));
+    let whole = column(&profile, "energy_above_initial_meV");
+    let terms = ["exchange", "anisotropy"].map(|term| column(&profile, &format!("{term}_above_initial_meV")));
+    for (k, e) in whole.iter().enumerate() {
+        assert!((terms[0][k] + terms[1][k] - e).abs() < 1e-12, "{k}: {} + {} = {e}", terms[0][k], terms[1][k]);
+    }
+    let bent = |term: &[f64]| term.windows(3).filter(|e| (e[0] - 2.0 * e[1] + e[2]).abs() > 1e-9).count();
+    assert!(terms.iter().any(|term| bent(term) > term.len() / 2), "straight lines between images");
     let mean = columns(&text(&a, "magnetisation.csv"));
     assert_eq!(column(&mean, "reaction_coordinate_rad"), column(&path, "reaction_coordinate_rad"));
     let along = column(&mean, "shown_along_axis");
@@ -211,6 +220,12 @@ fn several_results_are_laid_over_each_other_with_their_barriers() {
     assert_eq!(spinneb(here, &["plot", "a", "c", "--out", "same.svg", "-q"]).0, Some(0));
     let svg = text(here, "same.svg");
     assert!(svg.contains("a: 2.000 meV") && svg.contains("c: 2.000 meV"));
+    // and their curves take turns
+    for colour in ["#0072B2", "#D55E00"] {
+        let stroke = format!("stroke=\"{colour}\"");
+        let pieces: usize = svg.lines().filter(|l| l.contains(&stroke)).map(|l| l.matches('M').count()).sum();
+        assert!(pieces > 10, "{colour}: {pieces} pieces");
+    }
 }
 
 #[test]

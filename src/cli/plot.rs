@@ -9,7 +9,7 @@ use spinneb::output::canvas::{Look, Style, description};
 use spinneb::output::disk::File;
 use spinneb::output::folder;
 use spinneb::output::{
-    EnergyPath, PLOTS, Picture, PlotData, PlotFile, PlotTable, StoredRun, describe, draw_energy_paths,
+    EnergyPath, PLOTS, Picture, Places, PlotData, PlotFile, PlotTable, StoredRun, describe, draw_energy_paths,
 };
 use spinneb::units::Length;
 use std::path::{Path, PathBuf};
@@ -144,6 +144,7 @@ fn look_of(arguments: &Plot, dir: &Path, stored: &mut StoredRun) -> Result<Look>
             format!("has {} sites, but the stored spins {sites}: the files are not of one result", chain.sites);
         return Err(Error::invalid(shown, message).into());
     }
+    stored.places = Places::of(chain);
     stored.vacant = chain.is_vacant().map_err(|e| config.text.locate(e.within("lattice.chain")))?;
     let output = &config.config.output;
     let width = arguments.width.or_else(|| output.look().ok().filter(|_| output.width.is_some()).map(|l| l.width_mm()));

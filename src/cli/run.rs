@@ -11,8 +11,8 @@ use spinneb::error::Error;
 use spinneb::output::disk::{self, File};
 use spinneb::output::folder::{self, Destination, Intent, NewResult};
 use spinneb::output::{
-    Checkpoint, Group, INPUTS, Kind, Lock, StoppedRun, discard_partial, file_names, is_partial_left, partial_files,
-    render_files, write_partial,
+    Certainty, Checkpoint, Group, INPUTS, Kind, Lock, StoppedRun, discard_partial, file_names, is_partial_left,
+    partial_files, render_files, write_partial,
 };
 use std::collections::HashMap;
 use std::io::{self, Write};
@@ -363,13 +363,11 @@ fn print(arguments: &Run, name: &str, directory: &Path) -> Result<u8> {
 
 /// A result in a line: barrier, certificate, why it ended.
 fn in_words(summary: &Value) -> String {
-    let barrier = &summary["barrier_meV"];
-    let barrier = match (barrier["forward"].as_f64(), barrier["backward"].as_f64()) {
-        (Some(forward), Some(backward)) => format!("barrier {forward:.6} meV forward, {backward:.6} meV backward"),
-        _ => "no barrier".into(),
-    };
-    let proof = if summary["certified"] == true { "certified" } else { "not certified" };
-    format!("{barrier}, {proof}; {}", summary["stop_reason"].as_str().unwrap_or("no reason is given"))
+    let mev = |way: &str| summary["barrier_meV"][way].as_f64();
+    let both = mev("forward").zip(mev("backward"));
+    let barrier = both.map(|(forward_mev, backward_mev)| drive::Barrier { forward_mev, backward_mev });
+    let barrier = Certainty::of_summary(summary).barrier_words(barrier);
+    format!("{barrier}; {}", summary["stop_reason"].as_str().unwrap_or("no reason is given"))
 }
 
 fn json_line(summary: &Value, name: &str, directory: &Path, code: u8) -> Value {

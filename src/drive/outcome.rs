@@ -39,6 +39,8 @@ pub struct Outcome {
     pub images: ImageTable,
     /// The interpolated energy path.
     pub profile: Vec<ProfilePoint>,
+    /// Energy of each term above that of the initial image, at the points of `profile` (meV).
+    pub profile_terms_mev: Vec<(String, Vec<f64>)>,
     /// One row a band iteration.
     pub history: Vec<HistoryRow>,
     /// Sum over saddles, ends, all: what it cost.

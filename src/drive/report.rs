@@ -8,7 +8,7 @@ use super::outcome::*;
 use super::rates::{self, Known};
 use super::relaxation::{height, prominent_maxima};
 use super::{Partial, Problem, StopCode};
-use crate::band::{Band, Extremum};
+use crate::band::{Band, Extremum, Profile};
 use crate::energy::Hamiltonian;
 use crate::linalg::slab;
 use crate::path::Path;
@@ -88,7 +88,8 @@ pub fn outcome(
     warnings.extend(doubts.into_iter().map(|d| format!("not certified: {d}")));
     warnings.extend(flat_warnings(&proof.ends, &proof.links));
     warnings.extend(rates.as_ref().map(rates::warnings).unwrap_or_default());
-    let (images, profile) = (image_table(h, band), profile(band));
+    let images = image_table(h, band);
+    let (profile, profile_terms_mev) = (profile(band), profile_terms(&band.profile(), &images));
     let minima = if proof.links.len() > 1 { link_minima(band, &proof.links) } else { band_minima(h, band) };
     let work = run.work(band.evaluations());
     let [initial, final_state] = run.end_points(&proof.ends);
@@ -106,6 +107,7 @@ pub fn outcome(
         rejected_paths,
         images,
         profile,
+        profile_terms_mev,
         work,
         max_perpendicular_torque_mev: band.max_perpendicular_mev(),
         largest_predicted_rotation_rad: c.history.last().map_or(0.0, |r| r.largest_predicted_rotation_rad),
@@ -230,6 +232,7 @@ pub fn same_minimum(run: Summary) -> Outcome {
         rejected_paths: Vec::new(),
         images: image_table(h, &band),
         profile: Vec::new(),
+        profile_terms_mev: Vec::new(),
         history: Vec::new(),
         work,
         max_perpendicular_torque_mev: 0.0,
@@ -243,6 +246,7 @@ pub fn partial(problem: &Problem, partial: &Partial, why: &str) -> Outcome {
     let h = &problem.hamiltonian;
     let mut band = Band::new(h, partial.path.clone());
     band.evaluate();
+    let images = image_table(h, &band);
     let end = |k: usize| EndPoint {
         energy_mev: h.energy_mev(band.path().image(k)),
         max_torque_mev: torque(&band, k),
@@ -263,7 +267,8 @@ pub fn partial(problem: &Problem, partial: &Partial, why: &str) -> Outcome {
         intermediate_minima: Vec::new(),
         rates: None,
         rejected_paths: Vec::new(),
-        images: image_table(h, &band),
+        profile_terms_mev: profile_terms(&band.profile(), &images),
+        images,
         profile: profile(&band),
         work: Work { iterations: partial.history.len(), threads: rayon::current_num_threads(), ..Work::default() },
         max_perpendicular_torque_mev: band.max_perpendicular_mev(),
@@ -435,4 +440,53 @@ fn image_table(h: &Hamiltonian, band: &Band) -> ImageTable {
 fn profile(band: &Band) -> Vec<ProfilePoint> {
     let point = |(s, e)| ProfilePoint { reaction_coordinate_rad: s, above_initial_mev: e };
     band.profile().samples(PROFILE).into_iter().map(point).collect()
+}
+
+/// The interpolated energy of each term: cubic pieces as the total's, which they add up to. A term's slope is that of the parabola
+/// through an image and its neighbours; what then lacks to the total's is shared out by how much each term bends there. (A term's own
+/// gradient along the tangent would not do: only the total is stationary across the path, so only its slope forgives a tangent that
+/// is a chord.)
+fn profile_terms(total: &Profile, images: &ImageTable) -> Vec<(String, Vec<f64>)> {
+    let terms = &images.terms_mev;
+    let bent: Vec<Vec<Bend>> = terms.iter().map(|(_, energy)| bends(&total.s, energy)).collect();
+    let slope = |j: usize, k: usize| {
+        let sum = |value: fn(&Bend) -> f64| bent.iter().map(|term| value(&term[k])).sum::<f64>();
+        let (lacks, bend) = (total.slope[k] - sum(|b| b.slope), sum(|b| b.bend));
+        let share = if bend > 0.0 { bent[j][k].bend / bend } else { 1.0 / terms.len() as f64 };
+        bent[j][k].slope + share * lacks
+    };
+    let term = |(j, (name, energy)): (usize, &(String, Vec<f64>))| {
+        let above = energy.iter().map(|e| e - energy[0]).collect();
+        let slopes = (0..energy.len()).map(|k| slope(j, k)).collect();
+        let pieces = Profile { s: total.s.clone(), energy: above, slope: slopes };
+        (name.clone(), pieces.samples(PROFILE).into_iter().map(|(_, e)| e).collect())
+    };
+    terms.iter().enumerate().map(term).collect()
+}
+
+/// A curve at one of its points: slope, and how much it changes there (both a unit of s).
+struct Bend {
+    slope: f64,
+    bend: f64,
+}
+
+/// By the parabola through each point and its neighbours, or at an end the two next to it.
+fn bends(s: &[f64], energy: &[f64]) -> Vec<Bend> {
+    let last = s.len() - 1;
+    let secant = |k: usize| {
+        let h = s[k + 1] - s[k];
+        if h > 0.0 { (energy[k + 1] - energy[k]) / h } else { 0.0 }
+    };
+    let at = |k: usize| {
+        if last < 2 {
+            return Bend { slope: secant(0), bend: 0.0 };
+        }
+        let middle = k.clamp(1, last - 1);
+        let (before, after) = (s[middle] - s[middle - 1], s[middle + 1] - s[middle]);
+        let (p, q) = (secant(middle - 1), secant(middle));
+        let curvature = if before + after > 0.0 { (q - p) / (before + after) } else { 0.0 };
+        let slope = p + curvature * before + 2.0 * curvature * (s[k] - s[middle]);
+        Bend { slope, bend: (q - p).abs() }
+    };
+    (0..=last).map(at).collect()
 }

@@ -26,8 +26,9 @@ impl Plot for ArrheniusPlot {
         "arrhenius"
     }
 
+    /// One temperature makes no curve; its rates are in `rates.csv`.
     fn applies(&self, data: &PlotData) -> bool {
-        !data.lifetimes.is_empty()
+        data.lifetimes.iter().any(|t| t.rows.len() > 1)
     }
 
     fn draw(&self, data: &PlotData, look: &Look) -> Result<Canvas> {

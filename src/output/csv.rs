@@ -59,6 +59,9 @@ impl Format for ProfileCsv {
         table.real("reaction_coordinate_rad", profile.iter().map(|p| p.reaction_coordinate_rad));
         table.real("energy_meV", profile.iter().map(|p| start + p.above_initial_mev));
         table.real("energy_above_initial_meV", profile.iter().map(|p| p.above_initial_mev));
+        for (name, mev) in &run.outcome.profile_terms_mev {
+            table.real(&format!("{}_above_initial_meV", column_name(name)), mev.iter().copied());
+        }
         table.render()
     }
 }

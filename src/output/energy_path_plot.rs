@@ -5,9 +5,9 @@
 
 use super::canvas::{
     BLACK, BLUE, Canvas, Frame, GREY, LinePlot, Look, Marker, Obstacles, Point, Rect, SERIES, SMALL_PT, Series,
-    THIN_PT, Text, VERMILLION, WHITE, pattern, significant,
+    THIN_PT, Text, VERMILLION, WHITE, pattern, turns,
 };
-use super::{Plot, PlotData};
+use super::{Certainty, Plot, PlotData};
 use crate::drive::{Barrier, Outcome};
 use crate::error::{Error, Result};
 
@@ -38,6 +38,8 @@ pub struct EnergyPath {
     pub saddles: Vec<(f64, f64)>,
     /// The barrier.
     pub barrier: Option<Barrier>,
+    /// How certain it is.
+    pub certainty: Certainty,
 }
 
 impl EnergyPath {
@@ -50,12 +52,28 @@ impl EnergyPath {
             profile: outcome.profile.iter().map(|p| (p.reaction_coordinate_rad, p.above_initial_mev)).collect(),
             saddles: outcome.saddles.iter().map(|s| (s.reaction_coordinate_rad, s.above_initial_mev)).collect(),
             barrier: outcome.barrier,
+            certainty: Certainty::of(outcome),
         }
     }
 
     /// The curve to draw: the profile, or the images where there is none.
     pub(super) fn curve(&self) -> &[(f64, f64)] {
         if self.profile.len() > 1 { &self.profile } else { &self.images }
+    }
+
+    /// The point of which the barrier speaks: a saddle, or else an image, an end included.
+    fn top(&self) -> Option<(f64, f64)> {
+        let mev = self.barrier?.forward_mev;
+        let off = |p: &(f64, f64)| (p.1 - mev).abs();
+        let nearest = |points: &[(f64, f64)]| points.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b)));
+        let saddle = nearest(&self.saddles).filter(|p| off(p) <= 1e-9 * mev.abs());
+        saddle.or_else(|| nearest(&self.images)).map(|p| (p.0, mev))
+    }
+
+    /// An energy of it after its sign: "= 6.298", or "≈ 6.3" where it is not certified.
+    fn told(&self, mev: f64, unit: EnergyUnit) -> String {
+        let sign = if self.certainty.is_certified() { "= " } else { "" };
+        format!("{sign}{}", self.certainty.number(mev, unit.per_mev, 4))
     }
 
     pub(super) fn energies(&self) -> impl Iterator<Item = f64> {
@@ -78,6 +96,11 @@ pub fn draw_energy_paths(paths: &[EnergyPath], look: &Look) -> Result<Canvas> {
         _ => {
             let obstacles = plot.draw_series(&mut canvas, &frame);
             plot.draw_legend(&mut canvas, &frame, &obstacles)?;
+            for path in paths {
+                for moved in path.certainty.moved_words() {
+                    canvas.footnote(&format!("{}: {moved}", path.name))?;
+                }
+            }
         }
     }
     Ok(canvas)
@@ -136,13 +159,14 @@ impl EnergyUnit {
 fn plot(paths: &[EnergyPath], unit: EnergyUnit) -> LinePlot {
     let mut plot = LinePlot::new("Reaction coordinate (rad)", unit.axis_label());
     plot.legend_above = paths.len() > 1;
+    let turns = turns(&paths.iter().map(EnergyPath::curve).collect::<Vec<_>>());
     for (k, path) in paths.iter().enumerate() {
         let colour = if paths.len() == 1 { BLUE } else { SERIES[k % SERIES.len()] };
-        // images of many paths would hide each other
-        let marker = image_marker(path.images.len()).filter(|_| paths.len() <= FEW);
+        // images of many paths would hide each other, and so would those of paths on the same place
+        let marker = image_marker(path.images.len()).filter(|_| paths.len() <= FEW && turns[k].of == 1);
         let mut curve = Series::line(unit.scaled(path.curve())).colour(colour);
         if paths.len() > 1 {
-            curve = Series { dash: pattern(k), ..curve.label(legend(path, unit)) };
+            curve = curve.label(legend(path, unit)).in_turn(turns[k], pattern(k));
         }
         plot.series.push(curve);
         plot.series.extend(marker.map(|m| Series::markers(unit.scaled(&path.images), m).colour(colour)));
@@ -175,10 +199,11 @@ fn image_marker(images: usize) -> Option<Marker> {
 }
 
 fn legend(path: &EnergyPath, unit: EnergyUnit) -> String {
-    match path.barrier {
-        Some(b) => format!("{}: {} {}", path.name, significant(b.forward_mev * unit.per_mev, 4), unit.name),
+    let told = match path.barrier {
+        Some(b) => format!("{}: {} {}", path.name, path.certainty.number(b.forward_mev, unit.per_mev, 4), unit.name),
         None => path.name.clone(),
-    }
+    };
+    if path.certainty.is_certified() { told } else { format!("{told}, not certified") }
 }
 
 /// All energies, with room above for the highest mark.
@@ -209,56 +234,57 @@ struct Guides {
 /// Room that the saddle's mark takes (pt).
 const MARK: f64 = 4.0;
 
-/// The barrier from the initial state, and from the final one where it differs.
+/// The barrier from the initial state, and from the final one where its number is another.
 fn guides(path: &EnergyPath, unit: EnergyUnit, frame: &Frame) -> Guides {
     let mut guides = Guides::default();
-    let highest = path.saddles.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1));
-    let (Some(barrier), Some(saddle), Some(first), Some(last)) =
-        (path.barrier, highest, path.images.first(), path.images.last())
+    let (Some(barrier), Some(top), Some(first), Some(last)) =
+        (path.barrier, path.top(), path.images.first(), path.images.last())
     else {
         return guides;
     };
-    if (barrier.forward_mev - barrier.backward_mev).abs() <= 1e-3 * barrier.forward_mev.abs() {
-        guides.add(frame, unit, Height { saddle, end: first.0, mev: barrier.forward_mev, shift: 0.0, symbol: "ΔE" });
+    let told = |mev: f64| format!("{} {}", path.told(mev, unit), unit.name);
+    let [forward, backward] = [barrier.forward_mev, barrier.backward_mev].map(told);
+    let height = |end: f64, mev: f64, shift: f64| Height { top, end, mev, shift };
+    if forward == backward {
+        guides.add(frame, unit, height(first.0, barrier.forward_mev, 0.0));
+        guides.lines.push(format!("ΔE {forward}"));
     } else {
-        guides.add(
-            frame,
-            unit,
-            Height { saddle, end: first.0, mev: barrier.forward_mev, shift: -3.0, symbol: "ΔE_{→}" },
-        );
-        guides.add(
-            frame,
-            unit,
-            Height { saddle, end: last.0, mev: barrier.backward_mev, shift: 3.0, symbol: "ΔE_{←}" },
-        );
+        guides.add(frame, unit, height(first.0, barrier.forward_mev, -1.0));
+        guides.add(frame, unit, height(last.0, barrier.backward_mev, 1.0));
+        guides.lines.push(format!("ΔE_{{→}} {forward}"));
+        guides.lines.push(format!("ΔE_{{←}} {backward}"));
     }
     guides
 }
 
-/// A saddle above one end of the path.
+/// The top of the path above one of its ends.
 struct Height {
-    saddle: (f64, f64),
+    top: (f64, f64),
     end: f64,
     mev: f64,
+    /// On which side of the top its arrow is: −1 left, 1 right, 0 neither.
     shift: f64,
-    symbol: &'static str,
 }
 
 impl Guides {
     fn add(&mut self, frame: &Frame, unit: EnergyUnit, h: Height) {
         let place = |x: f64, e: f64| frame.place((x, e * unit.per_mev));
-        let level = h.saddle.1 - h.mev;
-        let (Some(top), Some(foot), Some(end)) =
-            (place(h.saddle.0, h.saddle.1), place(h.saddle.0, level), place(h.end, level))
+        let level = h.top.1 - h.mev;
+        let (Some(top), Some(foot), Some(end)) = (place(h.top.0, h.top.1), place(h.top.0, level), place(h.end, level))
         else {
             return;
         };
-        let x = foot.0 + h.shift;
+        // an arrow without room below the saddle's mark stands beside it
+        let low = foot.1 - top.1 <= 3.0 * MARK;
+        let side = if low && h.shift == 0.0 { 1.0 } else { h.shift };
+        let x = foot.0 + side * if low { 2.0 * MARK } else { 3.0 };
         self.levels.push([end, (x, foot.1)]);
-        if foot.1 - top.1 > 2.0 * MARK {
+        if low && foot.1 - top.1 > 0.5 {
+            self.levels.push([top, (x, top.1)]);
+            self.arrows.push(Arrow { x, from: foot.1, to: top.1 });
+        } else if !low {
             self.arrows.push(Arrow { x, from: foot.1, to: top.1 + MARK });
         }
-        self.lines.push(format!("{} = {} {}", h.symbol, significant(h.mev * unit.per_mev, 4), unit.name));
     }
 
     /// Beneath the curve: levels and arrows.
@@ -342,5 +368,55 @@ fn double_arrow(canvas: &mut Canvas, arrow: &Arrow) {
         for (tip, inward) in [(arrow.to, -up), (arrow.from, up)] {
             canvas.polygon(&[(x, tip), (x - HALF, tip + inward * HEAD), (x + HALF, tip + inward * HEAD)], BLACK);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Heights of the levels and of the top of the highest arrow above the initial state (meV), from their places in the frame.
+    fn drawn(path: &EnergyPath) -> (Vec<f64>, Vec<String>) {
+        let unit = EnergyUnit::for_paths(std::slice::from_ref(path));
+        let (_, frame) = plot(std::slice::from_ref(path), unit).draw_frame().unwrap();
+        let guides = guides(path, unit, &frame);
+        let height = |y: f64| frame.y.min + (frame.rect.y1 - y) / frame.rect.height() * (frame.y.max - frame.y.min);
+        (guides.levels.iter().map(|level| height(level[0].1)).collect(), guides.lines)
+    }
+
+    fn path(forward: f64, backward: f64, saddle: f64) -> EnergyPath {
+        EnergyPath {
+            images: vec![(0.0, 0.0), (1.0, 6.0), (2.0, 5.0), (3.0, 1.0)],
+            saddles: vec![(2.0, saddle)],
+            barrier: Some(Barrier { forward_mev: forward, backward_mev: backward }),
+            ..EnergyPath::default()
+        }
+    }
+
+    fn assert_levels(path: &EnergyPath, levels: &[f64]) {
+        let found = drawn(path).0;
+        assert_eq!(found.len(), levels.len(), "{found:?}");
+        assert!(found.iter().zip(levels).all(|(a, b)| (a - b).abs() < 1e-9), "{found:?}");
+    }
+
+    #[test]
+    fn levels_are_those_of_the_ends_whether_the_top_is_a_saddle_an_image_or_an_end() {
+        assert_levels(&path(7.0, 6.0, 7.0), &[0.0, 1.0]);
+        // the image at 6 meV is the barrier, the saddle lies below it
+        assert_levels(&path(6.0, 5.0, 5.0), &[0.0, 1.0]);
+        assert_eq!(path(6.0, 5.0, 5.0).top(), Some((1.0, 6.0)));
+        // the path rises to its final end
+        let uphill = EnergyPath { images: vec![(0.0, 0.0), (1.0, 2.0), (2.0, 5.0)], ..path(5.0, 0.0, 3.0) };
+        assert_eq!(uphill.top(), Some((2.0, 5.0)));
+        assert_levels(&uphill, &[0.0, 5.0]);
+    }
+
+    #[test]
+    fn both_barriers_are_told_unless_their_numbers_are_the_same() {
+        let lines = |forward, backward| drawn(&path(forward, backward, forward)).1;
+        assert_eq!(lines(7.0, 7.0001), ["ΔE = 7.000 meV"]);
+        assert_eq!(lines(7.0, 7.004), ["ΔE_{→} = 7.000 meV", "ΔE_{←} = 7.004 meV"]);
+        let open = EnergyPath { certainty: Certainty::new(Some(0.02), [None; 2]), ..path(7.0, 7.004, 7.0) };
+        assert_eq!(drawn(&open).1, ["ΔE ≈ 7.0 meV"]);
     }
 }

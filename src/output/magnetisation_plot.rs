@@ -8,10 +8,10 @@
 use super::canvas::{BLUE, Canvas, GREEN, LinePlot, Look, Marker, PURPLE, SKY, Series, VERMILLION, decimal, pattern};
 use super::csv::Table;
 use super::energy_path_plot::saddle_marker;
+use super::staggered::{is_staggered, largest_change, means};
 use super::{Plot, PlotData, WriteTable};
 use crate::error::{Error, Result};
 use crate::geometry::vector::{Vector, dot, sub, unit};
-use crate::path::Path;
 
 /// The mean spin along the path.
 #[derive(Clone, Copy, Debug)]
@@ -23,8 +23,6 @@ const FEW: usize = 45;
 const SAME: f64 = 1e-3;
 /// An axis whose cosine with a Cartesian one differs from 1 by no more is it (8°).
 const CARTESIAN: f64 = 1e-2;
-/// The staggered mean is shown if it changes so many times more.
-const MORE: f64 = 1.5;
 const NAMES: [&str; 3] = ["x", "y", "z"];
 
 impl Plot for MagnetisationPlot {
@@ -96,9 +94,8 @@ impl Mean {
             let (spins, table) = (path.images(), data.energy.images.len());
             return Err(Error::Numerical(format!("magnetisation: spins of {spins} images, energies of {table}")));
         }
-        let means = |sign: f64| (0..path.images()).map(|k| mean(path, k, sign, &data.vacant)).collect::<Vec<_>>();
-        let (uniform, alternating) = (means(1.0), means(-1.0));
-        let staggered = largest_change(&alternating).1 > MORE * largest_change(&uniform).1;
+        let [uniform, alternating] = [false, true].map(|staggered| means(path, staggered, &data.vacant));
+        let staggered = is_staggered(path, &data.vacant);
         let axis = axis(if staggered { &alternating } else { &uniform });
         Ok(Mean { uniform, alternating, staggered, axis })
     }
@@ -122,29 +119,6 @@ impl Mean {
             None => format!("m·e, e = ({})", self.axis.map(|v| decimal(v, 2)).join(", ")),
         }
     }
-}
-
-/// Σ (±1)^i m_i / N over the sites with a spin.
-fn mean(path: &Path, k: usize, sign: f64, vacant: &[bool]) -> Vector {
-    let (m, n) = (path.image(k), path.sites());
-    let (mut sum, mut count) = ([0.0; 3], 0.0);
-    for i in (0..n).filter(|i| !vacant.get(*i).copied().unwrap_or(false)) {
-        let weight = if i % 2 == 1 { sign } else { 1.0 };
-        (0..3).for_each(|c| sum[c] += weight * m[c * n + i]);
-        count += 1.0;
-    }
-    sum.map(|s| s / f64::max(count, 1.0))
-}
-
-/// The Cartesian axis along which a mean changes most, and by how much.
-fn largest_change(means: &[Vector]) -> (usize, f64) {
-    let change = |c: usize| {
-        let (lo, hi) =
-            means.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), m| (lo.min(m[c]), hi.max(m[c])));
-        (c, (hi - lo).max(0.0))
-    };
-    // z before y before x where they are equal
-    [2, 1, 0].map(change).into_iter().reduce(|a, b| if b.1 > a.1 { b } else { a }).unwrap_or((2, 0.0))
 }
 
 /// Where the mean goes: positive along the Cartesian axis that is nearest.
@@ -175,6 +149,7 @@ fn at(points: &[(f64, f64)], x: f64) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::path::Path;
     use crate::spins::Spins;
 
     fn data(path: &Path) -> PlotData<'_> {

@@ -6,6 +6,7 @@
 
 mod arrhenius_plot;
 pub mod canvas;
+mod certainty;
 mod checkpoint;
 mod columns;
 mod config_copy;
@@ -29,11 +30,13 @@ mod relaxed;
 mod report;
 mod spin_files;
 mod spins_plot;
+mod staggered;
 mod stored_run;
 mod summary;
 pub mod sweep;
 
 pub use arrhenius_plot::{ArrheniusPlot, draw_lifetimes};
+pub use certainty::Certainty;
 pub use checkpoint::{Checkpoint, Identity};
 pub use config_copy::ConfigCopy;
 pub use convergence_plot::ConvergencePlot;
@@ -45,7 +48,7 @@ pub use magnetisation_plot::MagnetisationPlot;
 pub use manifest::Manifest;
 pub use partial::{StoppedRun, discard_partial, is_partial_left, partial_files, write_partial};
 pub use plot::{PLOTS, Plot, PlotFile, PlotTable, WriteTable, describe};
-pub use plot_data::{Lifetimes, PlotData, RateRow};
+pub use plot_data::{Lifetimes, Places, PlotData, RateRow};
 pub use rates_csv::RatesCsv;
 pub use relaxed::{RelaxReport, StateReport, relaxed_file_names};
 pub use report::ReportPage;

@@ -48,9 +48,12 @@ impl PlotFile {
         format!("{}.{}", self.plot.name(), self.picture.extension())
     }
 
-    /// Its bytes; they say what they are a figure of.
+    /// Its bytes; they say what they are a figure of, and below it what is in doubt.
     pub fn bytes(&self, data: &PlotData, look: &Look) -> Result<Vec<u8>> {
-        let canvas = self.plot.draw(data, look)?.describe(describe(self.plot.name(), &[&data.name]));
+        let mut canvas = self.plot.draw(data, look)?.describe(describe(self.plot.name(), &[&data.name]));
+        for note in data.energy.certainty.notes() {
+            canvas.footnote(&note)?;
+        }
         self.picture.render(&canvas)
     }
 }

@@ -3,6 +3,7 @@
 use super::csv::column_name;
 use super::{EnergyPath, RunReport};
 use crate::drive::HistoryRow;
+use crate::lattice::Chain;
 use crate::path::Path;
 use crate::rates::{Row, Way};
 
@@ -15,14 +16,36 @@ pub struct PlotData<'a> {
     pub energy: EnergyPath,
     /// Energy of each term above that of the initial image (meV), image by image, under the name of its column in `path.csv`.
     pub terms_mev: Vec<(String, Vec<f64>)>,
+    /// The same at the points of the interpolated energy path; empty where that is not known.
+    pub terms_profile_mev: Vec<Vec<f64>>,
     /// The spins, where they are known.
     pub path: Option<&'a Path>,
     /// Sites without a spin; empty if there are none.
     pub vacant: Vec<bool>,
+    /// Where the sites are, if that is known.
+    pub places: Option<Places>,
     /// One row a band iteration.
     pub history: Vec<HistoryRow>,
     /// Mean lifetimes of both ends, where rates were asked for.
     pub lifetimes: Vec<Lifetimes>,
+}
+
+/// Positions of the sites of a chain: site i at `first_nm` + i · `spacing_nm`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Places {
+    /// Of site 0 (nm): the middle of its cell, or 0 for an atom.
+    pub first_nm: f64,
+    /// From site to site (nm).
+    pub spacing_nm: f64,
+}
+
+impl Places {
+    /// Of a chain with a spacing.
+    pub fn of(chain: &Chain) -> Option<Places> {
+        let spacing_nm = chain.spacing?.0;
+        let first_nm = if chain.cross_section.is_some() { 0.5 * spacing_nm } else { 0.0 };
+        Some(Places { first_nm, spacing_nm })
+    }
 }
 
 /// Rates of leaving one end of the path.
@@ -54,8 +77,10 @@ impl<'a> PlotData<'a> {
             name: run.name.into(),
             energy: EnergyPath::from_outcome(run.name, outcome),
             terms_mev: outcome.images.terms_mev.iter().map(|(name, e)| (column_name(name), above_first(e))).collect(),
+            terms_profile_mev: outcome.profile_terms_mev.iter().map(|(_, mev)| mev.clone()).collect(),
             path: Some(&outcome.path),
             vacant: run.chain.is_vacant().unwrap_or_default(),
+            places: Places::of(run.chain),
             history: outcome.history.clone(),
             lifetimes: transitions
                 .iter()

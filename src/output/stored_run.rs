@@ -7,7 +7,7 @@ use super::columns::{Columns, WAY_OUT};
 use super::disk::{self, MARK};
 use super::folder::stored_result;
 use super::plot_data::above_first;
-use super::{EnergyPath, Lifetimes, PlotData, RateRow};
+use super::{Certainty, EnergyPath, Lifetimes, Places, PlotData, RateRow};
 use crate::drive::{Barrier, HistoryRow};
 use crate::error::{Error, Result};
 use crate::files;
@@ -30,9 +30,12 @@ pub struct StoredRun {
     pub notes: Vec<String>,
     /// Sites without a spin, as the config says; empty if there are none.
     pub vacant: Vec<bool>,
+    /// Where the sites are, as the config says.
+    pub places: Option<Places>,
     summary: Summary,
     images: Vec<(f64, f64)>,
     terms_mev: Vec<(String, Vec<f64>)>,
+    terms_profile_mev: Vec<Vec<f64>>,
     profile: Vec<(f64, f64)>,
     history: Vec<HistoryRow>,
     path: Option<SpinPath>,
@@ -42,8 +45,12 @@ pub struct StoredRun {
 #[allow(non_snake_case)]
 struct Summary {
     name: String,
+    certified: bool,
     barrier_meV: Option<BothWays>,
+    barrier_uncertainty_meV: Option<f64>,
     saddles: Vec<Saddle>,
+    initial: End,
+    r#final: End,
     path: PathEntry,
     #[serde(default)]
     transition_rates: Vec<Transition>,
@@ -60,6 +67,11 @@ struct BothWays {
 struct Saddle {
     energy_above_initial_meV: f64,
     reaction_coordinate_rad: f64,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+struct End {
+    moved_rad: Option<f64>,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize)]
@@ -93,12 +105,19 @@ impl StoredRun {
         agree(&table.0, table.1.rows(), images)?;
         let table = table.1;
         let points = table.points("reaction_coordinate_rad", "energy_above_initial_meV")?;
-        let profile = match text(dir, "profile.csv")? {
-            Some(text) => Columns::read(&shown(dir, "profile.csv"), &text)?
-                .points("reaction_coordinate_rad", "energy_above_initial_meV")?,
+        let terms_mev = terms(&table);
+        let (profile, terms_profile_mev) = match text(dir, "profile.csv")? {
+            Some(text) => {
+                let table = Columns::read(&shown(dir, "profile.csv"), &text)?;
+                let profile = table.points("reaction_coordinate_rad", "energy_above_initial_meV")?;
+                // results of earlier versions have the whole alone
+                let term =
+                    |(name, _): &(String, _)| table.named(&format!("{name}_above_initial_meV")).map(<[f64]>::to_vec);
+                (profile, terms_mev.iter().map(term).collect::<Result<_>>().unwrap_or_default())
+            }
             None => {
-                notes.push("there is no profile.csv: the curve joins the images by straight lines".into());
-                Vec::new()
+                notes.push("there is no profile.csv: curves join the images by straight lines".into());
+                (Vec::new(), Vec::new())
             }
         };
         let history = match text(dir, "history.csv")? {
@@ -115,8 +134,18 @@ impl StoredRun {
                 SPINS.join(", ")
             ));
         }
-        let terms_mev = terms(&table);
-        Ok(StoredRun { notes, vacant: Vec::new(), summary, images: points, terms_mev, profile, history, path })
+        Ok(StoredRun {
+            notes,
+            vacant: Vec::new(),
+            places: None,
+            summary,
+            images: points,
+            terms_mev,
+            terms_profile_mev,
+            profile,
+            history,
+            path,
+        })
     }
 
     /// Its name.
@@ -127,6 +156,13 @@ impl StoredRun {
     /// Number of sites, where the spins are known.
     pub fn sites(&self) -> Option<usize> {
         self.path.as_ref().map(SpinPath::sites)
+    }
+
+    /// How certain its barrier is; results of earlier versions do not say how much of it is unknown.
+    pub fn certainty(&self) -> Certainty {
+        let unknown_mev = self.summary.barrier_uncertainty_meV.unwrap_or(0.0);
+        let moved = [&self.summary.initial, &self.summary.r#final].map(|end| end.moved_rad);
+        Certainty::new((!self.summary.certified).then_some(unknown_mev), moved)
     }
 
     /// What its figures are drawn from.
@@ -141,10 +177,13 @@ impl StoredRun {
                 profile: self.profile.clone(),
                 saddles: self.summary.saddles.iter().map(saddle).collect(),
                 barrier: self.summary.barrier_meV.map(barrier),
+                certainty: self.certainty(),
             },
             terms_mev: self.terms_mev.clone(),
+            terms_profile_mev: self.terms_profile_mev.clone(),
             path: self.path.as_ref(),
             vacant: self.vacant.clone(),
+            places: self.places,
             history: self.history.clone(),
             lifetimes: self.summary.transition_rates.iter().filter_map(lifetimes).collect(),
         }

@@ -4,15 +4,15 @@
 //! A number that is not finite is an error here, with its place: JSON has no word for it.
 
 use super::rates_summary::{self, RateEntry, TransitionEntry};
-use super::{Format, RunReport};
+use super::{Certainty, Format, RunReport};
 use crate::drive::{Barrier, EndPoint, IntermediateMinimum, Outcome, RejectedPath, SaddlePoint, StopCode, Work};
 use crate::error::{Error, Result};
 use serde::{Serialize, Serializer, ser::Error as _};
 
 /// J in a meV: e/1000, e in C.
-const J_PER_MEV: f64 = 1.602176634e-22;
+pub(super) const J_PER_MEV: f64 = 1.602176634e-22;
 /// Boltzmann's constant in meV/K.
-const K_B_MEV: f64 = 8.617333262e-2;
+pub(super) const K_B_MEV: f64 = 8.617333262e-2;
 
 /// `summary.json`.
 #[derive(Clone, Copy, Debug)]
@@ -63,6 +63,8 @@ struct Document<'a> {
     barrier_meV: Option<BothWays>,
     barrier_J: Option<BothWays>,
     barrier_K: Option<BothWays>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    barrier_uncertainty_meV: Option<Number>,
     saddles: Vec<SaddleEntry>,
     initial: EndEntry,
     r#final: EndEntry,
@@ -145,6 +147,7 @@ struct WorkEntry {
 fn document<'a>(run: &RunReport<'a>) -> Document<'a> {
     let outcome = run.outcome;
     let barrier = |convert: fn(f64) -> f64| outcome.barrier.map(|b| both_ways(b, convert));
+    let unknown_mev = outcome.barrier.and_then(|_| Certainty::of(outcome).unknown_mev);
     Document {
         name: run.name,
         version: run.version,
@@ -157,6 +160,7 @@ fn document<'a>(run: &RunReport<'a>) -> Document<'a> {
         barrier_meV: barrier(|mev| mev),
         barrier_J: barrier(|mev| mev * J_PER_MEV),
         barrier_K: barrier(|mev| mev / K_B_MEV),
+        barrier_uncertainty_meV: unknown_mev.map(Number),
         saddles: outcome.saddles.iter().map(saddle).collect(),
         initial: end(&outcome.initial),
         r#final: end(&outcome.final_state),

@@ -43,6 +43,8 @@ pub struct Series {
     pub width: Option<f64>,
     /// Length of dashes and gaps (pt); none, a full line.
     pub dash: Option<(f64, f64)>,
+    /// What a dashed line leaves out before its first dash (pt).
+    pub skip: f64,
     /// The mark at each point.
     pub marker: Option<Marker>,
     /// Its colour; none, the next of the palette.
@@ -52,12 +54,12 @@ pub struct Series {
 impl Series {
     /// A line through points.
     pub fn line(points: Vec<(f64, f64)>) -> Series {
-        Series { points, label: None, width: Some(1.0), dash: None, marker: None, colour: None }
+        Series { points, label: None, width: Some(1.0), dash: None, skip: 0.0, marker: None, colour: None }
     }
 
     /// Marks at points.
     pub fn markers(points: Vec<(f64, f64)>, marker: Marker) -> Series {
-        Series { points, label: None, width: None, dash: None, marker: Some(marker), colour: None }
+        Series { points, label: None, width: None, dash: None, skip: 0.0, marker: Some(marker), colour: None }
     }
 
     /// With a name.
@@ -207,7 +209,7 @@ impl LinePlot {
                 .collect();
             let colour = self.colour(k);
             if let Some(width) = series.width {
-                stroke(canvas, &places, width, colour, series.dash);
+                stroke(canvas, &places, width, colour, series);
                 obstacles.add_line(&places);
             }
             if let Some(marker) = series.marker {
@@ -266,7 +268,7 @@ impl LinePlot {
     fn draw_entry(&self, canvas: &mut Canvas, (x, y): Point, k: usize, text: Text) -> Result<()> {
         let series = &self.series[k];
         if let Some(width) = series.width {
-            stroke(canvas, &[(x + 1.0, y), (x + 1.0 + LINE, y)], width, self.colour(k), series.dash);
+            stroke(canvas, &[(x + 1.0, y), (x + 1.0 + LINE, y)], width, self.colour(k), series);
         }
         if let Some(marker) = series.marker {
             mark(canvas, (x + 1.0 + LINE / 2.0, y), marker, self.colour(k));
@@ -334,14 +336,15 @@ fn corners(r: &Rect, width: f64, height: f64) -> [Rect; 4] {
     [at(r.x1 - width, r.y0), at(r.x0, r.y0), at(r.x1 - width, r.y1 - height), at(r.x0, r.y1 - height)]
 }
 
-fn stroke(canvas: &mut Canvas, points: &[Point], width: f64, colour: Colour, dash: Option<(f64, f64)>) {
-    match dash {
-        Some(dash) => canvas.dashed(points, width, colour, dash),
+fn stroke(canvas: &mut Canvas, points: &[Point], width: f64, colour: Colour, series: &Series) {
+    match series.dash {
+        Some(dash) => canvas.dashed_after(series.skip, points, width, colour, dash),
         None => canvas.line(points, width, colour),
     }
 }
 
-fn mark(canvas: &mut Canvas, (x, y): Point, marker: Marker, colour: Colour) {
+/// The mark at a place.
+pub fn mark(canvas: &mut Canvas, (x, y): Point, marker: Marker, colour: Colour) {
     match marker {
         Marker::Disc => canvas.disc((x, y), 1.7, colour),
         Marker::Dot => canvas.disc((x, y), 1.1, colour),

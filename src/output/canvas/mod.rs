@@ -13,6 +13,7 @@
 //! ```
 
 mod axis;
+mod coincident;
 mod frame;
 mod heat_map;
 mod line_plot;
@@ -25,9 +26,10 @@ mod style;
 
 pub use super::font::unknown_letter;
 pub use axis::{Axis, Scale, Tick};
+pub use coincident::{Turn, turns};
 pub use frame::{Frame, Rect, Ticks};
 pub use heat_map::{colour_bar, heat_map};
-pub use line_plot::{AxisLabel, LinePlot, Marker, Series};
+pub use line_plot::{AxisLabel, LinePlot, Marker, Series, mark};
 pub use number::{decimal, power_of_ten, significant};
 pub use obstacles::Obstacles;
 pub use palette::*;

@@ -1,7 +1,7 @@
 //! The display list: what is drawn, before any file format.
 
-use super::palette::Colour;
-use super::{Look, MIN_PT, MM, Rect, Style};
+use super::palette::{Colour, VERMILLION};
+use super::{Look, MIN_PT, MM, Rect, SMALL_PT, Style};
 use crate::error::Result;
 use crate::output::font::width_em;
 
@@ -177,8 +177,13 @@ impl Canvas {
     }
 
     /// A line drawn `on` points long, then left out for `off`.
-    pub fn dashed(&mut self, points: &[Point], width: f64, colour: Colour, (on, off): (f64, f64)) {
-        for piece in dashes(points, on, off) {
+    pub fn dashed(&mut self, points: &[Point], width: f64, colour: Colour, dash: (f64, f64)) {
+        self.dashed_after(0.0, points, width, colour, dash);
+    }
+
+    /// The same, with nothing drawn for `skip` points at first.
+    pub fn dashed_after(&mut self, skip: f64, points: &[Point], width: f64, colour: Colour, (on, off): (f64, f64)) {
+        for piece in dashes(points, skip, on, off) {
             self.line(&piece, width, colour);
         }
     }
@@ -216,6 +221,28 @@ impl Canvas {
         self.rasters.push(Raster { rect, columns, rows, rgb });
     }
 
+    /// Words below the figure, which grows by as many lines as they need.
+    pub fn footnote(&mut self, words: &str) -> Result<()> {
+        const MARGIN: f64 = 4.0;
+        let mut line = String::new();
+        let mut lines = Vec::new();
+        for word in words.split(' ') {
+            let longer = if line.is_empty() { word.to_string() } else { format!("{line} {word}") };
+            if !line.is_empty() && Text::new(&longer, SMALL_PT).width()? > self.width() - 2.0 * MARGIN {
+                lines.push(std::mem::replace(&mut line, word.to_string()));
+            } else {
+                line = longer;
+            }
+        }
+        lines.push(line);
+        for line in lines {
+            let at = (self.width() - MARGIN, self.height() + 0.76 * SMALL_PT);
+            self.height_mm += (SMALL_PT + 3.0) / MM;
+            self.text(at, Text::new(line, SMALL_PT).align(Align::Right).colour(VERMILLION))?;
+        }
+        Ok(())
+    }
+
     /// A text with its baseline at a place.
     pub fn text(&mut self, at: Point, text: Text) -> Result<()> {
         let text = Text { colour: self.style.colour(text.colour), ..text };
@@ -243,9 +270,9 @@ impl Canvas {
 }
 
 /// The pieces of a dashed line.
-fn dashes(points: &[Point], on: f64, off: f64) -> Vec<Vec<Point>> {
+fn dashes(points: &[Point], skip: f64, on: f64, off: f64) -> Vec<Vec<Point>> {
     let (mut pieces, mut piece) = (Vec::new(), Vec::new());
-    let (mut drawing, mut left) = (true, on);
+    let (mut drawing, mut left) = if skip > 0.0 { (false, skip) } else { (true, on) };
     for pair in points.windows(2) {
         let (a, b) = (pair[0], pair[1]);
         let length = libm::hypot(b.0 - a.0, b.1 - a.1);
@@ -278,8 +305,10 @@ mod tests {
 
     #[test]
     fn a_dashed_line_is_cut_into_pieces() {
-        let pieces = dashes(&[(0.0, 0.0), (5.0, 0.0)], 2.0, 1.0);
+        let pieces = dashes(&[(0.0, 0.0), (5.0, 0.0)], 0.0, 2.0, 1.0);
         assert_eq!(pieces, [vec![(0.0, 0.0), (2.0, 0.0)], vec![(3.0, 0.0), (5.0, 0.0)]]);
+        let pieces = dashes(&[(0.0, 0.0), (5.0, 0.0)], 1.0, 2.0, 1.0);
+        assert_eq!(pieces, [vec![(1.0, 0.0), (3.0, 0.0)], vec![(4.0, 0.0), (5.0, 0.0)]]);
     }
 
     #[test]

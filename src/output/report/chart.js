@@ -133,7 +133,7 @@ class Chart {
     }
   }
 
-  /** A column for each place of the path, a row for each site; site 0 is at the bottom. */
+  /** A column for each place of the path, a row for each site; site 0 is at the bottom. Where neighbours are opposite, odd ones are turned. */
   drawMap() {
     const { svg, path, lower } = this;
     const sites = path.sites.length, columns = path.length > 0 ? 320 : 1;
@@ -149,7 +149,7 @@ class Chart {
     const y = k => lower.bottom - ((k + 0.5) / sites) * (lower.bottom - lower.top);
     draw(svg, "text", { x: ROOM.left - 7, y: Math.min(y(0) + 4, lower.bottom), "text-anchor": "end" }, String(first));
     if (sites > 1) draw(svg, "text", { x: ROOM.left - 7, y: Math.max(y(sites - 1) + 4, lower.top + 9), "text-anchor": "end" }, String(last));
-    draw(svg, "text", { class: "label", "text-anchor": "middle", transform: `translate(13 ${(lower.top + lower.bottom) / 2}) rotate(-90)` }, "Site");
+    draw(svg, "text", { class: "label", "text-anchor": "middle", transform: `translate(13 ${(lower.top + lower.bottom) / 2}) rotate(-90)` }, this.stagger ? "Site, staggered" : "Site");
   }
 
   mapImage(columns, sites) {

@@ -10,7 +10,8 @@ mod pack;
 mod shown;
 
 use super::canvas::base64;
-use super::{Format, RunReport, Summary};
+use super::summary::{J_PER_MEV, K_B_MEV};
+use super::{Certainty, Format, RunReport, Summary};
 use crate::drive::Outcome;
 use crate::error::{Error, Result};
 use pack::{column, packed};
@@ -72,6 +73,8 @@ impl Format for ReportPage {
 #[allow(non_snake_case)]
 struct Data {
     summary: Value,
+    barrier_told: Option<Told>,
+    moved: Vec<String>,
     config: Option<String>,
     material: Material,
     sites: usize,
@@ -90,6 +93,13 @@ struct Data {
     profile: Curve,
     profile_points: usize,
     spins: Spins,
+}
+
+/// A barrier that is not certified, as it may be told: in meV, J and K.
+#[derive(Serialize)]
+struct Told {
+    forward: [String; 3],
+    backward: [String; 3],
 }
 
 #[derive(Serialize)]
@@ -132,6 +142,8 @@ fn data(run: &RunReport) -> Result<Data> {
     let frozen = chain.frozen.iter().map(|f| f.sites.indices(chain.sites, "site")).collect::<Result<Vec<_>>>()?;
     Ok(Data {
         summary: summary(run)?,
+        barrier_told: told(outcome),
+        moved: Certainty::of(outcome).moved_words().collect(),
         config: (run.config_text.len() <= LONGEST_CONFIG).then(|| run.config_text.into()),
         material: material(run.config_text),
         sites: path.sites(),
@@ -151,6 +163,16 @@ fn data(run: &RunReport) -> Result<Data> {
         sites_shown: shown.sites,
         images_shown: shown.images,
     })
+}
+
+fn told(outcome: &Outcome) -> Option<Told> {
+    let (barrier, certainty) = (outcome.barrier?, Certainty::of(outcome));
+    let units = |mev: f64| {
+        let units = [(1.0, "meV"), (J_PER_MEV, "J"), (1.0 / K_B_MEV, "K (E/k_B)")];
+        units.map(|(per_mev, unit)| format!("{} {unit}", certainty.number(mev, per_mev, 10)))
+    };
+    let both = || Told { forward: units(barrier.forward_mev), backward: units(barrier.backward_mev) };
+    (!certainty.is_certified()).then(both)
 }
 
 /// Keys of an entry of `rates` that the page shows: of a row of many saddles the others would be most of its size.

@@ -150,7 +150,7 @@ function wireView(view) {
   };
   const recolour = () => {
     view.scene.scheme = page.chart.scheme = $("colours").value;
-    view.scene.stagger = page.chart.stagger = $("stagger").checked;
+    view.scene.stagger = $("stagger").checked;
     view.show(page.s);
     page.chart.render();
   };
@@ -187,7 +187,7 @@ function introduce() {
 }
 
 async function begin() {
-  answer(data.summary);
+  answer(data);
   introduce();
   tell(path, s => goAndStop(s));
   page.chart = new Chart(path, goAndStop);
@@ -201,6 +201,7 @@ async function begin() {
   }
   await path.unpack();
   page.view = new View(path, toggle);
+  page.chart.stagger = alternates(path);
   wireView(page.view);
   page.chart.render();
   $("view").setAttribute("aria-label", `The spins of the chain as arrows in three dimensions: ${plural(path.sites.length, "arrow")}`);

@@ -15,8 +15,8 @@ function worldAxes(chain) {
 }
 
 const LAYOUTS = {
-  line(n) {
-    return { places: k => [k - (n - 1) / 2, 0, 0], rows: [[0, n]], arrow: clamp(0.1 * n, 1.15, 9) };
+  line(n, stride) {
+    return { places: k => [k - (n - 1) / 2, 0, 0], arrow: stride * clamp((0.1 * n) / stride, 1.15, 9) };
   },
   ring(n) {
     const radius = Math.max(n, 3) / (2 * Math.PI);
@@ -24,48 +24,46 @@ const LAYOUTS = {
       const angle = (2 * Math.PI * k) / n;
       return [-radius * Math.cos(angle), -radius * Math.sin(angle), 0];
     };
-    return { places: place, rows: [[0, n]], closed: true, arrow: Math.max(1.15, 0.2 * radius) };
-  },
-  rows(n, aspect) {
-    const gap = 2.6;
-    const ideal = Math.sqrt(n * gap * aspect * 0.75);
-    const columns = clamp(5 * Math.round(ideal / 5), 5, Math.max(5, n));
-    const count = Math.ceil(n / columns);
-    const place = k => [(k % columns) - (columns - 1) / 2, ((count - 1) / 2 - Math.floor(k / columns)) * gap, 0];
-    const rows = Array.from({ length: count }, (_, r) => [r * columns, Math.min(n, (r + 1) * columns)]);
-    return { places: place, rows, arrow: 1.7 };
+    return { places: place, closed: true, arrow: Math.max(1.15, 0.2 * radius) };
   },
 };
 
-const VIEWS = { tilted: { line: [-24, 20], ring: [-20, 40], rows: [-12, 42] }, side: [0, 0], top: [0, 90], end: [90, 0] };
+const VIEWS = { tilted: { line: [-24, 20], ring: [-20, 40] }, side: [0, 0], top: [0, 90], end: [90, 0] };
 
 class Scene {
   constructor(path) {
     this.path = path;
     this.axes = worldAxes(path.data.direction);
     this.lab = new Float32Array(3 * path.sites.length);
-    this.live = path.sites.map((_, k) => k).filter(k => !path.data.vacant.includes(path.sites[k]));
-    this.world = new Float32Array(3 * this.live.length);
-    this.colour = new Float32Array(3 * this.live.length);
+    this.live = this.sites = path.sites.map((_, k) => k).filter(k => !path.data.vacant.includes(path.sites[k]));
+    this.stride = 1;
     this.scheme = "direction";
     this.stretch = 1;
     this.stagger = false;
     this.turn = [0, 0];
     this.zoom = 1;
     this.shift = [0, 0];
+    this.lies = this.alongChain();
   }
 
-  /** Puts the sites in a line, rows or a ring. */
-  arrange(kind, aspect) {
+  /** Puts the sites in a line or a ring. */
+  arrange(kind) {
     this.kind = kind;
     const n = this.path.sites.length;
-    const { places, rows, closed, arrow } = LAYOUTS[kind](n, aspect);
+    const { places, closed } = LAYOUTS[kind](n, 1);
     this.places = Array.from({ length: n }, (_, k) => places(k));
-    this.rows = rows;
-    // room for the numbers before the rows
-    this.seen = kind === "rows" ? [...this.places, ...rows.map(row => add(this.places[row[0]], [-3, 0, 0]))] : this.places;
     this.closed = closed && n > 2;
-    this.usual = this.alongChain() ? Math.min(arrow, 1.3) : arrow;
+    this.thin(1);
+  }
+
+  /** Draws every `stride`-th site, with arrows as much longer; an odd stride keeps even and odd sites taking turns. */
+  thin(stride) {
+    this.stride = stride;
+    this.live = this.sites.filter(k => k % stride === 0);
+    this.world = new Float32Array(3 * this.live.length);
+    this.colour = new Float32Array(3 * this.live.length);
+    const { arrow } = LAYOUTS[this.kind](this.places.length, stride);
+    this.usual = this.lies ? Math.min(arrow, 1.3 * stride) : arrow;
     this.resize();
   }
 
@@ -82,7 +80,7 @@ class Scene {
   /** The arrows' measures, after a change of their length. */
   resize() {
     const length = this.usual * this.stretch;
-    const head = clamp(0.16 * length, 0.12, Math.max(0.5, 0.07 * length));
+    const head = clamp(0.16 * length, 0.12 * this.stride, Math.max(0.5 * this.stride, 0.07 * length));
     this.arrow = { length, head, shaft: 0.4 * head, point: Math.min(0.45 * length, 2.7 * head) };
   }
 
@@ -106,13 +104,13 @@ class Scene {
     const axes = this.basis();
     this.turn = before;
     const reach = 0.5 * this.arrow.length + 0.3;
-    const radius = reach + Math.max(...this.seen.map(place => Math.hypot(...place)));
-    const nearest = 1.5 * reach + Math.max(...this.seen.map(place => dot(place, axes.eye)));
+    const radius = reach + Math.max(...this.places.map(place => Math.hypot(...place)));
+    const nearest = 1.5 * reach + Math.max(...this.places.map(place => dot(place, axes.eye)));
     let [target, distance] = [[0, 0, 0], (3 * radius) / Scene.TAN];
     for (let round = 0; round < 8; round++) {
       const camera = { ...axes, target, distance, width: 2 * aspect, height: 2, scale: 1 / Scene.TAN };
       let [left, right, top, bottom] = [Infinity, -Infinity, Infinity, -Infinity];
-      for (const place of this.seen) {
+      for (const place of this.places) {
         const [x, y, , scale] = project(camera, place), room = reach * scale;
         [left, right] = [Math.min(left, x - room), Math.max(right, x + room)];
         [top, bottom] = [Math.min(top, y - room), Math.max(bottom, y + room)];
@@ -148,7 +146,7 @@ class Scene {
 
   /** Pairs of neighbouring places to join with a line. */
   bonds() {
-    const list = this.rows.flatMap(([from, to]) => Array.from({ length: to - from - 1 }, (_, j) => [from + j, from + j + 1]));
+    const list = this.places.slice(1).map((_, k) => [k, k + 1]);
     if (this.closed) list.push([this.places.length - 1, 0]);
     return list;
   }

@@ -13,15 +13,17 @@ function card(title, big, ...small) {
     ...small.map(line => make("div", { class: "small" }, line)));
 }
 
-/** The barrier and the verdict. */
-function answer(summary) {
+/** The barrier and the verdict. What is not certified is called so beside its number, which has the digits that are known. */
+function answer({ summary, barrier_told: told, moved }) {
   const { barrier_meV: mev, barrier_J: joule, barrier_K: kelvin, certified, converged } = summary;
-  const barrier = (title, way) => mev
-    ? card(title, `${number(mev[way], 10)} meV`, `${number(joule[way], 7)} J`, `${number(kelvin[way], 7)} K (E/k_B)`)
-    : card(title, "none", "see the stop reason");
-  const verdict = card("Verdict", certified ? "Certified" : "Not certified", summary.stop_reason);
+  const barrier = (title, way) => {
+    if (!mev) return card(title, "none", "see the stop reason");
+    if (told) return card(title, told[way][0], "not certified", ...told[way].slice(1));
+    return card(title, `${number(mev[way], 10)} meV`, `${number(joule[way], 7)} J`, `${number(kelvin[way], 7)} K (E/k_B)`);
+  };
+  const verdict = card("Verdict", certified ? "Certified" : "Not certified", summary.stop_reason, ...moved);
   verdict.classList.add("verdict");
-  verdict.classList.toggle("no", !(certified && converged));
+  verdict.classList.toggle("no", !(certified && converged) || moved.length > 0);
   const words = make("details", {}, make("summary", {}, "What this means"), make("p", {}, certified ? MEANING.yes : MEANING.no));
   verdict.append(words);
   $("answer").append(barrier("Barrier forward (initial → final)", "forward"), barrier("Barrier backward (final → initial)", "backward"), verdict);

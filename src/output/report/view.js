@@ -9,8 +9,7 @@ class View {
     Object.assign(this, { s: 0, scrolled: -1e9 });
     this.start(Glass.on(this.canvas));
     this.measure();
-    const wide = this.width / path.sites.length >= (this.scene.alongChain() ? 18 : 5);
-    this.arrange(path.data.periodic ? "ring" : wide ? "line" : "rows");
+    this.arrange(path.data.periodic ? "ring" : "line");
     new ResizeObserver(() => this.measure()).observe($("frame"));
     this.listen();
   }
@@ -40,22 +39,41 @@ class View {
       canvas.height = Math.round(this.height * this.ratio);
     }
     if (this.scene.kind) {
-      this.scene.fit(this.width / this.height, this.home);
+      this.frame();
       this.refresh();
     }
   }
 
   arrange(kind) {
-    this.scene.arrange(kind, this.width / this.height);
+    this.scene.arrange(kind);
     this.renderer.build(this.scene);
     this.look("tilted");
+  }
+
+  /** Everything in the picture, then as many arrows as have room. */
+  frame() {
+    this.scene.fit(this.width / this.height, this.home);
+    this.thin();
+  }
+
+  /** Draws every third, ninth … site of a line as long as the arrows would stand closer than this (px). */
+  thin() {
+    const { scene } = this, closest = scene.lies ? 8 : 4;
+    const [, , , perSite] = project(scene.camera(this.width, this.height), scene.center);
+    let stride = 1;
+    while (scene.kind === "line" && stride * perSite < closest && 6 * stride < scene.places.length) stride *= 3;
+    if (stride === scene.stride) return;
+    scene.thin(stride);
+    this.pointed = undefined;
+    this.posed = false;
+    this.renderer.build(scene);
   }
 
   /** To one of the named views, without a detour through zoom and shift of before. */
   look(view) {
     this.home = this.scene.look(view);
-    this.scene.fit(this.width / this.height, this.home);
     Object.assign(this.scene, { zoom: 1, shift: [0, 0] });
+    this.frame();
     this.turnTo(this.home);
     for (const button of document.querySelectorAll("[data-view]")) button.setAttribute("aria-pressed", button.dataset.view === view);
   }
@@ -84,10 +102,14 @@ class View {
     this.refresh();
   }
 
-  zoomBy(factor) {
+  /** Zooms; what is `at` a place of the canvas (px) stays there. */
+  zoomBy(factor, at = [this.width / 2, this.height / 2]) {
     $("hint").hidden = true;
-    this.scene.zoom = clamp(this.scene.zoom * factor, 0.4, 60);
-    this.refresh();
+    const before = this.scene.zoom;
+    this.scene.zoom = clamp(before * factor, 0.4, 60);
+    const grown = this.scene.zoom / before - 1;
+    this.moveBy(-grown * (at[0] - this.width / 2), -grown * (at[1] - this.height / 2));
+    this.thin();
   }
 
   /** Moves the picture by pixels. */
@@ -131,18 +153,15 @@ class View {
     c.font = "12px system-ui, sans-serif";
     c.textAlign = "center";
     c.fillStyle = getComputedStyle(canvas).color;
-    const { rows, path, places, arrow, kind } = this.scene;
-    const ends = kind === "line" ? [0, places.length - 1] : kind === "ring" ? [0] : rows.length < 25 ? rows.map(row => row[0]) : [0];
+    const { path, places, arrow, kind, stride } = this.scene;
     c.globalAlpha = 0.75;
-    c.textAlign = kind === "rows" ? "right" : "center";
-    let above = -Infinity;
-    for (const k of new Set(ends)) {
-      const beside = kind === "rows" ? add(places[k], [-1.2, 0, 0]) : add(places[k], [0, 0, -0.5 * arrow.length]);
-      const [x, y, depth] = project(camera, beside);
-      if (depth <= 0 || (kind === "rows" && Math.abs(y - above) < 13)) continue;
-      c.fillText(String(path.sites[k]), x, kind === "rows" ? y + 4 : y + 16);
-      above = y;
+    for (const k of new Set(kind === "line" ? [0, places.length - 1] : [0])) {
+      const [x, y, depth] = project(camera, add(places[k], [0, 0, -0.5 * arrow.length]));
+      if (depth > 0) c.fillText(String(path.sites[k]), x, y + 16);
     }
+    c.textAlign = "left";
+    if (stride > 1) c.fillText(`1 of ${stride} sites is drawn: zoom in for all`, 10, this.height - 10);
+    c.textAlign = "center";
     c.globalAlpha = 1;
     if (this.pointed !== undefined) this.tell(c, camera, this.pointed);
   }
@@ -255,6 +274,10 @@ class View {
   steer() {
     const canvas = this.canvas, held = new Map();
     const middle = () => [...held.values()].reduce((sum, p) => [sum[0] + p[0] / held.size, sum[1] + p[1] / held.size], [0, 0]);
+    const within = ([x, y]) => {
+      const box = canvas.getBoundingClientRect();
+      return [x - box.left, y - box.top];
+    };
     const spread = () => (held.size < 2 ? 0 : Math.hypot(...add([...[...held.values()][0], 0], [...[...held.values()][1], 0], -1)));
     canvas.addEventListener("pointerdown", event => {
       held.set(event.pointerId, [event.clientX, event.clientY]);
@@ -266,7 +289,7 @@ class View {
       const [before, apart] = [middle(), spread()];
       held.set(event.pointerId, [event.clientX, event.clientY]);
       const now = middle(), [dx, dy] = [now[0] - before[0], now[1] - before[1]];
-      if (apart > 0) this.zoomBy(spread() / apart);
+      if (apart > 0) this.zoomBy(spread() / apart, within(now));
       if (event.shiftKey || event.buttons & 6 || held.size > 1) this.moveBy(dx, dy);
       else this.turnBy(-0.4 * dx, event.pointerType === "touch" ? 0 : 0.4 * dy);
     });
@@ -283,7 +306,9 @@ class View {
       // a page that is being scrolled goes on
       if (performance.now() - this.scrolled < 250) return;
       event.preventDefault();
-      this.zoomBy(Math.exp(-clamp(event.deltaY * (event.deltaMode ? 30 : 1), -200, 200) * 0.0016));
+      const step = delta => clamp(delta * (event.deltaMode ? 30 : 1), -200, 200);
+      if (Math.abs(event.deltaX) > Math.abs(event.deltaY)) this.moveBy(-step(event.deltaX), 0);
+      else this.zoomBy(Math.exp(-step(event.deltaY) * 0.0016), within([event.clientX, event.clientY]));
     }, { passive: false });
     canvas.addEventListener("keydown", event => this.pressed(event));
   }
