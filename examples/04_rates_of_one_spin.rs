@@ -88,10 +88,13 @@ fn langer_rates(alpha: f64, barriers: &[f64]) -> Result<Vec<f64>> {
         moments_mub: vec![1.0],
     });
     let rates = run(&problem, &mut Silent)?.rates.context("rates")?;
-    let forward = rates.transitions.iter().find(|t| t.way == Way::Forward).context("a transition")?;
+    let forward = rates.saddles.iter().find(|r| r.way == Way::Forward).context("a saddle")?;
     let unit_per_s = 1e12 * 2.0 / HBAR;
-    let rate = |row: &spinneb::rates::Row| Ok(libm::exp(row.ln_langer_per_s.context("a rate")?) / unit_per_s);
-    forward.rows.iter().map(rate).collect()
+    let rate = |delta: &f64| {
+        let ln = forward.ln_rate_per_s(Theory::Langer, 1.0 / (delta * K_B)).context("a rate")?;
+        Ok(libm::exp(ln) / unit_per_s)
+    };
+    barriers.iter().map(rate).collect()
 }
 
 /// A function on the sphere by its coefficients of Y_lm, real and imaginary parts; l up to `top`.

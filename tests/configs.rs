@@ -118,9 +118,21 @@ fn a_cobalt_chain_holds_its_magnetisation_for_minutes_at_4_kelvin_and_not_at_20(
     let summary: Value = serde_json::from_slice(&fs::read(out.path().join("summary.json")).unwrap()).unwrap();
     let whole = &summary["transition_rates"][0];
     assert_eq!((whole["direction"].as_str(), whole["equivalent_paths"].as_u64()), (Some("forward"), Some(4)));
-    let lifetime = |k: usize| whole["temperatures"][k]["lifetime_s"].as_f64().unwrap();
-    assert!(100.0 < lifetime(0) && lifetime(0) < 1000.0, "{}", lifetime(0));
-    assert!(lifetime(7) < 1e-6);
+    let at = |k: usize, key: &str| whole["temperatures"][k][key].as_f64();
+    let passage = |k: usize| at(k, "first_passage_s").unwrap();
+    assert!(100.0 < passage(0) && passage(0) < 1000.0, "{}", passage(0));
+    assert!(passage(7) < 1e-6);
+    // most walls that enter leave again at once, and hops of less than k_BT leave little but the order of magnitude
+    assert!(at(0, "escape_lifetime_s").unwrap() < 0.05 * passage(0));
+    assert!((10.0..1e4).contains(&at(0, "known_within_factor").unwrap()), "{:?}", at(0, "known_within_factor"));
+    // 10.7 meV are 124 K
+    assert!(
+        at(10, "first_passage_s").is_some()
+            && at(11, "first_passage_s").is_none()
+            && at(12, "htst_rate_per_s").is_none()
+    );
+    assert!(whole["temperatures"][11]["reason"].as_str().unwrap().contains("below 1 k_BT"));
+    assert!(summary["rates"][0]["langer_prefactor_Hz"].is_f64());
     for file in ["rates.csv", "arrhenius.svg", "arrhenius.png"] {
         assert!(out.path().join(file).metadata().is_ok_and(|m| m.len() > 1000), "{file}");
     }

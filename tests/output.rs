@@ -64,6 +64,7 @@ fn outcome(path: Path, length: f64, energy: impl Fn(f64) -> f64) -> Outcome {
         stop_reason: "converged: largest predicted rotation 3.1e-7 rad".into(),
         warnings: Vec::new(),
         barrier: top.map(|e| Barrier { forward_mev: e, backward_mev: e - energy(length) }),
+        highest_climb: top.map(|e| Barrier { forward_mev: e, backward_mev: e - energy(length) }),
         saddles,
         initial: end(0.0),
         final_state: end(energy(length)),
@@ -108,6 +109,7 @@ fn tiny() -> Outcome {
     o.certified = false;
     o.warnings = vec!["flat to 1e-12 meV".into()];
     o.barrier = Some(Barrier { forward_mev: 0.5, backward_mev: 0.75 });
+    o.highest_climb = Some(Barrier { forward_mev: 0.625, backward_mev: 0.75 });
     o.saddles = vec![SaddlePoint {
         energy_mev: 0.25,
         above_initial_mev: 0.5,
@@ -128,8 +130,12 @@ fn tiny() -> Outcome {
     };
     o.final_state =
         EndPoint { energy_mev: -0.5, max_torque_mev: 1e-13, negative_modes: None, zero_modes: None, moved_rad: None };
-    o.intermediate_minima =
-        vec![IntermediateMinimum { image: 1, reaction_coordinate_rad: 0.9, state: o.initial.clone() }];
+    o.intermediate_minima = vec![IntermediateMinimum {
+        image: 1,
+        reaction_coordinate_rad: 0.9,
+        spins: o.path.spins(1),
+        state: o.initial.clone(),
+    }];
     o.rejected_paths = vec![RejectedPath {
         guess: "rotation".into(),
         barrier_mev: None,
@@ -217,6 +223,10 @@ fn the_summary_is_exactly_so() {
     "backward": 8.703388591309189
   },
   "barrier_uncertainty_meV": 4.650000000000001e-16,
+  "highest_climb_meV": {
+    "forward": 0.625,
+    "backward": 0.75
+  },
   "saddles": [
     {
       "energy_meV": 0.25,
@@ -283,9 +293,9 @@ fn the_summary_is_exactly_so() {
 #[test]
 fn a_missing_barrier_is_null() {
     let mut o = tiny();
-    o.barrier = None;
+    (o.barrier, o.highest_climb) = (None, None);
     let json: serde_json::Value = serde_json::from_str(&text(&Summary, &o)).unwrap();
-    for key in ["barrier_meV", "barrier_J", "barrier_K"] {
+    for key in ["barrier_meV", "barrier_J", "barrier_K", "highest_climb_meV"] {
         assert_eq!(json.get(key), Some(&serde_json::Value::Null));
     }
 }

@@ -77,12 +77,28 @@ fn a_run_with_rates_writes_the_keys_the_table_and_the_figure() {
     }
     let transitions = summary["transition_rates"].as_array().unwrap();
     assert_eq!(transitions.len(), 2);
-    assert_eq!(transitions[0]["temperatures"], rates[0]["temperatures"]);
+    for (whole, own) in
+        transitions[0]["temperatures"].as_array().unwrap().iter().zip(rates[0]["temperatures"].as_array().unwrap())
+    {
+        // one saddle: all three are one time
+        assert_eq!((&whole["escape_lifetime_s"], &whole["first_passage_s"]), (&own["lifetime_s"], &own["lifetime_s"]));
+        assert_eq!(whole["log10_first_passage_s"], own["log10_lifetime_s"]);
+        for key in ["htst_rate_per_s", "langer_rate_per_s", "barrier_over_kT", "known_within_factor", "reason"] {
+            assert_eq!(whole[key], own[key], "{key}");
+        }
+        assert!(number(&own["known_within_factor"]) > 1.0 && own["reason"].is_null());
+    }
+    assert_eq!(summary["highest_climb_meV"], summary["barrier_meV"]);
+    // ħλ₊/(2πk_B)
+    let crossover =
+        0.6582119569e-12 * number(&rates[0]["growth_rate_per_s"]) / (2.0 * std::f64::consts::PI * 8.617333262e-2);
+    assert!((number(&rates[0]["crossover_temperature_K"]) / crossover - 1.0).abs() < 1e-9);
     let csv = fs::read_to_string(folder.path().join("results/chain/rates.csv")).unwrap();
     let lines: Vec<&str> = csv.lines().collect();
     assert_eq!(
         lines[0],
-        "saddle,direction,temperature_K,barrier_over_kT,htst_rate_per_s,langer_rate_per_s,lifetime_s,log10_lifetime_s"
+        "saddle,direction,temperature_K,barrier_over_kT,htst_rate_per_s,langer_rate_per_s,lifetime_s,log10_lifetime_s,\
+         escape_lifetime_s,log10_escape_lifetime_s,first_passage_s,log10_first_passage_s,known_within_factor"
     );
     let starts: Vec<String> = lines[1..].iter().map(|l| l.split(',').take(3).collect::<Vec<_>>().join(",")).collect();
     let expected = ["0,forward,", "0,backward,", "all,forward,", "all,backward,"];
@@ -104,6 +120,47 @@ fn lifetimes_beyond_what_a_double_holds_are_null_with_their_logarithm() {
     assert!(csv.lines().nth(1).unwrap().contains(",0.0,0.0,,7"), "{csv}");
 }
 
+/// Two values are the same, numbers to rounding.
+fn agree(a: &Value, b: &Value) {
+    match (a, b) {
+        (Value::Number(x), Value::Number(y)) => {
+            let (x, y) = (x.as_f64().unwrap(), y.as_f64().unwrap());
+            assert!((x - y).abs() <= 1e-10 * y.abs().max(1e-300), "{x} {y}");
+        }
+        (Value::Array(x), Value::Array(y)) => {
+            assert_eq!(x.len(), y.len());
+            x.iter().zip(y).for_each(|(x, y)| agree(x, y));
+        }
+        (Value::Object(x), Value::Object(y)) => {
+            assert!(x.keys().eq(y.keys()));
+            x.iter().for_each(|(key, x)| agree(x, &y[key]));
+        }
+        _ => assert_eq!(a, b),
+    }
+}
+
+#[test]
+fn without_the_stored_states_the_saddles_are_found_anew() {
+    let plain = folder(&CONFIG.replace(",\n  \"rates\": {\"temperatures\": [\"1 K\", \"3 K\"], \"damping\": 0.2}", ""));
+    assert_eq!(spinneb(plain.path(), &["run", "chain.json", "--quiet"]).0, Some(0));
+    let result = plain.path().join("results/chain");
+    let asked = || {
+        let (found, _, said) = spinneb(plain.path(), &["rate", "results/chain", "-T", "3 K", "--damping", "0.2"]);
+        assert_eq!(found, Some(0), "{said}");
+        (summary(plain.path())["rates"].clone(), said)
+    };
+    let (wanted, said) = asked();
+    assert!(!said.contains("found anew"), "{said}");
+    fs::remove_file(result.join("minima.ovf")).unwrap();
+    let (found, said) = asked();
+    assert!(said.contains("found anew from its config: there is no minima.ovf with the result"), "{said}");
+    agree(&found, &wanted);
+    // what was changed is not used at all
+    fs::copy(result.join("minima.ovf"), result.join("saddle.ovf")).unwrap();
+    let (code, _, said) = spinneb(plain.path(), &["rate", "results/chain", "-T", "3 K"]);
+    assert!(code == Some(2) && said.contains("damaged: saddle.ovf"), "{said}");
+}
+
 #[test]
 fn rates_of_a_finished_result_are_those_of_a_run_that_asks_for_them() {
     let asked = folder(CONFIG);
@@ -115,14 +172,32 @@ fn rates_of_a_finished_result_are_those_of_a_run_that_asks_for_them() {
     let arguments = ["rate", "results/chain", "--temperature", "1 K", "-T", "3K", "--damping", "0.2"];
     let (code, out, said) = spinneb(plain.path(), &arguments);
     assert_eq!(code, Some(0), "{said}");
-    assert!(said.contains("found anew from its config"), "{said}");
+    assert!(!said.contains("found anew") && !said.contains("first path"), "{said}");
     assert_eq!(out.lines().count(), 5, "{out}");
     let (after, wanted) = (summary(plain.path()), summary(asked.path()));
-    assert_eq!(after["rates"], wanted["rates"]);
-    assert_eq!(after["transition_rates"], wanted["transition_rates"]);
+    for key in ["rates", "transition_rates"] {
+        agree(&after[key], &wanted[key]);
+    }
+    // nothing but the rates is another
+    let (mut old, mut new) = (before.clone(), after.clone());
+    for key in ["rates", "transition_rates", "warnings", "manifest"] {
+        for summary in [&mut old, &mut new] {
+            summary.as_object_mut().unwrap().remove(key);
+        }
+    }
+    assert_eq!(old, new);
     assert_eq!(after["config_sha256"], before["config_sha256"]);
     assert_eq!(after["barrier_meV"], before["barrier_meV"]);
-    for file in ["rates.csv", "arrhenius.svg"] {
+    for file in [
+        "path.csv",
+        "profile.csv",
+        "history.csv",
+        "path.npz",
+        "path.ovf",
+        "saddle.ovf",
+        "minima.ovf",
+        "energy_path.svg",
+    ] {
         let read = |folder: &Path| fs::read(folder.join("results/chain").join(file)).unwrap();
         assert_eq!(read(plain.path()), read(asked.path()));
     }
@@ -182,4 +257,35 @@ fn a_refused_theory_is_said_and_does_not_fail_the_run() {
     let (code, out, _) = spinneb(folder.path(), &["rate", "results/chain", "-T", "1 K", "--damping", "0"]);
     assert_eq!(code, Some(3));
     assert!(out.contains("none: the energy is the same for all turns"), "{out}");
+}
+
+#[test]
+fn a_barrier_below_kt_leaves_the_entry_with_nulls_and_a_reason() {
+    let folder = folder(&CONFIG.replace("\"1 K\", \"3 K\"", "\"3 K\", \"20 K\""));
+    let (code, _, said) = spinneb(folder.path(), &["run", "chain.json"]);
+    assert_eq!(code, Some(0), "{said}");
+    assert!(said.contains("mean lifetime of the initial state: 6e-10 s at 3 K (within a factor of "), "{said}");
+    let summary = summary(folder.path());
+    let hot = &summary["rates"][0]["temperatures"][1];
+    let keys = ["htst_rate_per_s", "langer_rate_per_s", "lifetime_s", "log10_lifetime_s", "known_within_factor"];
+    assert!(keys.iter().all(|key| hot[key].is_null()) && hot["temperature_K"] == 20.0, "{hot}");
+    assert!(hot["reason"].as_str().unwrap().starts_with("ΔE = 0.87 k_BT"), "{hot}");
+    assert!(summary["rates"][0]["langer_prefactor_Hz"].as_f64().unwrap() > 0.0);
+    let whole = &summary["transition_rates"][0]["temperatures"][1];
+    assert!(
+        whole["first_passage_s"].is_null() && whole["escape_lifetime_s"].is_null() && whole["reason"] == hot["reason"]
+    );
+    let csv = fs::read_to_string(folder.path().join("results/chain/rates.csv")).unwrap();
+    assert!(
+        csv.lines().nth(2).unwrap().starts_with("0,forward,20.0,0.8")
+            && csv.lines().nth(2).unwrap().ends_with(",,,,,,,,,"),
+        "{csv}"
+    );
+    // what is left at 3 K is above 5 k_BT, what lies below is grey
+    let svg = |folder: &Path| fs::read_to_string(folder.join("results/chain/arrhenius.svg")).unwrap();
+    assert!(!svg(folder.path()).contains("Barrier below"));
+    let (code, out, _) = spinneb(folder.path(), &["rate", "results/chain", "-T", "3 K", "-T", "10 K", "-T", "20 K"]);
+    assert_eq!(code, Some(0));
+    assert!(out.contains("none: ΔE = 0.87 k_BT"), "{out}");
+    assert!(svg(folder.path()).contains("Barrier below 5 kT"));
 }

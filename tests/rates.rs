@@ -300,7 +300,7 @@ fn forward_and_backward_rates_are_in_detailed_balance() {
         let entropy = 0.5 * (ends[0].log_determinant(0) - ends[1].log_determinant(0));
         // ln(k_f/k_b) = −(F_final − F_initial)/k_BT
         let expected = difference_mev / (K_B * t) + entropy;
-        let row = |way: Way| rate(&outcome, way).rows[0];
+        let row = |way: Way| rate(&outcome, way).rows[0].clone();
         let balance = |ln: fn(&spinneb::rates::Row) -> Option<f64>| {
             ln(&row(Way::Forward)).zip(ln(&row(Way::Backward))).map(|(f, b)| f - b)
         };
@@ -362,7 +362,7 @@ fn a_chain_of_minima_is_crossed_at_the_rate_of_its_mean_first_passage() {
     let build = chain();
     let width = (0.5f64 / 0.1).sqrt();
     let (a, b) = (build.wall(5.0, width, Direction::Y), build.wall(17.0, width, Direction::Y));
-    let outcome = solve(&with(build.problem(a, b), settings(23, 2.0, 0.2, 0.1)));
+    let outcome = solve(&with(build.problem(a, b), settings(23, 2.0, 0.2, 0.01)));
     assert!(outcome.certified, "{:?}", outcome.warnings);
     let rates = outcome.rates.as_ref().expect("rates");
     let n = outcome.saddles.len();
@@ -381,8 +381,11 @@ fn a_chain_of_minima_is_crossed_at_the_rate_of_its_mean_first_passage() {
     }
     let whole = &rates.transitions[0];
     assert_eq!((whole.way, whole.saddles), (Way::Forward, n));
-    let found = whole.rows[0].ln_langer_per_s.expect("Langer");
+    let found = whole.rows[0].passage.ln_langer_per_s.expect("Langer");
     assert!((found + f64::ln(total)).abs() < 1e-10, "{found} {total}");
+    // leaving the first minimum is the first saddle's matter alone
+    let escape = whole.rows[0].escape.ln_langer_per_s.expect("Langer");
+    assert!((escape - ln(Way::Forward, 0)).abs() < 1e-12 && escape > found + 0.1, "{escape} {found}");
     assert!(whole.blocking_k[0] > whole.blocking_k[1] && whole.blocking_k[1] > Some(0.0));
 }
 
@@ -402,7 +405,10 @@ fn a_saddle_without_a_certificate_has_no_rate() {
         assert!(refusal(&outcome, theory).contains("not certified"), "{}", refusal(&outcome, theory));
     }
     let whole = &outcome.rates.as_ref().expect("rates").transitions[0];
-    assert!(whole.refused.is_some() && whole.rows.iter().all(|r| r.ln_lifetime_s().is_none()));
+    assert!(
+        whole.refused.is_some()
+            && whole.rows.iter().all(|r| r.passage.ln_lifetime_s().is_none() && r.escape.ln_lifetime_s().is_none())
+    );
 }
 
 #[test]
@@ -490,7 +496,7 @@ fn walls_that_enter_a_chain_at_either_end_and_turn_either_way_are_four_paths() {
     assert!(outcome.certified && outcome.saddles.len() > 1, "{:?}", outcome.warnings);
     let rates = outcome.rates.as_ref().expect("rates");
     assert!(rates.transitions.iter().all(|t| t.equivalents.count == 4), "{:?}", rates.transitions[0].equivalents);
-    let [f, b] = [0, 1].map(|k| rates.transitions[k].rows[0].ln_langer_per_s.expect("Langer"));
+    let [f, b] = [0, 1].map(|k| rates.transitions[k].rows[0].passage.ln_langer_per_s.expect("Langer"));
     assert!((f - b).abs() < 1e-9, "{f} {b}");
 }
 
@@ -506,4 +512,188 @@ fn the_determinant_of_a_hundred_thousand_spins_is_the_product_of_its_spin_waves(
     let logs: Vec<f64> = (0..n).map(|k| wave(k).ln() + (wave(k) + 2.0 * hard).ln()).collect();
     let expected = spinneb::linalg::slab::sum(&logs);
     assert!((found - expected).abs() < 1e-8, "{found} {expected}");
+}
+
+/// Three pinning sites; the frozen ends draw the wall into the middle one, the deepest.
+fn deep_in_the_middle(temperatures_k: Vec<f64>) -> Problem {
+    let chain = || Build::between_walls(21).easy(0.1).hard(0.1).defect(5, -0.02).defect(11, -0.02).defect(17, -0.02);
+    let build = chain();
+    let width = (0.5f64 / 0.1).sqrt();
+    let (a, b) = (build.wall(5.0, width, Direction::Y), build.wall(17.0, width, Direction::Y));
+    let settings = RateSettings { temperatures_k, ..settings(23, 2.0, 0.2, 0.1) };
+    with(build.problem(a, b), settings)
+}
+
+#[test]
+fn the_time_to_the_other_end_goes_with_the_highest_climb_and_not_with_the_barrier() {
+    let (cold, colder) = (0.005, 0.004);
+    let outcome = solve(&deep_in_the_middle(vec![cold, colder]));
+    assert!(outcome.certified && outcome.saddles.len() == 2, "{} saddles", outcome.saddles.len());
+    let (barrier, climb) = (outcome.barrier.expect("a barrier"), outcome.highest_climb.expect("a climb"));
+    let deep = outcome.intermediate_minima[0].state.energy_mev - outcome.initial.energy_mev;
+    let closed = [outcome.saddles[1].above_initial_mev - deep, outcome.saddles[0].above_initial_mev - deep];
+    assert!((climb.forward_mev - closed[0]).abs() < 1e-12, "{climb:?} {closed:?}");
+    assert!((climb.backward_mev - closed[1].max(barrier.backward_mev)).abs() < 1e-12, "{climb:?} {closed:?}");
+    assert!(climb.forward_mev > 1.5 * barrier.forward_mev, "{climb:?} {barrier:?}");
+    for (t, climb) in outcome.rates.expect("rates").transitions.iter().zip([climb.forward_mev, climb.backward_mev]) {
+        let [near, far] = [0, 1].map(|k| t.rows[k].passage.ln_lifetime_s().expect("a time"));
+        let slope = (far - near) / (1.0 / (K_B * colder) - 1.0 / (K_B * cold));
+        assert!((slope / climb - 1.0).abs() < 1e-3, "{slope} {climb}");
+        // the escape goes with the first saddle
+        let [near, far] = [0, 1].map(|k| t.rows[k].escape.ln_lifetime_s().expect("a time"));
+        let slope = (far - near) / (1.0 / (K_B * colder) - 1.0 / (K_B * cold));
+        assert!((slope / t.rows[0].escape.barrier_over_kt / (K_B * cold) - 1.0).abs() < 1e-9, "{slope}");
+    }
+}
+
+#[test]
+fn paths_that_symmetry_makes_alike_are_one_network() {
+    // walls enter at either end and turn either way; each of the four kinds of minima on the way is one of four alike
+    let outcome = solve(&with(Build::open(8).easy(0.4).hard(0.1).reversal(), settings(8, 2.0, 0.2, 0.5)));
+    let rates = outcome.rates.as_ref().expect("rates");
+    let n = outcome.saddles.len();
+    let ln = |way: Way, k: usize| {
+        let r = rates.saddles.iter().find(|r| r.way == way && r.saddle == k).expect("a saddle");
+        assert_eq!(r.equivalents.count, 1);
+        r.ln_rate_per_s(Theory::Langer, 0.5).expect("Langer").exp()
+    };
+    // all 4 (n − 1) + 2 minima, and the equations of the mean times to the last one, solved by elimination
+    let size = 4 * (n - 1) + 1;
+    let state = |path: usize, k: usize| if k == 0 { 0 } else { 1 + path * (n - 1) + k - 1 };
+    let mut q = vec![0.0; size * size];
+    for path in 0..4 {
+        for k in 0..n {
+            let (from, f, b) = (state(path, k), ln(Way::Forward, k), ln(Way::Backward, k));
+            q[from * size + from] -= f;
+            if k + 1 < n {
+                let to = state(path, k + 1);
+                q[from * size + to] += f;
+                q[to * size + to] -= b;
+                q[to * size + from] += b;
+            }
+        }
+    }
+    let times = spinneb::linalg::solve_dense(&q, &vec![-1.0; size], size).expect("a solution");
+    let row = &rates.transitions[0].rows[0];
+    let found = row.passage.ln_lifetime_s().expect("a time").exp();
+    assert!((found / times[0] - 1.0).abs() < 1e-9, "{found} {}", times[0]);
+    let escape = row.escape.ln_lifetime_s().expect("a time").exp();
+    assert!((escape * 4.0 * ln(Way::Forward, 0) - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn below_one_kt_there_is_no_rate_and_the_prefactor_stays() {
+    let barrier = 1.0;
+    let temperatures_k = [0.999, 1.001].map(|delta| barrier / (delta * K_B)).to_vec();
+    let settings = RateSettings { temperatures_k, ..settings(1, 2.0, 0.3, 1.0) };
+    let outcome = solve(&with(Build::open(1).easy(barrier).hard(0.5).reversal(), settings));
+    let rates = outcome.rates.as_ref().expect("rates");
+    for (rows, prefactor) in rates.saddles.iter().map(|r| (r.rows.clone(), r.langer.is_some() && r.htst.is_some())) {
+        assert!(prefactor);
+        assert!(rows[0].ln_htst_per_s.is_none() && rows[0].ln_lifetime_s().is_none() && rows[0].known_within.is_none());
+        assert!(rows[0].reason.as_ref().expect("a reason").contains("below 1 k_BT"), "{:?}", rows[0].reason);
+        assert!(rows[1].ln_htst_per_s.is_some() && rows[1].ln_lifetime_s().is_some() && rows[1].reason.is_none());
+        assert!(rows[1].known_within.expect("a range") > 2.0);
+    }
+    for t in &rates.transitions {
+        assert!(t.refused.is_none() && t.rows[0].passage.ln_lifetime_s().is_none());
+        assert!(t.rows[1].passage.ln_lifetime_s().is_some() && t.rows[1].escape.ln_lifetime_s().is_some());
+    }
+}
+
+#[test]
+fn tunnelling_takes_over_where_the_closed_form_of_one_spin_says() {
+    let kelvin = |k: f64, hard: f64, moment: f64, damping: f64| {
+        let outcome = solve(&with(Build::open(1).easy(k).hard(hard).reversal(), settings(1, moment, damping, 1.0)));
+        rate(&outcome, Way::Forward).crossover_k.expect("a temperature")
+    };
+    // a moment of n μ_B with g = 2 is a spin of n/2: k_B T = √(K K_hard)/(π S)
+    for (k, hard, moment) in [(1.0, 0.5, 2.0), (0.3, 5.0, 20.0)] {
+        let closed = f64::sqrt(k * hard) / (PI * 0.5 * moment * K_B);
+        assert!((kelvin(k, hard, moment, 0.0) / closed - 1.0).abs() < 1e-12);
+        // damping slows the soft direction down: ε₂ > |ε₁| lowers λ₊, ε₂ < |ε₁| raises it
+        assert_eq!(kelvin(k, hard, moment, 0.1) < closed, hard > k);
+        // a damping so large that precession is nothing: λ₊ = (γ/μ) 2K/α
+        let (alpha, unit) = (1e6, HBAR * 1e-12 * unit_hz(moment));
+        let overdamped = 2.0 * k * unit / (alpha * 2.0 * PI * K_B);
+        assert!((kelvin(k, hard, moment, alpha) / overdamped - 1.0).abs() < 1e-6);
+    }
+    // the moment along z is conserved: no way through
+    let uniaxial = solve(&with(Build::open(4).easy(0.2).reversal(), settings(4, 2.0, 0.1, 5.0)));
+    let r = rate(&uniaxial, Way::Forward);
+    assert!(r.crossover_k.is_none() && r.langer.is_some());
+}
+
+#[test]
+fn a_state_beside_a_saddle_that_is_no_minimum_has_no_rate() {
+    let problem = with(Build::open(1).easy(1.0).hard(0.5).reversal(), settings(1, 2.0, 0.3, 1.0));
+    let h = &problem.hamiltonian;
+    let state = |v: [f64; 3]| Spins::from_vectors(&[v]).expect("a unit vector");
+    let top = spinneb::saddle::State::at(h, state([0.0, 1.0, 0.0]).as_slice().to_vec());
+    let spectrum = spinneb::saddle::Spectrum::of(h, &top, 2);
+    let refused = |before: [f64; 3]| {
+        let minima = [state(before), state([0.0, 0.0, -1.0])];
+        let spectra = minima.clone().map(|m| spinneb::drive::Minimum::examine(h, &m).spectrum);
+        let crossing = spinneb::rates::Crossing {
+            saddle: &top,
+            valley: &[0.0, 0.0, 1.0],
+            spectrum: &spectrum,
+            minima: [&minima[0], &minima[1]],
+            minima_spectra: [&spectra[0], &spectra[1]],
+            doubt: None,
+        };
+        let [forward, _] = spinneb::rates::saddle_rates(h, 0, &crossing, problem.rates.as_ref().expect("rates"));
+        assert_eq!(forward.refused.is_empty(), forward.rows[0].ln_lifetime_s().is_some());
+        forward.refused.first().map(|(_, why)| why.clone())
+    };
+    assert_eq!(refused([0.0, 0.0, 1.0]), None);
+    // an end kept on a slope, and one on top of the hard axis
+    let tilted = refused([0.0, 0.6, 0.8]).expect("a reason");
+    assert!(tilted.contains("the state before the saddle is no minimum: a torque of"), "{tilted}");
+    let hard = refused([1.0, 0.0, 0.0]).expect("a reason");
+    assert!(hard.contains("no minimum: it has 2 descending modes"), "{hard}");
+}
+
+#[test]
+fn stored_states_give_the_rates_of_the_run_and_must_prove_themselves() {
+    let problem = with(Build::open(8).easy(0.4).hard(0.1).reversal(), settings(8, 2.0, 0.2, 0.5));
+    let outcome = solve(&problem);
+    let last = outcome.path.images() - 1;
+    let mut minima = vec![outcome.path.spins(0)];
+    minima.extend(outcome.intermediate_minima.iter().map(|m| m.spins.clone()));
+    minima.push(outcome.path.spins(last));
+    let (h, settings) = (&problem.hamiltonian, problem.rates.as_ref().expect("settings"));
+    let again = |saddles: &[spinneb::drive::SaddlePoint], minima: &[Spins]| {
+        spinneb::drive::stored_rates(h, saddles, minima, settings)
+    };
+    let (found, run) = (again(&outcome.saddles, &minima).expect("rates"), outcome.rates.as_ref().expect("rates"));
+    assert!(outcome.saddles.len() > 2 && found.saddles.len() == run.saddles.len());
+    for (a, b) in found.transitions.iter().zip(&run.transitions) {
+        for pick in [
+            |t: &spinneb::rates::TransitionRow| t.passage.clone(),
+            |t: &spinneb::rates::TransitionRow| t.escape.clone(),
+        ] {
+            let [a, b] = [a, b].map(|t| pick(&t.rows[0]).ln_lifetime_s().expect("a time"));
+            assert!((a - b).abs() < 1e-9, "{a} {b}");
+        }
+        assert_eq!(a.equivalents, b.equivalents);
+    }
+    // a saddle of which a spin was turned, two saddles exchanged, a minimum less, a minimum that is a saddle
+    let turned = |k: usize| {
+        let mut saddles = outcome.saddles.clone();
+        let mut v = saddles[k].spins.vectors();
+        v[3] = vector::add(v[3], [0.0, 1e-4, 1e-4]);
+        saddles[k].spins = Spins::from_vectors(&v).expect("unit vectors");
+        saddles
+    };
+    let why = |r: Result<spinneb::rates::Rates, String>| r.expect_err("a reason");
+    assert!(why(again(&turned(1), &minima)).starts_with("saddle 1: a torque of"));
+    let mut exchanged = outcome.saddles.clone();
+    exchanged.swap(0, 1);
+    (exchanged[0].above_initial_mev, exchanged[1].above_initial_mev) =
+        (outcome.saddles[0].above_initial_mev, outcome.saddles[1].above_initial_mev);
+    assert!(why(again(&exchanged, &minima)).contains("summary.json says otherwise"));
+    assert!(why(again(&outcome.saddles, &minima[1..])).contains("do not lie between"));
+    minima[1] = outcome.saddles[0].spins.clone();
+    assert!(why(again(&outcome.saddles, &minima)).starts_with("saddle 0: "));
 }

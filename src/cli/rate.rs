@@ -4,10 +4,10 @@ use super::run::{Earlier, Progress, names, outcome, start_threads, write};
 use super::{Rate, UNFINISHED, USAGE, note, report, worse};
 use anyhow::Result;
 use serde_json::json;
-use spinneb::config::{RatesConfig, load};
-use spinneb::drive::Outcome;
-use spinneb::output::{Lock, folder};
-use spinneb::rates::{Row, Theory, Way};
+use spinneb::config::{Loaded, RatesConfig, load};
+use spinneb::drive::{Outcome, Problem, is_said_of_rates, rates_warnings, stored_rates};
+use spinneb::output::{Lock, StoredOutcome, folder};
+use spinneb::rates::{Row, Theory, TransitionRow, Way, digits};
 use std::f64::consts::LN_10;
 use std::io::{self, Write};
 use std::path::Path;
@@ -45,10 +45,15 @@ fn rate_one(arguments: &Rate, directory: &Path) -> Result<u8> {
     loaded.config.rates = Some(asked(arguments));
     let problem = loaded.problem()?;
     let name = &loaded.name;
-    if !arguments.quiet {
-        note(&format!("{name}: the result holds no saddles to all digits; they are found anew from its config"));
-    }
-    let outcome = outcome(&loaded, &problem, &mut Progress::new(name, arguments.quiet), started)?;
+    let outcome = match from_files(&loaded, &problem, directory)? {
+        Ok(outcome) => outcome,
+        Err(why) => {
+            if !arguments.quiet {
+                note(&format!("{name}: the saddles are found anew from its config: {why}"));
+            }
+            outcome(&loaded, &problem, &mut Progress::new(name, arguments.quiet), started)?
+        }
+    };
     write(&loaded, &outcome, directory, Earlier::GivesWay(manifest.source.as_deref()), false)?;
     if !arguments.quiet {
         outcome.warnings.iter().for_each(|warning| note(&format!("{name}: warning: {warning}")));
@@ -57,6 +62,28 @@ fn rate_one(arguments: &Rate, directory: &Path) -> Result<u8> {
         ));
     }
     print(arguments, name, directory, &outcome)
+}
+
+/// The outcome as stored, with the rates over its own saddles and minima; why it cannot be had that way, if so.
+fn from_files(loaded: &Loaded, problem: &Problem, directory: &Path) -> Result<std::result::Result<Outcome, String>> {
+    let StoredOutcome { mut outcome, minima } = match StoredOutcome::read(directory)? {
+        Ok(stored) => stored,
+        Err(why) => return Ok(Err(why)),
+    };
+    let Some(settings) = problem.rates.as_ref().filter(|_| outcome.certified && problem.relax_ends) else {
+        return Ok(Err("only those of a certified result between relaxed ends are taken from its files".into()));
+    };
+    let rates = match stored_rates(&problem.hamiltonian, &outcome.saddles, &minima, settings) {
+        Ok(rates) => rates,
+        Err(why) => return Ok(Err(format!("the states in its files do not prove themselves: {why}"))),
+    };
+    // in the place that a run gives them
+    let own = |w: &String| is_said_of_rates(w) || loaded.warnings.contains(w);
+    outcome.warnings.retain(|w| !own(w));
+    outcome.warnings.extend(rates_warnings(&rates));
+    outcome.warnings.extend(loaded.warnings.iter().cloned());
+    outcome.rates = Some(rates);
+    Ok(Ok(outcome))
 }
 
 /// The `rates` that the command line stands for.
@@ -76,13 +103,16 @@ fn print(arguments: &Rate, name: &str, directory: &Path, outcome: &Outcome) -> R
     let complete = !transitions.is_empty() && transitions.iter().all(|t| t.refused.is_none());
     let code = if complete && outcome.converged && outcome.certified { 0 } else { UNFINISHED };
     if arguments.json {
-        let row = |r: &Row| {
-            let rate = |ln: Option<f64>| ln.map(f64::exp);
+        let row = |r: &TransitionRow| {
+            let exp = |ln: Option<f64>| ln.map(f64::exp);
+            let log10 = |r: &Row| r.ln_lifetime_s().map(|ln| ln / LN_10);
             json!({
-                "temperature_K": r.temperature_k,
-                "htst_rate_per_s": rate(r.ln_htst_per_s),
-                "langer_rate_per_s": rate(r.ln_langer_per_s),
-                "log10_lifetime_s": r.ln_lifetime_s().map(|ln| ln / LN_10),
+                "temperature_K": r.passage.temperature_k,
+                "htst_rate_per_s": exp(r.passage.ln_htst_per_s),
+                "langer_rate_per_s": exp(r.passage.ln_langer_per_s),
+                "log10_escape_lifetime_s": log10(&r.escape),
+                "log10_first_passage_s": log10(&r.passage),
+                "known_within_factor": r.passage.known_within,
             })
         };
         let rows = |way: Way| -> Vec<serde_json::Value> {
@@ -100,16 +130,26 @@ fn print(arguments: &Rate, name: &str, directory: &Path, outcome: &Outcome) -> R
     }
     writeln!(
         out,
-        "{name}: {:>9} {:>10} {:>14} {:>14} {:>14}",
-        "direction", "T (K)", "HTST (1/s)", "Langer (1/s)", "lifetime (s)"
+        "{name}: {:>9} {:>10} {:>11} {:>11} {:>11} {:>17} {:>12}",
+        "direction", "T (K)", "HTST (1/s)", "Langer (1/s)", "escape (s)", "first passage (s)", "known within"
     )?;
     for t in transitions {
-        let width = name.len() + 1;
-        for r in &t.rows {
-            let [htst, langer] = [r.ln_htst_per_s, r.ln_langer_per_s].map(power);
-            let lifetime = power(r.ln_lifetime_s());
-            let way = t.way.name();
-            writeln!(out, "{:width$} {way:>9} {:>10} {htst:>14} {langer:>14} {lifetime:>14}", "", r.temperature_k)?;
+        let (width, way) = (name.len() + 1, t.way.name());
+        for TransitionRow { passage: r, escape } in &t.rows {
+            if let Some(reason) = &r.reason {
+                writeln!(out, "{:width$} {way:>9} {:>10} none: {reason}", "", r.temperature_k)?;
+                continue;
+            }
+            let shown = digits(r.known_within);
+            let [htst, langer, passage] =
+                [r.ln_htst_per_s, r.ln_langer_per_s, r.ln_lifetime_s()].map(|ln| power(ln, shown));
+            let escape = power(escape.ln_lifetime_s(), digits(escape.known_within));
+            let within = r.known_within.map_or("-".into(), range);
+            writeln!(
+                out,
+                "{:width$} {way:>9} {:>10} {htst:>11} {langer:>12} {escape:>11} {passage:>17} {within:>12}",
+                "", r.temperature_k
+            )?;
         }
         if let Some(reason) = &t.refused {
             writeln!(out, "{:width$} {:>9} none: {reason}", "", t.way.name())?;
@@ -119,23 +159,52 @@ fn print(arguments: &Rate, name: &str, directory: &Path, outcome: &Outcome) -> R
     Ok(code)
 }
 
-/// e^ln in decimal, whatever its size.
-fn power(ln: Option<f64>) -> String {
+/// e^ln in decimal with so many digits, whatever its size.
+fn power(ln: Option<f64>, digits: usize) -> String {
     let Some(ln) = ln else { return "-".into() };
     let log10 = ln / LN_10;
     let exponent = log10.floor();
-    format!("{:.3}e{exponent}", libm::exp((log10 - exponent) * LN_10))
+    let decimals = digits.saturating_sub(1);
+    let mantissa = format!("{:.decimals$}", libm::exp((log10 - exponent) * LN_10));
+    // rounded up to the next power
+    match mantissa.strip_prefix("10") {
+        Some(_) => format!("{:.decimals$}e{}", 1.0, exponent + 1.0),
+        None => format!("{mantissa}e{exponent}"),
+    }
 }
 
-/// The lifetimes of the initial state at the coldest and the hottest temperature, in a line; nothing where there is none.
+/// A factor in a few digits.
+fn range(factor: f64) -> String {
+    match factor {
+        f if f < 1.095 => format!("factor {f:.2}"),
+        f if f < 9.95 => format!("factor {f:.1}"),
+        f if f < 1e4 => format!("factor {f:.0}"),
+        f => format!("factor {f:.0e}"),
+    }
+}
+
+/// The mean times from the initial state at the coldest and the hottest temperature, in a line; nothing where there are none.
 pub fn lifetimes(outcome: &Outcome) -> Option<String> {
     let transition = outcome.rates.as_ref()?.transitions.iter().find(|t| t.way == Way::Forward)?;
-    let known = || transition.rows.iter().filter(|r| r.ln_lifetime_s().is_some());
-    let coldest = known().min_by(|a, b| a.temperature_k.total_cmp(&b.temperature_k))?;
-    let hottest = known().max_by(|a, b| a.temperature_k.total_cmp(&b.temperature_k))?;
-    let at = |r: &Row| format!("{} s at {} K", power(r.ln_lifetime_s()), r.temperature_k);
-    let both = if coldest == hottest { at(coldest) } else { format!("{}, {}", at(coldest), at(hottest)) };
-    Some(format!("mean lifetime of the initial state: {both}"))
+    let line = |pick: fn(&TransitionRow) -> &Row| -> Option<String> {
+        let known = || transition.rows.iter().map(pick).filter(|r| r.ln_lifetime_s().is_some());
+        let coldest = known().min_by(|a, b| a.temperature_k.total_cmp(&b.temperature_k))?;
+        let hottest = known().max_by(|a, b| a.temperature_k.total_cmp(&b.temperature_k))?;
+        let at = |r: &Row| {
+            let within = r
+                .known_within
+                .map_or(String::new(), |f| format!(" (within a {})", range(f).replace("factor", "factor of")));
+            format!("{} s at {} K{within}", power(r.ln_lifetime_s(), digits(r.known_within)), r.temperature_k)
+        };
+        let one = coldest.temperature_k == hottest.temperature_k;
+        Some(if one { at(coldest) } else { format!("{}, {}", at(coldest), at(hottest)) })
+    };
+    let passage = line(|r| &r.passage)?;
+    if transition.saddles == 1 {
+        return Some(format!("mean lifetime of the initial state: {passage}"));
+    }
+    let escape = line(|r| &r.escape).map_or(String::new(), |e| format!("; mean escape over the first saddle: {e}"));
+    Some(format!("mean first passage to the final state: {passage}{escape}"))
 }
 
 #[cfg(test)]
@@ -144,8 +213,9 @@ mod tests {
 
     #[test]
     fn numbers_of_any_size_are_shown() {
-        assert_eq!(power(Some(5000.0 * LN_10 + LN_10 * 0.5)), "3.162e5000");
-        assert_eq!(power(Some(-LN_10)), "1.000e-1");
-        assert_eq!(power(None), "-");
+        assert_eq!(power(Some(5000.0 * LN_10 + LN_10 * 0.5), 4), "3.162e5000");
+        assert_eq!(power(Some(-LN_10), 2), "1.0e-1");
+        assert_eq!(power(Some(9.7f64.ln()), 1), "1e1");
+        assert_eq!(power(None, 3), "-");
     }
 }

@@ -363,11 +363,22 @@ fn print(arguments: &Run, name: &str, directory: &Path) -> Result<u8> {
 
 /// A result in a line: barrier, certificate, why it ended.
 fn in_words(summary: &Value) -> String {
-    let mev = |way: &str| summary["barrier_meV"][way].as_f64();
-    let both = mev("forward").zip(mev("backward"));
-    let barrier = both.map(|(forward_mev, backward_mev)| drive::Barrier { forward_mev, backward_mev });
-    let barrier = Certainty::of_summary(summary).barrier_words(barrier);
-    format!("{barrier}; {}", summary["stop_reason"].as_str().unwrap_or("no reason is given"))
+    let both = |key: &str| {
+        let mev = |way: &str| summary[key][way].as_f64();
+        let both = mev("forward").zip(mev("backward"));
+        both.map(|(forward_mev, backward_mev)| drive::Barrier { forward_mev, backward_mev })
+    };
+    let certainty = Certainty::of_summary(summary);
+    let digits = |b: drive::Barrier| [b.forward_mev, b.backward_mev].map(|mev| certainty.number(mev, 1.0, 7));
+    let (barrier, climb) = (both("barrier_meV"), both("highest_climb_meV"));
+    let climb = match climb.map(digits) {
+        Some([f, b]) if climb.map(digits) != barrier.map(digits) => {
+            format!("; highest climb on the way {f} and {b} meV")
+        }
+        _ => String::new(),
+    };
+    let barrier = certainty.barrier_words(barrier);
+    format!("{barrier}{climb}; {}", summary["stop_reason"].as_str().unwrap_or("no reason is given"))
 }
 
 fn json_line(summary: &Value, name: &str, directory: &Path, code: u8) -> Value {
@@ -379,7 +390,7 @@ fn json_line(summary: &Value, name: &str, directory: &Path, code: u8) -> Value {
         "exit_code": code,
         "directory": directory.to_string_lossy(),
     });
-    for key in ["stop_code", "warnings"] {
+    for key in ["highest_climb_meV", "stop_code", "warnings"] {
         if let Some(value) = summary.get(key) {
             line[key] = value.clone();
         }

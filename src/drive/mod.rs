@@ -27,6 +27,7 @@ pub use explore::natural_guesses;
 pub use minimum::{Link, Minimum};
 pub use outcome::*;
 pub use problem::{Images, NebSettings, Problem};
+pub use rates::{is_said_of_rates, stored_rates, warnings as rates_warnings};
 pub use recorder::{Keep, Partial, Recorder};
 pub use relaxation::{Goal, Relaxation, image_levels, prominent_maxima, refined};
 pub use relaxed::{RelaxedState, relaxed_state};

@@ -21,6 +21,9 @@ pub struct Outcome {
     pub warnings: Vec<String>,
     /// The barrier, where there is one to report.
     pub barrier: Option<Barrier>,
+    /// The highest climb from any minimum on the way, ends included, to a later saddle; at least the barrier, and nothing without
+    /// one. At low temperature it is what the time to the other end goes with: d ln t/d(1/k_BT).
+    pub highest_climb: Option<Barrier>,
     /// The saddles (energy maxima) along the path, in path order.
     pub saddles: Vec<SaddlePoint>,
     /// The initial state as relaxed.
@@ -115,6 +118,8 @@ pub struct IntermediateMinimum {
     pub image: usize,
     /// Where on the path (rad).
     pub reaction_coordinate_rad: f64,
+    /// Its spins, as far as they are known: relaxed, or those of the image.
+    pub spins: Spins,
     /// Its state.
     pub state: EndPoint,
 }

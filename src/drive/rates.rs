@@ -1,11 +1,20 @@
 //! From the proven saddles of a path to its rates.
 
-use super::minimum::Link;
+use super::climb::Found;
+use super::minimum::{Link, Minimum};
 use super::outcome::SaddlePoint;
+use super::top::Top;
 use crate::energy::Hamiltonian;
+use crate::linalg::slab;
 use crate::rates::{
-    Crossing, Equivalents, RateSettings, Rates, SaddleRate, equivalent_saddles, refused, saddle_rates, transitions,
+    Crossing, Equivalents, Orbits, RateSettings, Rates, SaddleRate, ZeroKind, equivalent_saddles, refused,
+    saddle_rates, transitions,
 };
+use crate::saddle::{Refined, State, Verdict};
+use crate::spins::Spins;
+
+/// A stored energy above the initial state and that of the stored spins differ by less than this part of the scale.
+const AGREE: f64 = 1e-9;
 
 /// What is known of a path.
 pub struct Known<'a> {
@@ -18,30 +27,47 @@ pub struct Known<'a> {
     pub above_final: f64,
     /// What stands against the certificate of the whole.
     pub doubts: &'a [String],
+    /// Why there is no barrier; nothing if there is one.
+    pub no_barrier: Option<&'a str>,
+}
+
+impl Known<'_> {
+    /// What stands against rates of the whole.
+    fn doubt(&self) -> Option<&str> {
+        self.no_barrier.or(self.doubts.first().map(String::as_str))
+    }
 }
 
 /// The rates over every saddle and over the whole path.
 pub fn of_path(known: &Known, settings: &RateSettings) -> Rates {
-    let doubt = known.doubts.first().map(String::as_str);
-    let saddles: Vec<_> = match known.links.is_empty() {
+    let doubt = known.doubt();
+    let saddles: Vec<_> = match known.links.is_empty() || known.no_barrier.is_some() {
         true => known.saddles.iter().enumerate().flat_map(|(k, s)| unproven(known, k, s, settings)).collect(),
         false => known.links.iter().flat_map(|l| proven(known, l, settings)).collect(),
     };
-    let transitions = transitions(&saddles, &paths(known, settings), settings, doubt);
+    let transitions = transitions(&saddles, &orbits(known, &saddles, settings), settings, doubt);
     Rates { settings: settings.clone(), saddles, transitions }
 }
 
-/// Paths that symmetry makes of this one, between the same ends: those through other minima, since saddles between the same two
-/// minima are counted with each saddle.
-fn paths(known: &Known, settings: &RateSettings) -> Equivalents {
-    let (Some(first), Some(last)) = (known.links.first(), known.links.last()) else {
-        return Equivalents { count: 1, by: "not sought".into() };
+/// How many of its saddles and minima symmetry makes, both ends kept. A path over one saddle needs no count: the saddles between
+/// the same two minima are counted with it.
+fn orbits(known: &Known, rates: &[SaddleRate], settings: &RateSettings) -> Orbits {
+    let alone = |by: &str| Equivalents { count: 1, by: by.into() };
+    let (links, h) = (known.links, known.h);
+    let (Some(first), Some(last)) = (links.first(), links.last()) else {
+        return Orbits { saddles: Vec::new(), minima: Vec::new(), paths: alone("not sought") };
     };
-    if known.links.len() == 1 {
-        return Equivalents { count: 1, by: "counted with the saddle".into() };
+    if links.len() == 1 || known.doubt().is_some() {
+        return Orbits { saddles: Vec::new(), minima: Vec::new(), paths: alone("counted with the saddle") };
     }
     let ends = [first.before.spins.as_slice(), last.after.spins.as_slice()];
-    equivalent_saddles(known.h, first.after.spins.as_slice(), ends, &settings.moments_mub, false)
+    let slides = |k: usize| rates[2 * k].saddle_zeros.iter().any(|z| z.0 == ZeroKind::Translation);
+    let like = |m: &[f64], slides: bool| equivalent_saddles(h, m, ends, &settings.moments_mub, slides);
+    let between: Vec<Equivalents> =
+        links[..links.len() - 1].iter().map(|l| like(l.after.spins.as_slice(), false)).collect();
+    let saddles = links.iter().enumerate().map(|(k, l)| like(&l.found.refined.state.m, slides(k)).count).collect();
+    let minima = std::iter::once(1).chain(between.iter().map(|e| e.count)).chain([1]).collect();
+    Orbits { saddles, minima, paths: between[0].clone() }
 }
 
 fn proven(known: &Known, link: &Link, settings: &RateSettings) -> [SaddleRate; 2] {
@@ -63,7 +89,10 @@ fn proven(known: &Known, link: &Link, settings: &RateSettings) -> [SaddleRate; 2
 /// Without a proof there is no minimum to leave: the barriers are those above the ends.
 fn unproven(known: &Known, number: usize, saddle: &SaddlePoint, settings: &RateSettings) -> [SaddleRate; 2] {
     let barriers = [saddle.above_initial_mev, saddle.above_initial_mev - known.above_final].map(Some);
-    let why = known.doubts.first().map_or("certification was not asked for", String::as_str);
+    if let Some(why) = known.no_barrier {
+        return refused(number, settings, barriers, &format!("there is no barrier: {why}"));
+    }
+    let why = known.doubt().unwrap_or("certification was not asked for");
     let way_out = "a rate belongs to a proven saddle between two proven minima (\"saddle\": {\"refine\": true, \"certify\": true})";
     let index = match saddle.negative_modes {
         Some(n) if n != 1 => format!(" and has {n} negative modes"),
@@ -72,17 +101,83 @@ fn unproven(known: &Known, number: usize, saddle: &SaddlePoint, settings: &RateS
     refused(number, settings, barriers, &format!("the saddle is not certified{index}: {why}; {way_out}"))
 }
 
+/// The rates over saddles and minima (both ends among them) that were found earlier, in path order; the reason if they do not
+/// prove themselves to be what they were said to be.
+pub fn stored_rates(
+    h: &Hamiltonian,
+    saddles: &[SaddlePoint],
+    minima: &[Spins],
+    settings: &RateSettings,
+) -> Result<Rates, String> {
+    if saddles.is_empty() || minima.len() != saddles.len() + 1 {
+        return Err(format!("{} saddles do not lie between {} minima", saddles.len(), minima.len()));
+    }
+    let sites = saddles.iter().map(|s| s.spins.sites()).chain(minima.iter().map(Spins::sites));
+    if let Some(found) = sites.into_iter().find(|n| *n != h.sites()) {
+        return Err(format!("a state has {found} sites, the chain has {}", h.sites()));
+    }
+    let examined: Vec<Minimum> = minima.iter().map(|m| Minimum::examine(h, m)).collect();
+    let links: Vec<Link> =
+        saddles.iter().zip(examined.windows(2)).map(|(s, beside)| stored_link(h, s, beside)).collect();
+    let initial = minima[0].as_slice();
+    for (k, (link, saddle)) in links.iter().zip(saddles).enumerate() {
+        if let Some(doubt) = link.doubt(h) {
+            return Err(format!("saddle {k}: {doubt}"));
+        }
+        let above = h.difference_mev(saddle.spins.as_slice(), initial);
+        if (above - saddle.above_initial_mev).abs() > AGREE * h.stiffness_mev() {
+            return Err(format!(
+                "saddle {k} lies {above} meV above the initial state, and summary.json says otherwise"
+            ));
+        }
+    }
+    let above_final = h.difference_mev(minima[saddles.len()].as_slice(), initial);
+    Ok(of_path(&Known { h, links: &links, saddles, above_final, doubts: &[], no_barrier: None }, settings))
+}
+
+/// A stored saddle between two minima, its descending mode found anew.
+fn stored_link(h: &Hamiltonian, saddle: &SaddlePoint, beside: &[Minimum]) -> Link {
+    let state = State::at(h, saddle.spins.as_slice().to_vec());
+    let (before, after) = (beside[0].clone(), beside[1].clone());
+    let towards = |end: &Minimum| h.difference_mev(&state.m, end.spins.as_slice());
+    let fallen_mev = [towards(&before), towards(&after)];
+    let spectrum = crate::saddle::Spectrum::of(h, &state, 0);
+    let lowest = state.lowest_mode();
+    let valley = lowest.as_ref().map_or_else(|| vec![0.0; state.m.len()], |mode| state.field(&mode.vector));
+    let curvature_mev = lowest.map_or(0.0, |mode| mode.value);
+    let mut tau = valley.clone();
+    let size = slab::norm(&tau);
+    slab::scale(&mut tau, 1.0 / size.max(f64::MIN_POSITIVE));
+    let (s, image) = (saddle.reaction_coordinate_rad, saddle.image);
+    let top = Top { m: state.m.clone(), tau, energy_mev: state.energy_mev, s, image };
+    let index = spectrum.negative;
+    let verdict = if index > 1 { Verdict::HigherIndex } else { Verdict::Saddle };
+    let refined =
+        Refined { verdict, state, valley, steps: 0, factorisations: 0, index, curvature_mev, rotation_rad: 0.0 };
+    Link { found: Found { top, refined }, spectrum, before, after, fallen_mev, ways: Default::default(), given: false }
+}
+
+/// That some numbers are rough.
+const ROUGH: &str = "some rates are rough: \"warnings\" of \"rates\" in summary.json give their range";
+/// How a refusal begins.
+const REFUSAL: &str = "no rate by ";
+
+/// Whether a warning is one of [`warnings`].
+pub fn is_said_of_rates(warning: &str) -> bool {
+    warning == ROUGH || warning.starts_with(REFUSAL)
+}
+
 /// What the whole run should say of its rates: each reason for a refusal once, and that some numbers are rough.
 pub fn warnings(rates: &Rates) -> Vec<String> {
     let mut said: Vec<String> = Vec::new();
     for (theory, reason) in rates.saddles.iter().flat_map(|r| &r.refused) {
-        let line = format!("no rate by {}: {reason}", theory.name());
+        let line = format!("{REFUSAL}{}: {reason}", theory.name());
         if !said.contains(&line) {
             said.push(line);
         }
     }
     if rates.saddles.iter().any(|r| !r.warnings.is_empty()) {
-        said.push("some rates are rough: \"warnings\" of \"rates\" in summary.json give their range".into());
+        said.push(ROUGH.into());
     }
     said
 }

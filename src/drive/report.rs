@@ -79,7 +79,10 @@ pub fn outcome(
     let saddles = if judged.stop_code == StopCode::FlatValley { Vec::new() } else { saddles };
     let doubts = std::mem::take(&mut judged.doubts);
     let rates = run.problem.rates.as_ref().map(|settings| {
-        let known = Known { h, links: &proof.links, saddles: &saddles, above_final, doubts: &doubts };
+        let no_barrier = judged.barrier.is_none().then_some(judged.stop_reason.as_str());
+        // nothing is crossed in a flat valley
+        let links = if saddles.is_empty() { &[] } else { &proof.links[..] };
+        let known = Known { h, links, saddles: &saddles, above_final, doubts: &doubts, no_barrier };
         rates::of_path(&known, settings)
     });
     let flat = judged.stop_code == StopCode::FlatValley;
@@ -91,6 +94,13 @@ pub fn outcome(
     let images = image_table(h, band);
     let (profile, profile_terms_mev) = (profile(band), profile_terms(&band.profile(), &images));
     let minima = if proof.links.len() > 1 { link_minima(band, &proof.links) } else { band_minima(h, band) };
+    let climbs = judged.barrier.map(|b| {
+        let height = |m: &IntermediateMinimum| {
+            (m.reaction_coordinate_rad, m.state.energy_mev - h.energy_mev(band.path().image(0)))
+        };
+        let tops = saddles.iter().map(|s| (s.reaction_coordinate_rad, s.above_initial_mev));
+        highest_climb(b, tops, minima.iter().map(height), above_final)
+    });
     let work = run.work(band.evaluations());
     let [initial, final_state] = run.end_points(&proof.ends);
     Outcome {
@@ -100,6 +110,7 @@ pub fn outcome(
         stop_reason: judged.stop_reason,
         warnings,
         barrier: judged.barrier,
+        highest_climb: climbs,
         initial,
         final_state,
         intermediate_minima: minima,
@@ -207,6 +218,29 @@ impl Seen<'_> {
     }
 }
 
+/// The highest climb on a path over these saddles and intermediate minima (place and height above the initial state), each way.
+fn highest_climb(
+    barrier: Barrier,
+    saddles: impl Iterator<Item = (f64, f64)>,
+    minima: impl Iterator<Item = (f64, f64)>,
+    above_final: f64,
+) -> Barrier {
+    let tops = saddles.map(|s| (s.0, s.1, true));
+    let mut levels: Vec<(f64, f64, bool)> = minima.map(|m| (m.0, m.1, false)).chain(tops).collect();
+    levels.sort_by(|p, q| p.0.total_cmp(&q.0));
+    let climb = |levels: &mut dyn Iterator<Item = &(f64, f64, bool)>, from: f64, least: f64| {
+        let step = |(deepest, most): (f64, f64), &(_, height, is_top): &(f64, f64, bool)| match is_top {
+            true => (deepest, f64::max(most, height - deepest)),
+            false => (f64::min(deepest, height), most),
+        };
+        levels.fold((from, least), step).1
+    };
+    Barrier {
+        forward_mev: climb(&mut levels.iter(), 0.0, barrier.forward_mev),
+        backward_mev: climb(&mut levels.iter().rev(), above_final, barrier.backward_mev),
+    }
+}
+
 /// Both ends relaxed to one minimum: a result without a path.
 pub fn same_minimum(run: Summary) -> Outcome {
     let h = &run.problem.hamiltonian;
@@ -224,6 +258,7 @@ pub fn same_minimum(run: Summary) -> Outcome {
         stop_reason: "the initial and the final state relaxed to the same minimum".into(),
         warnings,
         barrier: None,
+        highest_climb: None,
         saddles: Vec::new(),
         initial,
         final_state,
@@ -261,6 +296,7 @@ pub fn partial(problem: &Problem, partial: &Partial, why: &str) -> Outcome {
         stop_reason: why.into(),
         warnings: Vec::new(),
         barrier: None,
+        highest_climb: None,
         saddles: Vec::new(),
         initial: end(0),
         final_state: end(band.images() - 1),
@@ -385,7 +421,7 @@ fn band_saddles(problem: &Problem, band: &Band) -> Vec<SaddlePoint> {
 fn link_minima(band: &Band, links: &[Link]) -> Vec<IntermediateMinimum> {
     let one = |l: &Link| {
         let (s, image) = nearest(band, l.after.spins.as_slice());
-        IntermediateMinimum { image, reaction_coordinate_rad: s, state: end_of(&l.after) }
+        IntermediateMinimum { image, reaction_coordinate_rad: s, spins: l.after.spins.clone(), state: end_of(&l.after) }
     };
     links[..links.len() - 1].iter().map(one).collect()
 }
@@ -410,7 +446,12 @@ fn band_minima(h: &Hamiltonian, band: &Band) -> Vec<IntermediateMinimum> {
     };
     prominent_maxima(&upside_down, 1e-3 * height(band))
         .into_iter()
-        .map(|k| IntermediateMinimum { image: k, reaction_coordinate_rad: s[k], state: state(k) })
+        .map(|k| IntermediateMinimum {
+            image: k,
+            reaction_coordinate_rad: s[k],
+            spins: band.path().spins(k),
+            state: state(k),
+        })
         .collect()
 }
 
@@ -489,4 +530,29 @@ fn bends(s: &[f64], energy: &[f64]) -> Vec<Bend> {
         Bend { slope, bend: (q - p).abs() }
     };
     (0..=last).map(at).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_highest_climb_starts_from_the_deepest_minimum_before_a_saddle() {
+        let climb = |saddles: &[f64], minima: &[f64], end: f64| {
+            let top = saddles.iter().fold(f64::MIN, |t, s| t.max(*s));
+            let barrier = Barrier { forward_mev: top, backward_mev: top - end };
+            let at = |odd: f64| move |(k, height): (usize, &f64)| (2.0 * k as f64 + odd, *height);
+            let (tops, deeps) = (saddles.iter().enumerate().map(at(0.0)), minima.iter().enumerate().map(at(1.0)));
+            let found = highest_climb(barrier, tops, deeps, end);
+            [found.forward_mev, found.backward_mev]
+        };
+        // one saddle: the barrier
+        assert_eq!(climb(&[2.0], &[], 0.5), [2.0, 1.5]);
+        // a shallow minimum on the way changes nothing
+        assert_eq!(climb(&[2.0, 1.0], &[0.5], 0.0), [2.0, 2.0]);
+        // a deep one is climbed out of: forward over the second saddle, backward over the first
+        assert_eq!(climb(&[0.5, 0.25], &[-0.5], 0.25), [0.75, 1.0]);
+        // two of them: the deeper one before the higher saddle
+        assert_eq!(climb(&[1.0, 2.0, 1.5], &[-1.0, -2.0], -3.0), [3.5, 5.0]);
+    }
 }

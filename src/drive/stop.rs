@@ -1,10 +1,10 @@
 //! Why a relaxation stopped.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// Why a run ended, from a closed list: `stop_code` in `summary.json`, beside the reason in words.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StopCode {
     /// The band met its tolerance.

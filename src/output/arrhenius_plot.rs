@@ -1,14 +1,14 @@
-//! `arrhenius.svg` and `.png`: the mean lifetime of both ends against 1000/T, by both theories, on a logarithmic scale.
+//! `arrhenius.svg` and `.png`: mean times from both ends against 1000/T, on a logarithmic scale.
 //!
-//! Its numbers are those of `rates.csv`, in the rows of the whole path: the lifetime by a theory is the inverse of its rate.
-//! What lies beyond [`LONGEST_S`] or below [`SHORTEST_S`] is left out. Levels of 1 s and ten years are marked.
+//! The mean first passage to the other end by both theories; with minima on the way also the mean escape over the first saddle. The
+//! numbers are those of `rates.csv`, in the rows of the whole path. Where the barrier is below [`LOW_BARRIER`] k_BT they are grey:
+//! there the theories fail by and by, and below k_BT there are none. What lies beyond [`LONGEST_S`] or below [`SHORTEST_S`] is left
+//! out. Levels of 1 s and ten years are marked. One temperature makes no figure.
 
-use super::canvas::{
-    Align, BLUE, Canvas, Colour, GREY, LinePlot, Look, Marker, SMALL_PT, Series, THIN_PT, Text, VERMILLION,
-};
+use super::canvas::{BLUE, Canvas, Colour, GREY, LinePlot, Look, Marker, SMALL_PT, Series, THIN_PT, Text, VERMILLION};
 use super::{Lifetimes, Plot, PlotData, RateRow};
 use crate::error::Result;
-use crate::rates::{TEN_YEARS_S, Way};
+use crate::rates::{LOW_BARRIER, TEN_YEARS_S, Way};
 
 /// The longest lifetime that is drawn (s).
 const LONGEST_S: f64 = 1e25;
@@ -28,7 +28,8 @@ impl Plot for ArrheniusPlot {
 
     /// One temperature makes no curve; its rates are in `rates.csv`.
     fn applies(&self, data: &PlotData) -> bool {
-        data.lifetimes.iter().any(|t| t.rows.len() > 1)
+        let temperatures = |t: &Lifetimes| t.rows.iter().any(|r| r.temperature_k != t.rows[0].temperature_k);
+        data.lifetimes.iter().any(temperatures)
     }
 
     fn draw(&self, data: &PlotData, look: &Look) -> Result<Canvas> {
@@ -36,19 +37,34 @@ impl Plot for ArrheniusPlot {
     }
 }
 
-/// The lifetimes of the whole transition, forward and (where it differs) backward.
+/// The times of the whole transition, forward and (where they differ) backward.
 pub fn draw_lifetimes(lifetimes: &[Lifetimes], look: &Look) -> Result<Canvas> {
-    let mut plot = LinePlot::new("1000 K / T", "Mean lifetime (s)").log_y().look(look);
     let both_differ = differ(lifetimes);
+    let stops = lifetimes.iter().flat_map(|t| &t.rows).any(escapes_first);
+    let axis = if stops { "Mean time (s)" } else { "Mean lifetime (s)" };
+    let mut plot = LinePlot::new("1000 K / T", axis).log_y().look(look);
+    plot.legend_above = stops;
     for t in lifetimes.iter().filter(|t| both_differ || t.way == Way::Forward) {
         let colour = if t.way == Way::Forward { BLUE } else { VERMILLION };
         let htst_colour = if both_differ { colour } else { VERMILLION };
-        let name = |theory: &str| match both_differ {
-            true => format!("{theory}, {}", t.way.name()),
-            false => theory.to_string(),
+        let name = |what: &str| match both_differ {
+            true => format!("{what}, {}", t.way.name()),
+            false => what.to_string(),
         };
-        plot.series.extend(curve(&t.rows, |r| r.langer_per_s, name("Langer"), colour, None));
-        plot.series.extend(curve(&t.rows, |r| r.htst_per_s, name("HTST"), htst_colour, Some((3.0, 2.0))));
+        let passage = |theory: &str| name(&if stops { format!("First passage, {theory}") } else { theory.to_string() });
+        let inverse = |rate: Option<f64>| rate.map(|r| 1.0 / r);
+        let langer = curves(&t.rows, |r| inverse(r.langer_per_s), passage("Langer"), colour, None);
+        let htst = curves(&t.rows, |r| inverse(r.htst_per_s), passage("HTST"), htst_colour, Some((3.0, 2.0)));
+        plot.series.extend(langer.into_iter().chain(htst));
+        if stops {
+            let dots = Some((0.8, 1.6));
+            plot.series.extend(curves(&t.rows, |r| r.escape_s, name("First escape"), colour, dots));
+        }
+    }
+    // grey lines lie below the others, and one entry at the end of the legend stands for all
+    plot.series.sort_by_key(|s| s.label.is_some());
+    if let Some(point) = plot.series.first().filter(|s| s.label.is_none()).map(|s| s.points[0]) {
+        plot.series.push(Series::line(vec![point]).label(format!("Barrier below {LOW_BARRIER} kT")).colour(GREY));
     }
     let (mut canvas, frame) = plot.draw_frame()?;
     for (level, words) in [(1.0, "1 s"), (TEN_YEARS_S, "10 years")] {
@@ -56,7 +72,8 @@ pub fn draw_lifetimes(lifetimes: &[Lifetimes], look: &Look) -> Result<Canvas> {
             frame.place((frame.x.min, level)).filter(|p| frame.rect.grown(-8.0).contains((frame.rect.x0 + 9.0, p.1)));
         if let Some((_, y)) = place.filter(|_| !plot.series.is_empty()) {
             canvas.dashed(&[(frame.rect.x0, y), (frame.rect.x1, y)], THIN_PT, GREY, (2.0, 2.0));
-            canvas.text((frame.rect.x1 - 4.0, y - 2.0), Text::new(words, SMALL_PT).align(Align::Right))?;
+            // on the hot side, where times are short and the curves low
+            canvas.text((frame.rect.x0 + 5.0, y - 2.0), Text::new(words, SMALL_PT))?;
         }
     }
     let obstacles = plot.draw_series(&mut canvas, &frame);
@@ -71,23 +88,30 @@ fn differ(lifetimes: &[Lifetimes]) -> bool {
     forward.rows.iter().zip(&backward.rows).any(|(f, b)| (rate(f) - rate(b)).abs() > 1e-3 * rate(f).max(rate(b)))
 }
 
-/// The lifetimes by one theory that fit into the figure, from hot to cold.
-fn curve(
+/// Whether leaving the first minimum is not the whole way.
+fn escapes_first(r: &RateRow) -> bool {
+    let passage = r.langer_per_s.or(r.htst_per_s);
+    passage.zip(r.escape_s).is_some_and(|(rate, escape)| (rate * escape - 1.0).abs() > 0.01)
+}
+
+/// The times that fit into the figure, from hot to cold: a grey line up to where the barrier is high enough, and one from there.
+fn curves(
     rows: &[RateRow],
-    per_s: fn(&RateRow) -> Option<f64>,
+    time_s: impl Fn(&RateRow) -> Option<f64>,
     label: String,
     colour: Colour,
     dash: Option<(f64, f64)>,
-) -> Option<Series> {
-    let mut points: Vec<(f64, f64)> = rows
-        .iter()
-        .filter_map(|r| Some((1000.0 / r.temperature_k, 1.0 / per_s(r)?)))
-        .filter(|p| (SHORTEST_S..=LONGEST_S).contains(&p.1))
-        .collect();
-    if points.is_empty() {
-        return None;
-    }
+) -> Vec<Series> {
+    let shown = |r: &RateRow| Some((1000.0 / r.temperature_k, time_s(r)?, r.barrier_over_kt < LOW_BARRIER));
+    let mut points: Vec<(f64, f64, bool)> = rows.iter().filter_map(shown).collect();
+    points.retain(|p| (SHORTEST_S..=LONGEST_S).contains(&p.1));
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     let marker = (points.len() <= FEW).then_some(Marker::Disc);
-    Some(Series { dash, marker, ..Series::line(points).label(label).colour(colour) })
+    let low = points.iter().take_while(|p| p.2).count();
+    // the grey line reaches to the first point of the other
+    let line =
+        |part: &[(f64, f64, bool)]| Series { dash, marker, ..Series::line(part.iter().map(|p| (p.0, p.1)).collect()) };
+    let grey = (low > 0).then(|| line(&points[..(low + 1).min(points.len())]).colour(GREY));
+    let known = (low < points.len()).then(|| line(&points[low..]).label(label).colour(colour));
+    grey.into_iter().chain(known).collect()
 }

@@ -31,6 +31,7 @@ mod report;
 mod spin_files;
 mod spins_plot;
 mod staggered;
+mod stored_outcome;
 mod stored_run;
 mod summary;
 pub mod sweep;
@@ -52,8 +53,9 @@ pub use plot_data::{Lifetimes, Places, PlotData, RateRow};
 pub use rates_csv::RatesCsv;
 pub use relaxed::{RelaxReport, StateReport, relaxed_file_names};
 pub use report::ReportPage;
-pub use spin_files::{OvfImages, PathNpz, PathOvf, SaddleOvf, SpinsCsv, Vtk};
+pub use spin_files::{MinimaOvf, OvfImages, PathNpz, PathOvf, SaddleOvf, SpinsCsv, Vtk};
 pub use spins_plot::{SpinsPlot, draw_spins};
+pub use stored_outcome::StoredOutcome;
 pub use stored_run::StoredRun;
 pub use summary::Summary;
 
@@ -175,8 +177,12 @@ pub const KINDS: &[Kind] = &[
     Kind {
         name: "ovf",
         group: Group::Formats,
-        summary: "path.ovf, saddle.ovf: spins as OVF 2.0 binary 8, a segment an image or saddle",
-        formats: || ovf(OvfData::Binary8),
+        summary: "path.ovf, saddle.ovf, minima.ovf: spins as OVF 2.0 binary 8, a segment an image, saddle or minimum (with both ends)",
+        formats: || {
+            let mut formats = ovf(OvfData::Binary8);
+            formats.push(Box::new(MinimaOvf));
+            formats
+        },
     },
     Kind {
         name: "html",

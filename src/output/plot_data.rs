@@ -5,7 +5,7 @@ use super::{EnergyPath, RunReport};
 use crate::drive::HistoryRow;
 use crate::lattice::Chain;
 use crate::path::Path;
-use crate::rates::{Row, Way};
+use crate::rates::{TransitionRow, Way};
 
 /// The numbers of one result's figures.
 #[derive(Clone, Debug, Default)]
@@ -26,7 +26,7 @@ pub struct PlotData<'a> {
     pub places: Option<Places>,
     /// One row a band iteration.
     pub history: Vec<HistoryRow>,
-    /// Mean lifetimes of both ends, where rates were asked for.
+    /// Mean times from both ends to the other, where rates were asked for.
     pub lifetimes: Vec<Lifetimes>,
 }
 
@@ -62,10 +62,14 @@ pub struct Lifetimes {
 pub struct RateRow {
     /// Temperature (K).
     pub temperature_k: f64,
-    /// By harmonic transition-state theory (1/s).
+    /// ΔE/k_BT of the whole path.
+    pub barrier_over_kt: f64,
+    /// One over the mean first passage, by harmonic transition-state theory (1/s).
     pub htst_per_s: Option<f64>,
-    /// By Langer's theory (1/s).
+    /// The same by Langer's theory (1/s).
     pub langer_per_s: Option<f64>,
+    /// Mean escape over the first saddle (s).
+    pub escape_s: Option<f64>,
 }
 
 impl<'a> PlotData<'a> {
@@ -96,12 +100,15 @@ impl<'a> PlotData<'a> {
 }
 
 impl RateRow {
-    fn of(row: &Row) -> RateRow {
+    fn of(row: &TransitionRow) -> RateRow {
+        let whole = &row.passage;
         let rate = |ln: Option<f64>| ln.map(libm::exp).filter(|r| r.is_finite());
         RateRow {
-            temperature_k: row.temperature_k,
-            htst_per_s: rate(row.ln_htst_per_s),
-            langer_per_s: rate(row.ln_langer_per_s),
+            temperature_k: whole.temperature_k,
+            barrier_over_kt: whole.barrier_over_kt,
+            htst_per_s: rate(whole.ln_htst_per_s),
+            langer_per_s: rate(whole.ln_langer_per_s),
+            escape_s: rate(row.escape.ln_lifetime_s()),
         }
     }
 }

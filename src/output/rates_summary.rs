@@ -1,9 +1,10 @@
 //! The entries of `rates` and `transition_rates` in `summary.json`.
 //!
-//! A rate too small for a double is 0 and its lifetime null; `log10_lifetime_s` is there for all.
+//! A rate too small for a double is 0 and its lifetime null; `log10_lifetime_s` is there for all. Where the barrier is below k_BT
+//! all of them are null, and `reason` says so. `known_within_factor`: a rate or time may be larger or smaller by that.
 
 use super::summary::Number;
-use crate::rates::{Prefactor, Rates, Row, SaddleRate, Theory, TransitionRate, ZeroKind};
+use crate::rates::{Prefactor, Rates, Row, SaddleRate, Theory, TransitionRate, TransitionRow, ZeroKind};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -19,6 +20,7 @@ pub(super) struct RateEntry<'a> {
     prefactor_temperature_exponent: Number,
     dynamical_factor_per_s: Option<Number>,
     growth_rate_per_s: Option<Number>,
+    crossover_temperature_K: Option<Number>,
     entropy_factor: Option<Number>,
     minimum_zero_modes: Vec<ZeroEntry>,
     saddle_zero_modes: Vec<ZeroEntry>,
@@ -30,7 +32,7 @@ pub(super) struct RateEntry<'a> {
     blocking_temperature_10_years_K: Option<Number>,
     refused: BTreeMap<&'static str, &'a str>,
     warnings: &'a [String],
-    temperatures: Vec<TemperatureEntry>,
+    temperatures: Vec<TemperatureEntry<'a>>,
 }
 
 #[derive(Serialize)]
@@ -44,7 +46,7 @@ pub(super) struct TransitionEntry<'a> {
     blocking_temperature_1_s_K: Option<Number>,
     blocking_temperature_10_years_K: Option<Number>,
     refused: Option<&'a str>,
-    temperatures: Vec<TemperatureEntry>,
+    temperatures: Vec<PassageEntry>,
 }
 
 #[derive(Serialize)]
@@ -56,13 +58,31 @@ struct ZeroEntry {
 
 #[derive(Serialize)]
 #[allow(non_snake_case)]
-struct TemperatureEntry {
+struct TemperatureEntry<'a> {
     temperature_K: Number,
     barrier_over_kT: Number,
     htst_rate_per_s: Option<Number>,
     langer_rate_per_s: Option<Number>,
     lifetime_s: Option<Number>,
     log10_lifetime_s: Option<Number>,
+    known_within_factor: Option<Number>,
+    reason: Option<&'a str>,
+}
+
+/// The rates are the inverse of the mean first passage.
+#[derive(Serialize)]
+#[allow(non_snake_case)]
+struct PassageEntry {
+    temperature_K: Number,
+    barrier_over_kT: Number,
+    htst_rate_per_s: Option<Number>,
+    langer_rate_per_s: Option<Number>,
+    escape_lifetime_s: Option<Number>,
+    log10_escape_lifetime_s: Option<Number>,
+    first_passage_s: Option<Number>,
+    log10_first_passage_s: Option<Number>,
+    known_within_factor: Option<Number>,
+    reason: Option<String>,
 }
 
 /// An entry for each saddle and direction.
@@ -91,6 +111,7 @@ fn saddle<'a>(rates: &'a Rates, r: &'a SaddleRate) -> RateEntry<'a> {
         prefactor_temperature_exponent: Number(known.map_or(0.0, |p| p.exponent)),
         dynamical_factor_per_s: frequency(r.htst),
         growth_rate_per_s: frequency(r.langer),
+        crossover_temperature_K: r.crossover_k.map(Number),
         entropy_factor: r.entropy_factor.map(Number),
         minimum_zero_modes: zeros(&r.minimum_zeros),
         saddle_zero_modes: zeros(&r.saddle_zeros),
@@ -116,7 +137,7 @@ fn transition(t: &TransitionRate) -> TransitionEntry<'_> {
         blocking_temperature_1_s_K: t.blocking_k[0].map(Number),
         blocking_temperature_10_years_K: t.blocking_k[1].map(Number),
         refused: t.refused.as_deref(),
-        temperatures: t.rows.iter().map(temperature).collect(),
+        temperatures: t.rows.iter().map(passage).collect(),
     }
 }
 
@@ -129,17 +150,45 @@ fn zeros(modes: &[(ZeroKind, usize, f64)]) -> Vec<ZeroEntry> {
     modes.iter().map(entry).collect()
 }
 
-fn temperature(row: &Row) -> TemperatureEntry {
-    let rate = |ln: Option<f64>| ln.and_then(|ln| held(libm::exp(ln)));
-    let lifetime = row.ln_lifetime_s();
+fn temperature(row: &Row) -> TemperatureEntry<'_> {
     TemperatureEntry {
         temperature_K: Number(row.temperature_k),
         barrier_over_kT: Number(row.barrier_over_kt),
-        htst_rate_per_s: rate(row.ln_htst_per_s),
-        langer_rate_per_s: rate(row.ln_langer_per_s),
-        lifetime_s: rate(lifetime),
-        log10_lifetime_s: lifetime.map(|ln| Number(ln / std::f64::consts::LN_10)),
+        htst_rate_per_s: exp(row.ln_htst_per_s),
+        langer_rate_per_s: exp(row.ln_langer_per_s),
+        lifetime_s: exp(row.ln_lifetime_s()),
+        log10_lifetime_s: log10(row.ln_lifetime_s()),
+        known_within_factor: row.known_within.and_then(held),
+        reason: row.reason.as_deref(),
     }
+}
+
+fn passage(row: &TransitionRow) -> PassageEntry {
+    let (whole, first) = (&row.passage, &row.escape);
+    let reason = match (&whole.reason, &first.reason) {
+        (None, Some(reason)) => Some(format!("no escape over the first saddle alone: {reason}")),
+        (reason, _) => reason.clone(),
+    };
+    PassageEntry {
+        temperature_K: Number(whole.temperature_k),
+        barrier_over_kT: Number(whole.barrier_over_kt),
+        htst_rate_per_s: exp(whole.ln_htst_per_s),
+        langer_rate_per_s: exp(whole.ln_langer_per_s),
+        escape_lifetime_s: exp(first.ln_lifetime_s()),
+        log10_escape_lifetime_s: log10(first.ln_lifetime_s()),
+        first_passage_s: exp(whole.ln_lifetime_s()),
+        log10_first_passage_s: log10(whole.ln_lifetime_s()),
+        known_within_factor: whole.known_within.and_then(held),
+        reason,
+    }
+}
+
+fn exp(ln: Option<f64>) -> Option<Number> {
+    ln.and_then(|ln| held(libm::exp(ln)))
+}
+
+fn log10(ln: Option<f64>) -> Option<Number> {
+    ln.map(|ln| Number(ln / std::f64::consts::LN_10))
 }
 
 /// A number that a double holds.

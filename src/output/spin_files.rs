@@ -19,6 +19,10 @@ pub struct PathOvf(pub OvfData);
 #[derive(Clone, Copy, Debug)]
 pub struct SaddleOvf(pub OvfData);
 
+/// `minima.ovf`: a segment a minimum, in path order, the initial state first and the final one last.
+#[derive(Clone, Copy, Debug)]
+pub struct MinimaOvf;
+
 /// `ovf/image_000.ovf` …: a file an image.
 #[derive(Clone, Copy, Debug)]
 pub struct OvfImages;
@@ -80,6 +84,23 @@ impl Format for SaddleOvf {
             (words, s.spins.vectors())
         });
         Ok(ovf(self.0, run, saddles.collect()))
+    }
+}
+
+impl Format for MinimaOvf {
+    fn file_name(&self) -> String {
+        "minima.ovf".into()
+    }
+
+    fn render(&self, run: &RunReport) -> Result<Vec<u8>> {
+        let (path, between) = (&run.outcome.path, &run.outcome.intermediate_minima);
+        let count = between.len() + 2;
+        let named = |k: usize, energy: f64| format!("minimum {k} of {count}, energy {energy:?} meV");
+        let mut minima = vec![(named(0, run.outcome.initial.energy_mev), path.spins(0).vectors())];
+        minima.extend(between.iter().enumerate().map(|(k, m)| (named(k + 1, m.state.energy_mev), m.spins.vectors())));
+        let last = path.spins(path.images() - 1).vectors();
+        minima.push((named(count - 1, run.outcome.final_state.energy_mev), last));
+        Ok(ovf(OvfData::Binary8, run, minima))
     }
 }
 

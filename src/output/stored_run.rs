@@ -89,8 +89,11 @@ struct Transition {
 #[allow(non_snake_case)]
 struct Temperature {
     temperature_K: f64,
+    barrier_over_kT: f64,
     htst_rate_per_s: Option<f64>,
     langer_rate_per_s: Option<f64>,
+    #[serde(default)]
+    escape_lifetime_s: Option<f64>,
 }
 
 impl StoredRun {
@@ -234,7 +237,7 @@ fn terms(table: &Columns) -> Vec<(String, Vec<f64>)> {
     table.all().iter().filter_map(term).collect()
 }
 
-fn history(table: &Columns) -> Result<Vec<HistoryRow>> {
+pub(super) fn history(table: &Columns) -> Result<Vec<HistoryRow>> {
     let [iteration, images] = ["iteration", "images"].map(|name| table.named(name));
     let (iteration, images) = (iteration?, images?);
     let torque = table.named("max_perpendicular_torque_meV")?;
@@ -283,23 +286,25 @@ fn lifetimes(t: &Transition) -> Option<Lifetimes> {
     let way = [Way::Forward, Way::Backward].into_iter().find(|way| way.name() == t.direction)?;
     let row = |t: &Temperature| RateRow {
         temperature_k: t.temperature_K,
+        barrier_over_kt: t.barrier_over_kT,
         htst_per_s: t.htst_rate_per_s,
         langer_per_s: t.langer_rate_per_s,
+        escape_s: t.escape_lifetime_s,
     };
     Some(Lifetimes { way, rows: t.temperatures.iter().map(row).collect() })
 }
 
-fn shown(dir: &Path, name: &str) -> String {
+pub(super) fn shown(dir: &Path, name: &str) -> String {
     dir.join(name).display().to_string()
 }
 
 /// A file's text; nothing where there is no such file.
-fn text(dir: &Path, name: &str) -> Result<Option<String>> {
+pub(super) fn text(dir: &Path, name: &str) -> Result<Option<String>> {
     let Some(bytes) = bytes(dir, name)? else { return Ok(None) };
     let no_text = |_| Error::invalid(shown(dir, name), format!("is no text: {WAY_OUT}"));
     String::from_utf8(bytes).map(Some).map_err(no_text)
 }
 
-fn bytes(dir: &Path, name: &str) -> Result<Option<Vec<u8>>> {
+pub(super) fn bytes(dir: &Path, name: &str) -> Result<Option<Vec<u8>>> {
     disk::read_if_there(&dir.join(name))
 }

@@ -65,6 +65,7 @@ struct Document<'a> {
     barrier_K: Option<BothWays>,
     #[serde(skip_serializing_if = "Option::is_none")]
     barrier_uncertainty_meV: Option<Number>,
+    highest_climb_meV: Option<BothWays>,
     saddles: Vec<SaddleEntry>,
     initial: EndEntry,
     r#final: EndEntry,
@@ -161,6 +162,7 @@ fn document<'a>(run: &RunReport<'a>) -> Document<'a> {
         barrier_J: barrier(|mev| mev * J_PER_MEV),
         barrier_K: barrier(|mev| mev / K_B_MEV),
         barrier_uncertainty_meV: unknown_mev.map(Number),
+        highest_climb_meV: outcome.highest_climb.map(|climb| both_ways(climb, |mev| mev)),
         saddles: outcome.saddles.iter().map(saddle).collect(),
         initial: end(&outcome.initial),
         r#final: end(&outcome.final_state),

@@ -20,8 +20,13 @@
 //! (2021), arXiv:2008.06754; Langer's theory of intermediate to high damping: J. S. Langer, Ann. Phys. 54, 258 (1969),
 //! doi:10.1016/0003-4916(69)90153-5; for spins H. B. Braun, J. Appl. Phys. 76, 6310 (1994), doi:10.1063/1.358269. HTST counts
 //! every crossing of the plane normal to e₁, also those that turn back: without damping it is an upper bound, far above the rate on
-//! plateaus. Langer's needs a bath that keeps up with the crossings: with α ΔE/k_BT below about three it is too large.
+//! plateaus. Langer's needs a bath that keeps up with the crossings: with α ΔE/k_BT below about three it is too large. Below
+//! ΔE = k_BT nothing holds a state back, and there is no rate ([`LEAST_BARRIER`]).
+//!
+//! The moments are classical. With the saddle comes the temperature at which tunnelling through the barrier takes over, see
+//! [`SaddleRate::crossover_k`].
 
+mod crossover;
 mod determinant;
 mod growth;
 mod passage;
@@ -34,14 +39,16 @@ mod unstable;
 mod validity;
 mod zero_modes;
 
+pub use crossover::crossover_temperature;
 pub use determinant::log_determinant;
 pub use growth::growth_rate;
-pub use passage::{TEN_YEARS_S, blocking_temperature, first_passage};
-pub use rate::{Crossing, Prefactor, Row, SaddleRate, Way, refused, saddle_rates};
+pub use passage::{TEN_YEARS_S, blocking_temperature, first_passage, passages};
+pub use rate::{Crossing, LEAST_BARRIER, Prefactor, Row, SaddleRate, Way, refused, saddle_rates};
 pub use settings::{RateSettings, Theory};
 pub use symmetry::{Equivalents, equivalent_saddles};
-pub use transition::{TransitionRate, transitions};
+pub use transition::{Orbits, TransitionRate, TransitionRow, transitions};
 pub use unstable::{Unstable, unstable_mode};
+pub use validity::{LOW_BARRIER, Validity, digits};
 pub use zero_modes::{ZeroKind, ZeroMode, zero_modes};
 
 /// Everything about the rates of a path.

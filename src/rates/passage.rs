@@ -6,7 +6,8 @@
 //! ```text
 //! t_0 = 1/f_0,    t_i = (1 + b_i t_{i−1})/f_i,    mean first passage from 0 to n: Σ t_i
 //! ```
-//! (an absorbing Markov chain with the minima as states). All terms are positive, and all is done in logarithms.
+//! (an absorbing Markov chain with the minima as states). All terms are positive, and all is done in logarithms. A change of the two
+//! rates over saddle i by one factor changes t_i by it, and no other: t_i over the whole is how far the time hangs on that saddle.
 
 /// Ten years of 365.25 days (s).
 pub const TEN_YEARS_S: f64 = 3.155_76e8;
@@ -17,25 +18,29 @@ fn log_sum(a: f64, b: f64) -> f64 {
     if small == f64::NEG_INFINITY { large } else { large + libm::log1p(libm::exp(small - large)) }
 }
 
-/// ln of the mean first-passage time (s) from minimum 0 to minimum n, from the logarithms of the rates (1/s) over the n saddles:
-/// `onward[i]` from minimum i to i + 1, `back[i]` from minimum i + 1 to i.
-pub fn first_passage(onward: &[f64], back: &[f64]) -> f64 {
-    let mut step = f64::NEG_INFINITY;
-    let mut total = f64::NEG_INFINITY;
+/// ln t_i (s) from the logarithms of the rates (1/s) over the n saddles: `onward[i]` from minimum i to i + 1, `back[i]` from minimum
+/// i + 1 to i.
+pub fn passages(onward: &[f64], back: &[f64]) -> Vec<f64> {
+    let mut times: Vec<f64> = Vec::with_capacity(onward.len());
     for (i, forward) in onward.iter().enumerate() {
-        let returns = if i == 0 { f64::NEG_INFINITY } else { back[i - 1] + step };
-        step = log_sum(0.0, returns) - forward;
-        total = log_sum(total, step);
+        let returns = times.last().map_or(f64::NEG_INFINITY, |before| back[i - 1] + before);
+        times.push(log_sum(0.0, returns) - forward);
     }
-    total
+    times
 }
 
-/// The temperature (K) at which the mean lifetime is `seconds`: the solution between Δ = 5000 and Δ = 1/2, from the logarithm of the
+/// ln of the mean first-passage time (s) from minimum 0 to minimum n, likewise.
+pub fn first_passage(onward: &[f64], back: &[f64]) -> f64 {
+    passages(onward, back).into_iter().fold(f64::NEG_INFINITY, log_sum)
+}
+
+/// The temperature (K) at which the mean lifetime is `seconds`: the solution between Δ = 5000 and a hair above Δ = 1,
+/// from the logarithm of the
 /// lifetime (s) at a temperature (K). Nothing where the lifetime does not fall through `seconds` in between.
 pub fn blocking_temperature(ln_lifetime_s: impl Fn(f64) -> Option<f64>, barrier_mev: f64, seconds: f64) -> Option<f64> {
     let wanted = libm::log(seconds);
     let over_k = barrier_mev / crate::units::K_B;
-    let (mut low, mut high) = (over_k / 5000.0, 2.0 * over_k);
+    let (mut low, mut high) = (over_k / 5000.0, 0.999_999 * over_k);
     let crosses = high > low && ln_lifetime_s(low)? > wanted && ln_lifetime_s(high)? < wanted;
     if !crosses {
         return None;

@@ -2,17 +2,21 @@
 
 use super::determinant::PinnedHessian;
 use super::passage::{TEN_YEARS_S, blocking_temperature};
-use super::refusal::{conserved_moment, unfit};
-use super::validity::{Fluctuations, warnings};
+use super::refusal::{conserved_moment, no_minimum, unfit};
+use super::validity::{Fluctuations, Validity, warnings};
 use super::zero_modes::ZeroMode;
 use super::{
-    Equivalents, RateSettings, Theory, Unstable, ZeroKind, equivalent_saddles, growth_rate, unstable_mode, zero_modes,
+    Equivalents, RateSettings, Theory, Unstable, ZeroKind, crossover_temperature, equivalent_saddles, growth_rate,
+    unstable_mode, zero_modes,
 };
 use crate::energy::Hamiltonian;
 use crate::saddle::{Spectrum, State};
 use crate::spins::Spins;
 use crate::units::K_B;
 use std::f64::consts::PI;
+
+/// Below so many k_BT a barrier holds nothing back, and there is no rate over it.
+pub const LEAST_BARRIER: f64 = 1.0;
 
 /// Most sites of a chain with a long-ranged term for Langer's theory, whose matrix is then dense.
 const MOST_DENSE: usize = 1000;
@@ -83,7 +87,7 @@ impl Prefactor {
 }
 
 /// Rates at one temperature, as logarithms: a lifetime may exceed what a double holds.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Row {
     /// Temperature (K).
     pub temperature_k: f64,
@@ -93,9 +97,24 @@ pub struct Row {
     pub ln_htst_per_s: Option<f64>,
     /// ln of the rate in 1/s by Langer.
     pub ln_langer_per_s: Option<f64>,
+    /// The rate may be larger or smaller by this factor; nothing where there is no rate, or nothing known of its error.
+    pub known_within: Option<f64>,
+    /// Why there is no rate at this temperature, where there is one at others.
+    pub reason: Option<String>,
 }
 
 impl Row {
+    /// Without rates if the barrier is lower than k_BT.
+    pub fn held(self) -> Row {
+        if self.barrier_over_kt >= LEAST_BARRIER {
+            return self;
+        }
+        let reason =
+            format!("ΔE = {:.2} k_BT: below {LEAST_BARRIER} k_BT nothing holds the state back", self.barrier_over_kt);
+        let (temperature_k, barrier_over_kt) = (self.temperature_k, self.barrier_over_kt);
+        Row { temperature_k, barrier_over_kt, reason: Some(reason), ..Row::default() }
+    }
+
     /// ln of the mean lifetime in s: Langer's where there is one, else that of HTST.
     pub fn ln_lifetime_s(&self) -> Option<f64> {
         self.ln_langer_per_s.or(self.ln_htst_per_s).map(|ln| -ln)
@@ -123,6 +142,11 @@ pub struct SaddleRate {
     pub saddle_zeros: Vec<(ZeroKind, usize, f64)>,
     /// Saddles of the same kind out of the same minimum; the rates are over all of them.
     pub equivalents: Equivalents,
+    /// Temperature (K) below which tunnelling takes over, see [`crossover_temperature`]; nothing where the spins do not precess
+    /// over the saddle.
+    pub crossover_k: Option<f64>,
+    /// What the errors hang on, where there is a rate.
+    pub validity: Option<Validity>,
     /// One row a temperature.
     pub rows: Vec<Row>,
     /// Temperature (K) at which the mean lifetime is 1 s, and at which it is ten years.
@@ -134,7 +158,8 @@ pub struct SaddleRate {
 }
 
 impl SaddleRate {
-    /// ln of the rate in 1/s by a theory at a temperature (K), over all equivalent saddles.
+    /// ln of the rate in 1/s by a theory at a temperature (K), over all equivalent saddles; what the formula gives, however low the
+    /// barrier.
     pub fn ln_rate_per_s(&self, theory: Theory, temperature_k: f64) -> Option<f64> {
         let prefactor = match theory {
             Theory::Htst => self.htst,
@@ -144,12 +169,22 @@ impl SaddleRate {
         Some(prefactor.ln_hz_at(temperature_k) + many - self.barrier_mev? / (K_B * temperature_k))
     }
 
+    /// ln of the factor within which the rate is known at a temperature (K).
+    pub fn ln_known_within(&self, temperature_k: f64) -> f64 {
+        self.validity.map_or(f64::INFINITY, |v| v.ln_factor(temperature_k))
+    }
+
     fn fill(&mut self, settings: &RateSettings) {
-        let row = |t: f64| Row {
-            temperature_k: t,
-            barrier_over_kt: self.barrier_mev.map_or(0.0, |e| e / (K_B * t)),
-            ln_htst_per_s: self.ln_rate_per_s(Theory::Htst, t),
-            ln_langer_per_s: self.ln_rate_per_s(Theory::Langer, t),
+        let row = |t: f64| {
+            let all = Row {
+                temperature_k: t,
+                barrier_over_kt: self.barrier_mev.map_or(0.0, |e| e / (K_B * t)),
+                ln_htst_per_s: self.ln_rate_per_s(Theory::Htst, t),
+                ln_langer_per_s: self.ln_rate_per_s(Theory::Langer, t),
+                known_within: factor(self.ln_known_within(t)),
+                reason: None,
+            };
+            all.held()
         };
         let rows: Vec<Row> = match self.barrier_mev {
             Some(_) => settings.temperatures_k.iter().map(|t| row(*t)).collect(),
@@ -160,6 +195,11 @@ impl SaddleRate {
         let blocking = [1.0, TEN_YEARS_S].map(|s| blocking_temperature(lifetime, scale, s));
         (self.rows, self.blocking_k) = (rows, blocking);
     }
+}
+
+/// A factor from its logarithm, if it is one.
+pub(super) fn factor(ln: f64) -> Option<f64> {
+    Some(libm::exp(ln)).filter(|f| f.is_finite())
 }
 
 /// A saddle without rates, in both directions, and the reason.
@@ -179,6 +219,8 @@ pub fn refused(
         minimum_zeros: Vec::new(),
         saddle_zeros: Vec::new(),
         equivalents: Equivalents { count: 1, by: "not sought".into() },
+        crossover_k: None,
+        validity: None,
         rows: Vec::new(),
         blocking_k: [None, None],
         refused: settings.theories.iter().map(|t| (*t, reason.to_string())).collect(),
@@ -259,8 +301,12 @@ fn computed(
     let top = Well::new(h, crossing.saddle.clone(), settings, crossing.spectrum, Some(crossing.valley))
         .map_err(|e| format!("the saddle has {e}"))?;
     let well = |side: usize| {
-        let state = State::at(h, crossing.minima[side].as_slice().to_vec());
-        Well::new(h, state, settings, crossing.minima_spectra[side], None)
+        let (state, spectrum) =
+            (State::at(h, crossing.minima[side].as_slice().to_vec()), crossing.minima_spectra[side]);
+        if let Some(reason) = no_minimum(spectrum, state.max_torque_mev()) {
+            return Err(format!("the state {} the saddle is no minimum: {reason}", ["before", "after"][side]));
+        }
+        Well::new(h, state, settings, spectrum, None)
             .map_err(|e| format!("the minimum {} it has {e}", ["before", "after"][side]))
     };
     let wells = [well(0)?, well(1)?];
@@ -270,6 +316,11 @@ fn computed(
     let gyration = settings.gyration_per_s_mev();
     let mut refusals = Vec::new();
     let conserved = conserved_moment(h, &top.state.m, crossing.minima, settings);
+    let dense = h.long_range().is_some() && h.sites() > MOST_DENSE;
+    let growth = match dense {
+        true => None,
+        false => growth_rate(h, &top.state, &unstable, &gyration, settings.damping),
+    };
     let mut frequency = |theory: Theory| -> Option<f64> {
         if !settings.wants(theory) {
             return None;
@@ -278,7 +329,7 @@ fn computed(
             refusals.push((theory, reason.clone()));
             return None;
         }
-        if theory == Theory::Langer && h.long_range().is_some() && h.sites() > MOST_DENSE {
+        if theory == Theory::Langer && dense {
             let reason =
                 format!("where every spin acts on every other it takes a dense matrix, of {MOST_DENSE} sites at most");
             refusals.push((theory, reason));
@@ -289,7 +340,7 @@ fn computed(
                 let size = (-unstable.eigenvalue_mev).sqrt();
                 Some(size * unstable.dynamical_factor(&top.state, &gyration))
             }
-            Theory::Langer => growth_rate(h, &top.state, &unstable, &gyration, settings.damping),
+            Theory::Langer => growth,
         };
         let found = found.filter(|f| f.is_finite() && *f > 0.0);
         if found.is_none() {
@@ -305,6 +356,7 @@ fn computed(
     let equivalents = equivalent_saddles(h, &top.state.m, minima, &settings.moments_mub, translating);
     let spread_top = Fluctuations::of_saddle(h, &top.state, &top.pinned, &unstable);
     let vague = crossing.spectrum.floor_mev / -unstable.eigenvalue_mev;
+    let crossover_k = growth.filter(|g| *g > 0.0 && conserved.is_none()).map(crossover_temperature);
     Ok([0, 1].map(|side| {
         let bottom = &wells[side];
         let entropy = 0.5 * (bottom.log_determinant() - top.log_determinant());
@@ -317,6 +369,14 @@ fn computed(
         };
         let [htst, langer] = frequencies.map(|f| f.map(prefactor));
         let spread = Fluctuations::of_minimum(h, &bottom.state, &bottom.pinned, &unstable);
+        let validity = Validity {
+            barrier_mev: barriers[side],
+            damping: langer.map(|_| settings.damping),
+            ln_htst_over_langer: htst.zip(langer).map(|(h, l)| h.ln_hz - l.ln_hz),
+            minimum: spread,
+            saddle: spread_top,
+            vague,
+        };
         SaddleRate {
             saddle: number,
             way: Way::BOTH[side],
@@ -327,6 +387,8 @@ fn computed(
             minimum_zeros: bottom.listed(),
             saddle_zeros: top.listed(),
             equivalents: equivalents.clone(),
+            crossover_k,
+            validity: htst.or(langer).map(|_| validity),
             rows: Vec::new(),
             blocking_k: [None, None],
             refused: refusals.clone(),

@@ -5,6 +5,7 @@ use crate::energy::Hamiltonian;
 use crate::field::Components;
 use crate::geometry::{Vector, vector};
 use crate::linalg::slab;
+use crate::saddle::Spectrum;
 use crate::spins::Spins;
 
 /// A total moment that changes by less than this part of the sum of all is the same.
@@ -29,6 +30,14 @@ pub fn unfit(crossing: &Crossing) -> Option<String> {
     }
     let doubt = crossing.doubt?;
     Some(format!("the saddle is not certified: {doubt}; a rate belongs to a proven saddle between two proven minima"))
+}
+
+/// Why a state is not one to be left at a rate, such as an end that was kept as given; nothing if it is a minimum.
+pub fn no_minimum(spectrum: &Spectrum, torque_mev: f64) -> Option<String> {
+    if spectrum.negative > 0 {
+        return Some(format!("it has {} descending modes", spectrum.negative));
+    }
+    (!spectrum.is_stationary(torque_mev)).then(|| format!("a torque of {torque_mev:.1e} meV is left on it"))
 }
 
 /// Why precession alone cannot cross: a symmetry axis along which the total moment is conserved, and it differs between the saddle

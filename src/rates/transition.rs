@@ -1,45 +1,77 @@
 //! The rate of the whole path, over all its saddles.
 
-use super::passage::{TEN_YEARS_S, blocking_temperature, first_passage};
+use super::passage::{TEN_YEARS_S, blocking_temperature, first_passage, passages};
+use super::rate::factor;
 use super::{Equivalents, RateSettings, Row, SaddleRate, Theory, Way};
 use crate::units::K_B;
 
-/// The whole way from one end to the other: one over the mean first-passage time through the minima between.
+/// How many of each stationary state symmetry makes of the path's own with both ends kept: from a minimum of a kind of which there
+/// are M, S/M of the S saddles of a kind lead on to the next kind, and likewise back. Taken together, the minima of a kind are one
+/// state of the network, and what starts at one end is found in any of them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Orbits {
+    /// Of each saddle, in path order.
+    pub saddles: Vec<usize>,
+    /// Of each minimum, both ends counted.
+    pub minima: Vec<usize>,
+    /// Paths of the same kind, through other minima.
+    pub paths: Equivalents,
+}
+
+impl Orbits {
+    /// ln of the number of ways over saddles like saddle k out of the minimum before it (`side` 0) or after it (1), over the number
+    /// that its own rate is over already.
+    fn ln_more(&self, k: usize, side: usize, counted: usize) -> f64 {
+        let known = self.saddles.get(k).zip(self.minima.get(k + side));
+        known.map_or(0.0, |(s, m)| libm::log(*s as f64 / (*m * counted) as f64).max(0.0))
+    }
+}
+
+/// One temperature of a transition.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TransitionRow {
+    /// To the other end: one over the mean first-passage time.
+    pub passage: Row,
+    /// Over the first saddle, out of the first minimum, whatever follows.
+    pub escape: Row,
+}
+
+/// The whole way from one end to the other, through the minima between.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TransitionRate {
     /// In which direction.
     pub way: Way,
     /// Saddles on the way.
     pub saddles: usize,
-    /// Ways of the same kind, through other minima; the rate is over all of them.
+    /// Paths of the same kind, through other minima; the rates are over all of them.
     pub equivalents: Equivalents,
     /// The highest saddle above the first minimum (meV).
     pub barrier_mev: f64,
     /// One row a temperature.
-    pub rows: Vec<Row>,
-    /// Temperature (K) at which the mean lifetime is 1 s, and at which it is ten years.
+    pub rows: Vec<TransitionRow>,
+    /// Temperature (K) at which the mean first passage takes 1 s, and at which it takes ten years.
     pub blocking_k: [Option<f64>; 2],
     /// Why there is no rate; nothing if there is one.
     pub refused: Option<String>,
 }
 
-/// The rates of the whole path in both directions, from those of its saddles (forward and backward, in path order) and the number
-/// of equivalent paths. `doubt` is what stands against a certificate of the path.
+/// The rates of the whole path in both directions, from those of its saddles (forward and backward, in path order) and the
+/// numbers of their like. `doubt` is what stands against a certificate of the path.
 pub fn transitions(
     saddles: &[SaddleRate],
-    paths: &Equivalents,
+    orbits: &Orbits,
     settings: &RateSettings,
     doubt: Option<&str>,
 ) -> Vec<TransitionRate> {
     if saddles.is_empty() {
         return Vec::new();
     }
-    Way::BOTH.map(|way| transition(saddles, paths, settings, doubt, way)).into()
+    Way::BOTH.map(|way| transition(saddles, orbits, settings, doubt, way)).into()
 }
 
 fn transition(
     saddles: &[SaddleRate],
-    paths: &Equivalents,
+    orbits: &Orbits,
     settings: &RateSettings,
     doubt: Option<&str>,
     way: Way,
@@ -51,28 +83,59 @@ fn transition(
         back.reverse();
     }
     let barrier_mev = highest(&onward, &back);
-    let ln_rate = |theory: Theory, t: f64| -> Option<f64> {
-        let all =
-            |rates: &[&SaddleRate]| -> Option<Vec<f64>> { rates.iter().map(|r| r.ln_rate_per_s(theory, t)).collect() };
-        let many = libm::log(paths.count as f64);
-        (doubt.is_none()).then_some(many - first_passage(&all(&onward)?, &all(&back)?))
+    // saddles count along the path: backward, the minimum that a step on leaves is the one after its saddle
+    let (leaving, returning) = if way == Way::Forward { (0, 1) } else { (1, 0) };
+    let count = onward.len();
+    let number = |i: usize| if way == Way::Forward { i } else { count - 1 - i };
+    let ln_rates = |rates: &[&SaddleRate], side: usize, theory: Theory, t: f64| -> Option<Vec<f64>> {
+        let all = rates.iter().enumerate();
+        all.map(|(i, r)| Some(r.ln_rate_per_s(theory, t)? + orbits.ln_more(number(i), side, r.equivalents.count)))
+            .collect()
     };
-    let row = |t: f64| Row {
-        temperature_k: t,
-        barrier_over_kt: barrier_mev / (K_B * t),
-        ln_htst_per_s: ln_rate(Theory::Htst, t),
-        ln_langer_per_s: ln_rate(Theory::Langer, t),
+    let both = |theory: Theory, t: f64| -> Option<[Vec<f64>; 2]> {
+        let proven = doubt.is_none();
+        proven.then_some([ln_rates(&onward, leaving, theory, t)?, ln_rates(&back, returning, theory, t)?])
     };
-    let lifetime = |t: f64| row(t).ln_lifetime_s();
+    // each saddle's error counts as far as the time hangs on it
+    let ln_known = |rates: Option<[Vec<f64>; 2]>, t: f64| -> f64 {
+        let Some([on, back]) = rates else { return f64::INFINITY };
+        let total = first_passage(&on, &back);
+        let parts = passages(&on, &back).into_iter().zip(&onward);
+        parts.map(|(time, r)| libm::exp(time - total) * r.ln_known_within(t)).sum()
+    };
+    let row = |t: f64| -> TransitionRow {
+        let [htst, langer] = Theory::ALL.map(|theory| both(theory, t));
+        let passage = |rates: &Option<[Vec<f64>; 2]>| rates.as_ref().map(|[on, back]| -first_passage(on, back));
+        let escape = |rates: &Option<[Vec<f64>; 2]>| rates.as_ref().map(|[on, _]| on[0]);
+        let whole = Row {
+            temperature_k: t,
+            barrier_over_kt: barrier_mev / (K_B * t),
+            ln_htst_per_s: passage(&htst),
+            ln_langer_per_s: passage(&langer),
+            ..Row::default()
+        };
+        let first = Row {
+            temperature_k: t,
+            barrier_over_kt: onward[0].barrier_mev.unwrap_or(0.0) / (K_B * t),
+            ln_htst_per_s: escape(&htst),
+            ln_langer_per_s: escape(&langer),
+            known_within: whole.ln_lifetime_s().and_then(|_| factor(onward[0].ln_known_within(t))),
+            reason: None,
+        };
+        let known_within = factor(ln_known(langer.or(htst), t));
+        TransitionRow { passage: Row { known_within, ..whole }.held(), escape: first.held() }
+    };
+    let lifetime = |t: f64| row(t).passage.ln_lifetime_s();
     let blocking_k = [1.0, TEN_YEARS_S].map(|s| blocking_temperature(lifetime, barrier_mev, s));
-    let rows: Vec<Row> = settings.temperatures_k.iter().map(|t| row(*t)).collect();
+    let rows: Vec<TransitionRow> = settings.temperatures_k.iter().map(|t| row(*t)).collect();
     let reasons = || onward.iter().flat_map(|r| &r.refused).map(|(_, reason)| reason.clone()).next();
-    let refused = match rows.iter().any(|r| r.ln_lifetime_s().is_some()) {
+    let possible = settings.temperatures_k.iter().any(|t| Theory::ALL.iter().any(|theory| both(*theory, *t).is_some()));
+    let refused = match possible {
         true => None,
         false => doubt.map(String::from).or_else(reasons),
     };
-    let equivalents = paths.clone();
-    TransitionRate { way, saddles: onward.len(), equivalents, barrier_mev, rows, blocking_k, refused }
+    let equivalents = orbits.paths.clone();
+    TransitionRate { way, saddles: count, equivalents, barrier_mev, rows, blocking_k, refused }
 }
 
 /// The highest saddle above the first minimum (meV): up over each, down to the next.

@@ -1,4 +1,7 @@
 //! Where the numbers are rough: low barriers, large fluctuations, flat tops, weak damping; with the range that each leaves.
+//!
+//! Each is a factor above 1 at any temperature ([`Validity`]), near 1 where it does not matter; together, their logarithms added as
+//! squares, they are the range within which a rate is known, and say how many of its digits are worth showing. Words are made of a factor only where it matters.
 
 use super::determinant::PinnedHessian;
 use super::{Prefactor, RateSettings, Unstable};
@@ -8,7 +11,7 @@ use crate::units::K_B;
 use std::f64::consts::PI;
 
 /// Barriers below so many k_BT are low.
-const LOW_BARRIER: f64 = 5.0;
+pub const LOW_BARRIER: f64 = 5.0;
 /// A mean square deviation of a spin (rad²) from which the harmonic approximation is rough.
 const LARGE: f64 = 0.3;
 /// A relative error of the descending curvature that is worth a word.
@@ -16,8 +19,57 @@ const VAGUE: f64 = 1e-6;
 /// Damping times ΔE/k_BT below which the bath feeds energy slowly.
 const WEAK: f64 = 3.0;
 
+/// A mode that reaches round the sphere leaves the order of magnitude.
+const ORDER: f64 = 10.0;
+/// Most digits of a rate that are shown.
+const MOST_DIGITS: usize = 4;
+
+/// What the errors of a rate hang on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Validity {
+    /// ΔE (meV).
+    pub barrier_mev: f64,
+    /// Gilbert damping, where the rate is Langer's.
+    pub damping: Option<f64>,
+    /// ln of the rate by HTST over Langer's, where there are both.
+    pub ln_htst_over_langer: Option<f64>,
+    /// About the minimum.
+    pub minimum: Fluctuations,
+    /// About the saddle.
+    pub saddle: Fluctuations,
+    /// Rounding error of the descending curvature, relative to it.
+    pub vague: f64,
+}
+
+impl Validity {
+    /// ln of the factor within which the rate is known at a temperature (K); infinite where nothing is known.
+    pub fn ln_factor(&self, temperature_k: f64) -> f64 {
+        let thermal = K_B * temperature_k;
+        let low = thermal / self.barrier_mev.max(0.0);
+        // what the bath must feed is ΔE or k_BT, whichever is more
+        let weak = self.damping.map_or(0.0, |a| thermal / (a * self.barrier_mev.max(thermal)));
+        let spread = [self.minimum, self.saddle].map(|f| f.factor(thermal));
+        let factors = [1.0 + low, 1.0 + weak, spread[0], spread[1], self.top(thermal), 1.0 + 0.5 * self.vague];
+        factors.into_iter().map(|f| libm::log(f) * libm::log(f)).sum::<f64>().sqrt()
+    }
+
+    /// What a top that is flat over k_BT leaves: no more than lies between the two theories.
+    fn top(&self, thermal_mev: f64) -> f64 {
+        let square = self.saddle.top_per_mev * thermal_mev;
+        let open = if square < LARGE { 1.0 + square } else { (square / LARGE).sqrt().max(1.0 + LARGE) };
+        let between = self.ln_htst_over_langer.filter(|ln| *ln > 0.0).map_or(f64::INFINITY, libm::exp);
+        open.min(between)
+    }
+}
+
+/// How many digits of a number are known within this factor; one where there is none.
+pub fn digits(known_within: Option<f64>) -> usize {
+    let error = known_within.map_or(1.0, |factor| (factor - 1.0).max(1e-12));
+    (-libm::log10(error)).ceil().clamp(1.0, MOST_DIGITS as f64) as usize
+}
+
 /// Thermal fluctuations of the spins about a stationary state, per k_BT.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fluctuations {
     /// Largest mean square angle of the probed spins over k_BT (rad²/meV), zero modes and the descending mode apart.
     pub mean_square_per_mev: f64,
@@ -26,6 +78,12 @@ pub struct Fluctuations {
 }
 
 impl Fluctuations {
+    /// What modes that are not harmonic leave: wrong by terms of the order of σ², one that is free by σ over its true extent.
+    fn factor(&self, thermal_mev: f64) -> f64 {
+        let angle = (thermal_mev * self.mean_square_per_mev).sqrt();
+        if angle < PI { 1.0 + angle.min(angle * angle) } else { ORDER }
+    }
+
     /// About a minimum.
     pub fn of_minimum(h: &Hamiltonian, state: &State, pinned: &PinnedHessian, unstable: &Unstable) -> Fluctuations {
         let around = probes(h, unstable).into_iter().map(|i| mean_square(state, pinned, i));
@@ -98,7 +156,7 @@ fn low_barrier(barrier_mev: f64, hottest: f64) -> Option<String> {
     let delta = barrier_mev / (K_B * hottest);
     let range = match delta >= 1.0 {
         true => format!("the rate is known within a factor of about {:.2}", 1.0 + 1.0 / delta),
-        false => "nothing holds the state back, and the numbers are no rates".into(),
+        false => "nothing holds the state back, and there is no rate".into(),
     };
     (hottest > from).then(|| {
         format!(
@@ -112,9 +170,8 @@ fn low_barrier(barrier_mev: f64, hottest: f64) -> Option<String> {
 fn large_fluctuations(which: &str, spread: &Fluctuations, hottest: f64) -> Option<String> {
     let from = LARGE / (K_B * spread.mean_square_per_mev.max(1e-300));
     let angle = (K_B * hottest * spread.mean_square_per_mev).sqrt();
-    // a mode that is not harmonic is wrong by terms of the order of σ², one that is free by σ over its true extent
     let range = match angle < PI {
-        true => format!("within a factor of about {:.2}", 1.0 + angle.min(angle * angle)),
+        true => format!("within a factor of about {:.2}", spread.factor(K_B * hottest)),
         false => "no better than as an order of magnitude, if at all: a mode reaches round the sphere".into(),
     };
     (hottest > from).then(|| {
@@ -174,4 +231,43 @@ fn weak_damping(settings: &RateSettings, barrier_mev: f64, langer: Option<Prefac
             kelvin(from)
         )
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn as_many_digits_are_shown_as_the_known_error_leaves() {
+        let shown = [1.0, 1.0004, 1.004, 1.03, 1.3, 2.0, 50.0].map(|factor| digits(Some(factor)));
+        assert_eq!(shown, [4, 4, 3, 2, 1, 1, 1]);
+        assert_eq!(digits(None), 1);
+    }
+
+    #[test]
+    fn a_rate_is_known_the_better_the_colder_and_not_at_all_without_a_bath() {
+        let calm = Fluctuations { mean_square_per_mev: 0.01, top_per_mev: 0.02 };
+        let at = |damping, kelvin: f64| {
+            let both = Some(0.2);
+            let validity = Validity {
+                barrier_mev: 50.0,
+                damping,
+                ln_htst_over_langer: both,
+                minimum: calm,
+                saddle: calm,
+                vague: 0.0,
+            };
+            libm::exp(validity.ln_factor(kelvin))
+        };
+        let kelvin = 1.0 / K_B;
+        // 1/Δ, 1/(αΔ), two times σ² and the top's own square, by hand
+        let parts = [1.02, 1.2, 1.01, 1.01, 1.02f64].map(|f| f.ln().powi(2));
+        let expected = parts.iter().sum::<f64>().sqrt().exp();
+        assert!((at(Some(0.1), kelvin) / expected - 1.0).abs() < 1e-12);
+        assert!(at(Some(0.1), 0.5 * kelvin) < expected && at(None, kelvin) < expected);
+        assert_eq!(at(Some(0.0), kelvin), f64::INFINITY);
+        // a flat top costs no more than lies between the two theories: at 200 meV its own square is 4
+        let hot = [5.0, 1.0 + 2f64.sqrt(), 1.0 + 2f64.sqrt(), libm::exp(0.2)].map(|f| f.ln().powi(2));
+        assert!((at(None, 200.0 * kelvin) / hot.iter().sum::<f64>().sqrt().exp() - 1.0).abs() < 1e-12);
+    }
 }

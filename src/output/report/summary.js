@@ -76,19 +76,25 @@ function stationary(path, go) {
 }
 
 function rates(summary) {
-  const power = log10 => {
+  const power = (log10, digits) => {
     const whole = Math.floor(log10);
-    return Math.abs(log10) < 300 ? number(10 ** log10, 4) : `${number(10 ** (log10 - whole), 4)} × 10^${whole}`;
+    return Math.abs(log10) < 300 ? number(10 ** log10, digits) : `${number(10 ** (log10 - whole), digits)} × 10^${whole}`;
   };
-  const life = t => (t.log10_lifetime_s === null ? "–" : power(t.log10_lifetime_s));
-  const row = (head, t) => [...head, number(t.temperature_K, 5), number(t.barrier_over_kT, 4), number(t.htst_rate_per_s, 4), number(t.langer_rate_per_s, 4), life(t)];
-  const headings = ["Direction", "T (K)", "ΔE/k_BT", "HTST (1/s)", "Langer (1/s)", "Mean lifetime (s)"];
+  // as many digits as are known, and grey where the barrier is below 5 k_BT
+  const shown = t => (t.known_within_factor ? clamp(Math.ceil(-Math.log10(Math.max(t.known_within_factor - 1, 1e-12))), 1, 4) : 1);
+  const time = (t, key) => (t[`log10_${key}`] === null ? "–" : power(t[`log10_${key}`], shown(t)));
+  const rough = (t, text) => (t.barrier_over_kT < 5 ? make("span", { class: "rough" }, text) : text);
+  const range = t => (t.known_within_factor ? `× or ÷ ${number(t.known_within_factor, 2)}` : (t.reason ?? "–"));
+  const row = (head, t) => [...head, ...[number(t.temperature_K, 5), number(t.barrier_over_kT, 4), number(t.htst_rate_per_s, shown(t)),
+    number(t.langer_rate_per_s, shown(t)), time(t, "escape_lifetime_s"), time(t, "first_passage_s"), range(t)].map(text => rough(t, text))];
+  const headings = ["Direction", "T (K)", "ΔE/k_BT", "HTST (1/s)", "Langer (1/s)", "Escape from the first minimum (s)", "First passage (s)", "Known within"];
   const whole = summary.transition_rates.flatMap(t => t.temperatures.map(temperature => row([t.direction], temperature)));
-  const content = [table("The whole path, over all minima on the way", headings, whole)];
+  const caption = "The whole path, over all minima on the way: mean times, and rates of the first passage to the other end; grey below 5 k_BT";
+  const content = [table(caption, headings, whole, [7])];
   for (const t of summary.transition_rates) {
     if (t.refused) content.push(make("p", {}, `No rate ${t.direction}: ${t.refused}`));
     if (t.blocking_temperature_1_s_K) {
-      content.push(make("p", {}, `${t.direction}: a lifetime of 1 s at ${number(t.blocking_temperature_1_s_K, 4)} K, of ten years at ` +
+      content.push(make("p", {}, `${t.direction}: a first passage of 1 s at ${number(t.blocking_temperature_1_s_K, 4)} K, of ten years at ` +
         `${number(t.blocking_temperature_10_years_K, 4)} K; ${plural(t.saddles, "saddle")}, ${plural(t.equivalent_paths, "equivalent path")}.`));
     }
   }
@@ -97,11 +103,11 @@ function rates(summary) {
     const group = r.warnings_as ?? groups.push(r.warnings) - 1;
     const words = [...Object.entries(r.refused).map(([theory, reason]) => `no ${theory}: ${reason}`), groups[group].length ? `see ${group + 1}` : "–"];
     return [`Saddle ${r.saddle} ${r.direction}`, number(r.barrier_meV, 7), number(r.htst_prefactor_Hz, 4), number(r.langer_prefactor_Hz, 4),
-      String(r.equivalent_saddles), words.join("; ")];
+      number(r.crossover_temperature_K, 3), String(r.equivalent_saddles), words.join("; ")];
   });
-  const names = ["Saddle", "ΔE (meV)", "HTST prefactor (Hz)", "Langer prefactor (Hz)", "Equivalents", "Warnings"];
+  const names = ["Saddle", "ΔE (meV)", "HTST prefactor (Hz)", "Langer prefactor (Hz)", "Tunnelling below (K)", "Equivalents", "Warnings"];
   const warnings = groups.flatMap((lines, k) => (lines.length ? [make("h3", {}, `Warnings ${k + 1}`), list(lines)] : []));
-  const inner = table("Prefactors at the first temperature; warnings that are alike are told once", names, prefactors, [5]);
+  const inner = table("Prefactors at the first temperature; warnings that are alike are told once", names, prefactors, [6]);
   content.push(make("details", {}, make("summary", {}, "Each saddle"), inner, ...warnings));
   section("Rates and lifetimes", ...content);
 }
