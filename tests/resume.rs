@@ -3,6 +3,7 @@
 mod common;
 
 use common::Build;
+use rand::{RngExt, SeedableRng};
 use spinneb::drive::{Images, Keep, Outcome, Partial, Problem, Recorder, Silent, run, run_recorded};
 use spinneb::error::Error;
 use spinneb::geometry::Direction;
@@ -218,4 +219,70 @@ fn a_record_of_another_problem_or_a_damaged_one_changes_nothing() {
         assert_eq!(told(run.outcome.unwrap()), whole, "record {k} cut short");
         assert_eq!(run.taken, k);
     }
+}
+
+/// Goes on from a record until the end or an error, or for two seconds: whether it panicked.
+fn panics(make: &dyn Fn() -> Problem, stored: Stored) -> bool {
+    let mut problem = make();
+    let switch = Arc::new(AtomicBool::new(false));
+    problem.hamiltonian.obey(Arc::clone(&switch));
+    let stored = Arc::new(Mutex::new(stored));
+    let keep = Memory { stored, left: usize::MAX, switch: Arc::clone(&switch), chances: Arc::default() };
+    let mut recorder = Recorder::new(Box::new(keep));
+    let (done, over) = std::sync::mpsc::channel::<()>();
+    std::thread::scope(|scope| {
+        scope.spawn(move || {
+            let _ = over.recv_timeout(std::time::Duration::from_secs(2));
+            switch.store(true, Ordering::Relaxed);
+        });
+        let work = || run_recorded(&problem, &mut Silent, &mut recorder).is_ok();
+        let ended = std::panic::catch_unwind(std::panic::AssertUnwindSafe(work));
+        drop(done);
+        ended.is_err()
+    })
+}
+
+#[test]
+fn whatever_a_record_says_no_run_panics() {
+    let row = || Build::open(6).easy(1.0).reversal();
+    let slow = || {
+        let mut problem = Build::open(6).easy(0.3).hard(0.2).reversal();
+        problem.guess = guess(r#"{"sweep": {"from": "left"}}"#);
+        problem.images = Images::Count(7);
+        problem.neb.optimiser = serde_json::from_str::<OptimiserSpec>(r#"{"lbfgs": {"memory": 3}}"#).unwrap();
+        problem.neb.max_evaluations = 300;
+        problem
+    };
+    let nasty = [f64::NAN, f64::INFINITY, -1e300, 1e-300, 0.0, -1.0, 1.5, 1e160].map(f64::to_bits);
+    let nasty = nasty.into_iter().chain([1, 2, 3, 1 << 20, 1 << 40, u64::MAX, u64::MAX >> 1]);
+    let nasty: Vec<u64> = nasty.collect();
+    let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(11);
+    let mut changed = 0;
+    for (what, make) in [("row", &row as &dyn Fn() -> Problem), ("slow", &slow)] {
+        let chances = sit(make, &Arc::default(), usize::MAX).chances;
+        for part in 1..=4 {
+            let stored: Arc<Mutex<Stored>> = Arc::default();
+            sit(make, &stored, (part * chances / 4).max(2) - 1);
+            let good = stored.lock().unwrap().clone();
+            for _ in 0..100 {
+                let mut bad = good.clone();
+                let count = bad.finished.len() + usize::from(bad.underway.is_some());
+                if count == 0 {
+                    break;
+                }
+                let k = random.random_range(0..count);
+                let last = bad.finished.len();
+                let record = if k < last { &mut bad.finished[k] } else { &mut bad.underway.as_mut().unwrap().1 };
+                // the first word is the fingerprint of the input: another one is no answer at all
+                let word = random.random_range(1..(record.len() / 8).max(2));
+                let value = nasty[random.random_range(0..nasty.len())];
+                // the counts are at the beginning and the end, behind rows of spins
+                let at = if random.random_range(0..3) == 0 { 8 * word.min(3) } else { 8 * word };
+                record[at..at + 8].copy_from_slice(&value.to_le_bytes());
+                assert!(!panics(make, bad), "{what}: {value:#x} at {at} of record {k}");
+                changed += 1;
+            }
+        }
+    }
+    assert!(changed >= 400, "{changed}");
 }

@@ -1,9 +1,14 @@
 //! Numbers as bytes and back, bit for bit: how a run remembers what it computed.
 //!
 //! Everything is little-endian; a row of numbers and a text stand behind their length. Reading gives nothing where the bytes
-//! end too early or say what cannot be.
+//! end too early or say what cannot be: whatever the bytes are, the computation goes on with numbers that it can bear.
 
 use crc32fast::Hasher;
+
+/// Most of anything that is counted.
+const MOST: usize = (u32::MAX >> 1) as usize;
+/// Largest size of a number that is computed with.
+const LARGEST: f64 = 1e100;
 
 /// Bytes to be written.
 #[derive(Debug, Default)]
@@ -82,8 +87,19 @@ impl<'a> Reader<'a> {
         Some(row.chunks_exact(8).map(|x| f64::from_le_bytes(x.try_into().unwrap_or_default())).collect())
     }
 
-    pub fn rows(&mut self) -> Option<Vec<Vec<f64>>> {
-        self.list(Reader::row)
+    /// How often something was done: sums of such counts do not overflow.
+    pub fn count(&mut self) -> Option<usize> {
+        self.whole().filter(|n| *n <= MOST)
+    }
+
+    /// A number that is one, and whose square is.
+    pub fn finite(&mut self) -> Option<f64> {
+        self.real().filter(|x| x.abs() <= LARGEST)
+    }
+
+    /// A row of such numbers.
+    pub fn finite_row(&mut self) -> Option<Vec<f64>> {
+        self.row().filter(|row| row.iter().all(|x| x.abs() <= LARGEST))
     }
 
     /// A list behind its length, by what reads one of it.
@@ -145,7 +161,7 @@ mod tests {
         let bytes = w.into_bytes();
         let read = |bytes: &[u8]| {
             let mut r = Reader::new(bytes);
-            let all = (r.whole()?, r.flag()?, r.real()?, r.rows()?);
+            let all = (r.whole()?, r.flag()?, r.real()?, r.list(Reader::row)?);
             r.is_done().then_some(all)
         };
         let (n, yes, x, again) = read(&bytes).unwrap();

@@ -228,7 +228,7 @@ fn opened<T>(record: &[u8], ticket: &Ticket, read: impl FnOnce(&mut Reader) -> O
     if r.whole()? != ticket.print {
         return None;
     }
-    let evaluations = r.whole()?;
+    let evaluations = r.count()?;
     let found = read(&mut r)?;
     r.is_done().then_some((found, evaluations))
 }

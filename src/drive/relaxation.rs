@@ -2,7 +2,7 @@
 
 use super::bytes::{Fingerprint, Reader, Writer};
 use super::outcome::HistoryRow;
-use super::stored::{Stored, read_history, write_history};
+use super::stored::{Stored, are_unit, read_history, write_history};
 use super::{NebSettings, Observer, Recorder, Scales, Stop};
 use crate::band::{Band, Laplacian, Sweep, align_rotations};
 use crate::energy::Hamiltonian;
@@ -235,11 +235,13 @@ impl Iterate {
 
     /// Goes on from what was written; the iterations up to there.
     fn read(&mut self, r: &mut Reader, band: &mut Band) -> Option<Vec<HistoryRow>> {
-        let images = r.row().filter(|images| images.len() == band.path().as_slice().len())?;
-        let evaluations = r.whole()?;
-        let shifts = r.row()?;
-        let memory = r.rows()?;
-        let (best, since, damping) = (r.real()?, r.whole()?, r.real()?);
+        let images = read_images(r, band)?;
+        let evaluations = r.count()?;
+        let shifts = r.finite_row().filter(|shifts| shifts.is_empty() || shifts.len() == band.images())?;
+        // an optimiser remembers vectors of the inner images, and single numbers
+        let inner = band.inner_mut().len();
+        let memory = r.list(|r| r.finite_row().filter(|row| row.len() == inner || row.len() < 2))?;
+        let (best, since, damping) = (r.real()?, r.count()?, r.finite()?);
         let rows = read_history(r)?;
         band.restore(&images, evaluations);
         self.sweep.set_shifts(shifts);
@@ -263,10 +265,16 @@ fn write_end(w: &mut Writer, band: &Band, stop: Stop, rows: &[HistoryRow]) {
     write_history(rows, w);
 }
 
+/// The images of a band of this size.
+fn read_images(r: &mut Reader, band: &Band) -> Option<Vec<f64>> {
+    let slab = 3 * band.path().sites();
+    r.row().filter(|m| m.len() == band.path().as_slice().len() && m.chunks(slab).all(are_unit))
+}
+
 /// Puts the band where its relaxation ended.
 fn read_end(r: &mut Reader, band: &mut Band) -> Option<(Stop, Vec<HistoryRow>)> {
-    let images = r.row().filter(|images| images.len() == band.path().as_slice().len())?;
-    let evaluations = r.whole()?;
+    let images = read_images(r, band)?;
+    let evaluations = r.count()?;
     let stop = Stop::read(r, band.hamiltonian())?;
     let rows = read_history(r)?;
     band.restore(&images, evaluations.checked_sub(1)?);

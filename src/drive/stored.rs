@@ -26,7 +26,18 @@ pub trait Stored: Sized {
 
 /// Spins of a chain of the Hamiltonian's length.
 fn row_of(r: &mut Reader, h: &Hamiltonian) -> Option<Vec<f64>> {
-    r.row().filter(|row| row.len() == 3 * h.sites())
+    r.row().filter(|row| row.len() == 3 * h.sites() && are_unit(row))
+}
+
+/// A unit tangent vector (3N) of such a chain.
+fn tangent(r: &mut Reader, h: &Hamiltonian) -> Option<Vec<f64>> {
+    r.finite_row().filter(|row| row.len() == 3 * h.sites() && row.iter().all(|x| x.abs() < 2.0))
+}
+
+/// Whether component-major numbers are unit vectors.
+pub fn are_unit(slab: &[f64]) -> bool {
+    let n = slab.len() / 3;
+    (0..n).all(|i| ((0..3).map(|c| slab[c * n + i].powi(2)).sum::<f64>() - 1.0).abs() < 1e-9)
 }
 
 fn spins(r: &mut Reader, h: &Hamiltonian) -> Option<Spins> {
@@ -51,8 +62,8 @@ impl Stored for [Relaxed; 2] {
         let mut one = || {
             Some(Relaxed {
                 spins: spins(r, h)?,
-                max_torque_mev: r.real()?,
-                steps: r.whole()?,
+                max_torque_mev: r.finite()?,
+                steps: r.count()?,
                 largest_rotation_rad: r.real()?,
                 left_saddle: r.flag()?,
                 converged: r.flag()?,
@@ -70,7 +81,11 @@ impl Stored for Scales {
     }
 
     fn read(r: &mut Reader, _: &Hamiltonian) -> Option<Scales> {
-        Some(Scales { stiffness_mev: r.real()?, exchange_mev: r.real()?, wall_width_sites: r.real()? })
+        Some(Scales {
+            stiffness_mev: r.finite().filter(|c| *c > 0.0)?,
+            exchange_mev: r.finite()?,
+            wall_width_sites: r.finite()?,
+        })
     }
 }
 
@@ -97,14 +112,15 @@ impl Stored for Found {
     }
 
     fn read(r: &mut Reader, h: &Hamiltonian) -> Option<Found> {
-        let top = Top { m: row_of(r, h)?, tau: row_of(r, h)?, energy_mev: r.real()?, s: r.real()?, image: r.whole()? };
+        let top =
+            Top { m: row_of(r, h)?, tau: tangent(r, h)?, energy_mev: r.finite()?, s: r.finite()?, image: r.count()? };
         let refined = Refined {
             verdict: *VERDICTS.get(r.whole()?)?,
             state: State::at(h, row_of(r, h)?),
-            valley: row_of(r, h)?,
-            steps: r.whole()?,
-            factorisations: r.whole()?,
-            index: r.whole()?,
+            valley: tangent(r, h)?,
+            steps: r.count()?,
+            factorisations: r.count()?,
+            index: r.count()?,
             curvature_mev: r.real()?,
             rotation_rad: r.real()?,
         };
@@ -137,12 +153,12 @@ impl Stored for Spectrum {
 
     fn read(r: &mut Reader, _: &Hamiltonian) -> Option<Spectrum> {
         Some(Spectrum {
-            negative: r.whole()?,
-            flat: r.whole()?,
-            zero: r.whole()?,
-            floor_mev: r.real()?,
-            norm_mev: r.real()?,
-            lowest_mev: r.row()?,
+            negative: r.count()?,
+            flat: r.count()?,
+            zero: r.count()?,
+            floor_mev: r.finite()?,
+            norm_mev: r.finite()?,
+            lowest_mev: r.finite_row()?,
         })
     }
 }
@@ -160,8 +176,8 @@ impl Stored for Minimum {
     fn read(r: &mut Reader, h: &Hamiltonian) -> Option<Minimum> {
         Some(Minimum {
             spins: spins(r, h)?,
-            energy_mev: r.real()?,
-            max_torque_mev: r.real()?,
+            energy_mev: r.finite()?,
+            max_torque_mev: r.finite()?,
             spectrum: Spectrum::read(r, h)?,
         })
     }
@@ -191,7 +207,7 @@ impl Stored for Link {
             after: Minimum::read(r, h)?,
             fallen_mev: [r.real()?, r.real()?],
             ways: [r.list(|r| spins(r, h))?, r.list(|r| spins(r, h))?],
-            given: r.whole()? == 1,
+            given: r.count()? == 1,
         })
     }
 }
@@ -232,7 +248,7 @@ impl Stored for Stop {
     }
 
     fn read(r: &mut Reader, _: &Hamiltonian) -> Option<Stop> {
-        let (word, evaluations, rotation, tolerance) = (r.whole()?, r.whole()?, r.real()?, r.real()?);
+        let (word, evaluations, rotation, tolerance) = (r.whole()?, r.count()?, r.finite()?, r.finite()?);
         match word {
             0 => Some(Stop::Converged { rotation, tolerance }),
             1 => Some(Stop::MaxEvaluations { evaluations, rotation, tolerance }),
@@ -259,8 +275,8 @@ pub fn write_history(rows: &[HistoryRow], w: &mut Writer) {
 pub fn read_history(r: &mut Reader) -> Option<Vec<HistoryRow>> {
     r.list(|r| {
         Some(HistoryRow {
-            iteration: r.whole()?,
-            images: r.whole()?,
+            iteration: r.count()?,
+            images: r.count()?,
             max_perpendicular_torque_mev: r.real()?,
             largest_predicted_rotation_rad: r.real()?,
             highest_image_mev: r.real()?,

@@ -27,6 +27,9 @@ const SPARE: usize = 4;
 /// below a limit. Nothing where the iteration does not converge.
 pub fn sliced(matrix: &Banded, count: usize, known: &[Vec<f64>], limit: f64) -> Option<Vec<Mode>> {
     let mut slices = Slices::new(matrix, known);
+    if !slices.scale.is_finite() {
+        return None;
+    }
     let wanted = if limit.is_finite() { slices.below(limit).clamp(1, count) } else { count };
     while slices.found.len() < wanted + SPARE {
         if slices.found.len() >= wanted && slices.is_complete(wanted) {
