@@ -271,7 +271,8 @@ impl Chain {
 
 /// One length for each of `count` sites, all greater than 0.
 fn lengths(edge: &Profile<Length>, count: usize) -> Result<()> {
-    edge.values(count, "site", |length, _| positive(length, "").map(|()| length.0)).map(|_| ())
+    let values = edge.values(count, "site", |length, _| positive(length, "").map(|()| length.0))?;
+    values.into_iter().try_for_each(|nm| positive(Length(nm), ""))
 }
 
 fn positive(length: Length, place: &str) -> Result<()> {

@@ -4,9 +4,14 @@
 //! "0.5 meV"                                                   the same for all chosen sites (or bonds)
 //! ["0.5 meV", "0.4 meV", …]                                   one value each
 //! {"from": "1 meV", "to": "0.2 meV", "shape": "linear"}       from the first chosen one to the last
+//! {"random": {"mean": "0.5 meV", "relative_deviation": 0.1, "seed": 1}}          drawn for each of them
 //! ```
 //! With t from 0 to 1 along the chosen ones a ramp is from + (to − from) s(t): linear s = t; step s = 0 below ½, else 1;
 //! tanh s = ½ + ½ tanh(6t − 3)/tanh 3, two thirds of whose rise lie within a quarter of the length.
+
+mod random;
+
+pub use random::{Deviation, Distribution, Random};
 
 use crate::error::{Error, Result};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -31,6 +36,8 @@ pub enum Profile<T> {
         /// How.
         shape: RampShape,
     },
+    /// Drawn from a distribution.
+    Random(Random<T>),
 }
 
 /// How a ramp rises.
@@ -70,6 +77,7 @@ impl<T: Copy> Profile<T> {
             Profile::Same(value) => vec![*value],
             Profile::List(list) => list.clone(),
             Profile::Ramp { from, to, .. } => vec![*from, *to],
+            Profile::Random(random) => vec![random.mean],
         }
     }
 
@@ -85,6 +93,7 @@ impl<T: Copy> Profile<T> {
                 let (a, b): (f64, f64) = ((*from).into(), (*to).into());
                 Some(T::from(a + (b - a) * shape.at(place(k, count))))
             }
+            Profile::Random(random) => random.value(k, |value| Ok(value.into())).ok().map(T::from),
         }
     }
 
@@ -108,6 +117,7 @@ impl<T: Copy> Profile<T> {
                 };
                 (0..count).map(value).collect()
             }
+            Profile::Random(random) => (0..count).map(|k| random.value(k, |value| convert(value, k))).collect(),
         }
     }
 }
@@ -124,8 +134,9 @@ impl<T: JsonSchema> JsonSchema for Profile<T> {
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let (one, shape) = (generator.subschema_for::<T>(), generator.subschema_for::<RampShape>());
+        let random = generator.subschema_for::<Random<T>>();
         json_schema!({
-            "description": "one value, a list of them, or a ramp",
+            "description": "one value, a list of them, a ramp, or random values",
             "anyOf": [
                 one,
                 {"type": "array", "items": one},
@@ -135,6 +146,7 @@ impl<T: JsonSchema> JsonSchema for Profile<T> {
                     "required": ["from", "to"],
                     "additionalProperties": false,
                 },
+                {"type": "object", "properties": {"random": random}, "required": ["random"], "additionalProperties": false},
             ],
         })
     }
@@ -146,7 +158,9 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Profile<T> {
         impl<'de, T: Deserialize<'de>> Visitor<'de> for Seen<T> {
             type Value = Profile<T>;
             fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                f.write_str("a quantity, a list of them or a ramp {\"from\": …, \"to\": …, \"shape\": \"linear\"}")
+                f.write_str(
+                    "a quantity, a list of them, a ramp {\"from\": …, \"to\": …, \"shape\": \"linear\"} or {\"random\": {\"mean\": …}}",
+                )
             }
             fn visit_str<E: de::Error>(self, v: &str) -> std::result::Result<Profile<T>, E> {
                 T::deserialize(v.into_deserializer()).map(Profile::Same)
@@ -170,14 +184,23 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Profile<T> {
             fn visit_map<A: MapAccess<'de>>(self, m: A) -> std::result::Result<Profile<T>, A::Error> {
                 #[derive(serde::Deserialize)]
                 #[serde(deny_unknown_fields)]
-                struct Ends<T> {
-                    from: T,
-                    to: T,
-                    #[serde(default)]
-                    shape: RampShape,
+                struct Keys<T> {
+                    from: Option<T>,
+                    to: Option<T>,
+                    shape: Option<RampShape>,
+                    random: Option<Random<T>>,
                 }
-                let Ends { from, to, shape } = Ends::deserialize(de::value::MapAccessDeserializer::new(m))?;
-                Ok(Profile::Ramp { from, to, shape })
+                match Keys::deserialize(de::value::MapAccessDeserializer::new(m))? {
+                    Keys { from: None, to: None, shape: None, random: Some(random) } => Ok(Profile::Random(random)),
+                    Keys { random: Some(_), .. } => {
+                        Err(de::Error::custom("\"random\" stands alone: a ramp has \"from\" and \"to\" instead"))
+                    }
+                    Keys { from: Some(from), to: Some(to), shape, .. } => {
+                        Ok(Profile::Ramp { from, to, shape: shape.unwrap_or_default() })
+                    }
+                    Keys { from: None, .. } => Err(de::Error::missing_field("from")),
+                    Keys { .. } => Err(de::Error::missing_field("to")),
+                }
             }
         }
         d.deserialize_any(Seen(PhantomData))

@@ -12,7 +12,7 @@ use spinneb::state::{StateBuilder, StateContext, StateSpec};
 use std::fmt::Write;
 use std::fs;
 
-const MESH: Mesh = Mesh { step: [2.5e-10, 1e-9, 1e-9], unit: "m" };
+const MESH: Mesh = Mesh { base: [1.25e-10, 0.0, 0.0], step: [2.5e-10, 1e-9, 1e-9], unit: "m" };
 
 /// Unit vectors in all directions, image after image.
 fn images(count: usize, sites: usize, seed: u64) -> Vec<Vec<Vector>> {

@@ -243,7 +243,7 @@ fn files() -> Vec<(&'static str, Vec<u8>)> {
         .map(|k| (0..5).map(|i| if (i + k) % 2 == 0 { [0.0, 0.6, 0.8] } else { [0.28, 0.0, -0.96] }).collect())
         .collect();
     let segments: Vec<Segment> = images.iter().map(|spins| Segment { description: "fuzz", spins }).collect();
-    let mesh = Mesh { step: [1e-9; 3], unit: "m" };
+    let mesh = Mesh { base: [5e-10; 3], step: [1e-9; 3], unit: "m" };
     let ovf = |data| write_ovf(data, &mesh, &segments);
     let array = Array { shape: vec![3, 5, 3], numbers: images.iter().flatten().flatten().copied().collect() };
     let arrays = [

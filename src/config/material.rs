@@ -62,11 +62,13 @@ pub struct Reference {
 impl Material {
     /// One moment or magnetisation for each site.
     pub fn fits(&self, sites: usize) -> Result<()> {
-        if let Some(moment) = &self.moment {
-            moment.values(sites, "site", |m, _| Ok(m.0)).map_err(|e| e.within("moment"))?;
-        }
-        if let Some(ms) = &self.Ms {
-            ms.values(sites, "site", |m, _| Ok(m.0)).map_err(|e| e.within("Ms"))?;
+        let moment = self.moment.as_ref().map(|m| ("moment", m.values(sites, "site", |m, _| Ok(m.0))));
+        let ms = self.Ms.as_ref().map(|m| ("Ms", m.values(sites, "site", |m, _| Ok(m.0))));
+        for (key, values) in moment.into_iter().chain(ms) {
+            if values.map_err(|e| e.within(key))?.iter().any(|m| *m < 0.0) {
+                let message = "a negative value is drawn: make the deviation smaller, or the distribution log_normal";
+                return Err(Error::invalid(key, message));
+            }
         }
         Ok(())
     }

@@ -5,7 +5,8 @@
 //!   = − Σ |J| + Σ ½|J| |m_i − sgn(J) m_{i+n}|²
 //! ∂E/∂m_i = |J| (m_i − sgn(J) m_j)       (a multiple of m_i apart, which spheres do not feel)
 //! ```
-//! From a continuum stiffness: J = 2 A S/a, with the cross-section S of the bond (see [`Medium`]) and the spacing a.
+//! From a continuum stiffness: J = 2 A S/a, with the cross-section S of the bond (see [`Medium`]) and the spacing a. From an energy
+//! an area, as interlayer exchange and RKKY are measured: J = J_area S.
 
 use super::EnergyTerm;
 use super::blocks::Blocks;
@@ -16,13 +17,13 @@ use crate::geometry::{Vector, vector};
 use crate::lattice::{Chain, Selection};
 use crate::profile::Profile;
 use crate::registry::Described;
-use crate::units::{Energy, ExchangeStiffness};
+use crate::units::{Energy, ExchangeStiffness, SurfaceEnergy};
 use multiversion::multiversion;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::ops::Range;
 
-/// `{"J": ["10 meV", "-1 meV"]}` or `{"A": "13 pJ/m"}`.
+/// `{"J": ["10 meV", "-1 meV"]}`, `{"A": "13 pJ/m"}` or `{"J_area": "5 mJ/m^2", "bonds": [19]}`.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[allow(non_snake_case)]
@@ -33,6 +34,9 @@ pub struct ExchangeSpec {
     /// Exchange stiffness of a continuum.
     #[serde(default)]
     pub A: Option<Profile<ExchangeStiffness>>,
+    /// Exchange an area of the cross-section, between layers.
+    #[serde(default)]
+    pub J_area: Option<Profile<SurfaceEnergy>>,
     /// Only these bonds (of every shell given); all if absent.
     #[serde(default)]
     pub bonds: Option<Selection>,
@@ -40,29 +44,41 @@ pub struct ExchangeSpec {
 
 impl Described for ExchangeSpec {
     const NAME: &'static str = "exchange";
-    const SUMMARY: &'static str = "Heisenberg exchange −J m_i·m_j of any neighbour shells, or a stiffness A";
+    const SUMMARY: &'static str =
+        "Heisenberg exchange −J m_i·m_j of any neighbour shells, a stiffness A, or J_area an area between layers";
     const EXAMPLE: &'static str = r#"{"exchange": {"J": ["10 meV", "-1 meV"]}}"#;
 }
 
 impl TermBuilder for ExchangeSpec {
     fn build(&self, medium: &Medium) -> Result<Box<dyn EnergyTerm>> {
         let bonds = self.bonds.as_ref();
-        let shells = match (&self.J, &self.A) {
-            (Some(j), None) if !j.is_empty() => {
+        let shells = match (&self.J, &self.A, &self.J_area) {
+            (Some(j), None, None) if !j.is_empty() => {
                 let shell = |(k, j): (usize, &Profile<Energy>)| {
                     medium.on_bonds(j, k + 1, bonds, &format!("J[{k}]"), |e, _| Ok(e.0))
                 };
                 j.iter().enumerate().map(shell).collect::<Result<_>>()?
             }
-            (Some(_), None) => {
+            (Some(_), None, None) => {
                 return Err(Error::invalid("J", "the list is empty: give one energy a neighbour shell, [\"10 meV\"]"));
             }
-            (None, Some(a)) => vec![medium.on_bonds(a, 1, bonds, "A", |a, i| medium.bond_from_stiffness_mev(a, i))?],
-            (None, None) => {
-                return Err(Error::invalid("", "an exchange needs \"J\" (bond energies) or \"A\" (a stiffness)"));
+            (None, Some(a), None) => {
+                vec![medium.on_bonds(a, 1, bonds, "A", |a, i| medium.bond_from_stiffness_mev(a, i))?]
             }
-            (Some(_), Some(_)) => {
+            (None, None, Some(j)) => {
+                vec![medium.on_bonds(j, 1, bonds, "J_area", |j, i| medium.bond_from_area_mev(j, i))?]
+            }
+            (None, None, None) => {
+                let message =
+                    "an exchange needs \"J\" (bond energies), \"A\" (a stiffness) or \"J_area\" (between layers)";
+                return Err(Error::invalid("", message));
+            }
+            (Some(_), Some(_), None) => {
                 return Err(Error::invalid("A", "\"J\" and \"A\" are two ways to say the same: keep one"));
+            }
+            (_, _, Some(_)) => {
+                let message = "\"J\", \"A\" and \"J_area\" are ways to say the same: keep one, and give other bonds a term of their own";
+                return Err(Error::invalid("J_area", message));
             }
         };
         Ok(Box::new(Exchange { shells }))
@@ -203,5 +219,27 @@ mod tests {
         assert_eq!((term.reference_mev(), density_of(&term, &m)), (-3.0, vec![3.0, 0.0]));
         let opposite = [0.0, 0.0, 0.0, 0.0, 1.0, -1.0];
         assert_eq!(density_of(&Exchange { shells: vec![vec![-3.0, 0.0]] }, &opposite), [0.0; 2]);
+    }
+
+    #[test]
+    fn an_exchange_an_area_is_taken_times_the_section_of_its_bond() {
+        let read = |text: &str| serde_json::from_str::<ExchangeSpec>(text).unwrap();
+        let chain: Chain = serde_json::from_str(
+            r#"{"sites": 3, "spacing": "1 nm", "cross_section": [["10 nm", "10 nm", "30 nm"], "4 nm"]}"#,
+        )
+        .unwrap();
+        let medium = Medium { chain: &chain, moment: None, saturation: None };
+        let coupling = |bond: usize| {
+            let spec = read(&format!(r#"{{"J_area": "-5 mJ/m^2", "bonds": [{bond}]}}"#));
+            -spec.build(&medium).unwrap().reference_mev()
+        };
+        // 5 mJ/m² is 31.2075… meV/nm²; unequal sections have their harmonic mean, 60 nm²
+        let density = 5.0 / 0.1602176634;
+        assert!((coupling(0) - 40.0 * density).abs() < 1e-9, "{}", coupling(0));
+        assert!((coupling(1) - 60.0 * density).abs() < 1e-9, "{}", coupling(1));
+        let bare = Chain { cross_section: None, ..chain.clone() };
+        let medium = Medium { chain: &bare, moment: None, saturation: None };
+        let said = read(r#"{"J_area": "5 mJ/m^2"}"#).build(&medium).unwrap_err().to_string();
+        assert!(said.starts_with("J_area") && said.contains("cross_section"), "{said}");
     }
 }

@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::lattice::{Chain, OwnMoment, Selection};
 use crate::profile::Profile;
 use crate::registry::family;
-use crate::units::{BondEnergy, ExchangeStiffness, Magnetisation, Moment, SiteEnergy};
+use crate::units::{BondEnergy, ExchangeStiffness, Magnetisation, Moment, SiteEnergy, SurfaceEnergy};
 
 family! {
     /// An energy term as written in a config: `{"exchange": {…}}`.
@@ -93,6 +93,11 @@ impl Medium<'_> {
             BondEnergy::PerBond(e) => Ok(e.0),
             BondEnergy::PerArea(d) => Ok(d.over_area(self.bond_section_nm2(i)?).0),
         }
+    }
+
+    /// Exchange energy of bond i (meV) of one an area.
+    pub fn bond_from_area_mev(&self, j: SurfaceEnergy, i: usize) -> Result<f64> {
+        Ok(j.over_area(self.bond_section_nm2(i)?).0)
     }
 
     /// Exchange energy of bond i (meV) of a stiffness.

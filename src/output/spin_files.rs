@@ -192,23 +192,86 @@ fn image_description(run: &RunReport, k: usize) -> String {
     }
 }
 
-/// Cells in m, or in sites where the chain has no length.
+/// Where the first site stands, in spacings from the origin: atoms begin there, and so does the first cell of a continuum, whose
+/// center is half a cell further on.
+fn first(chain: &Chain) -> f64 {
+    if chain.cross_section.is_some() { 0.5 } else { 0.0 }
+}
+
+/// Cells in m, or in sites where the chain has no length; their centers are where [`positions`] has the sites.
 pub(super) fn mesh(chain: &Chain) -> Mesh {
-    match chain.spacing {
+    let (step, unit) = match chain.spacing {
         Some(a) => {
             // OVF knows one size of cells: the largest, where they differ
             let larger = |p: [f64; 2], q: [f64; 2]| [p[0].max(q[0]), p[1].max(q[1])];
             let [width, thickness] =
                 (0..chain.sites).filter_map(|i| chain.section_nm(i)).reduce(larger).unwrap_or([a.0; 2]);
-            Mesh { step: [a.0, width, thickness].map(|nm| nm * 1e-9), unit: "m" }
+            ([a.0, width, thickness].map(|nm| nm * 1e-9), "m")
         }
-        None => Mesh { step: [1.0; 3], unit: "site" },
-    }
+        None => ([1.0; 3], "site"),
+    };
+    Mesh { base: [first(chain) * step[0], 0.0, 0.0], step, unit }
 }
 
-/// Where the sites are, the first one at the origin, and the unit of that.
+/// Where the sites are, and the unit of that.
 pub(super) fn positions(chain: &Chain, sites: usize) -> (Vec<Vector>, &'static str) {
     let along = chain.direction.unwrap_or(Direction::X).vector();
     let (step, unit) = chain.spacing.map_or((1.0, "sites"), |a| (a.0, "nm"));
-    ((0..sites).map(|i| vector::scale(step * i as f64, along)).collect(), unit)
+    ((0..sites).map(|i| vector::scale(step * (first(chain) + i as f64), along)).collect(), unit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn numbers(text: &str) -> Vec<f64> {
+        text.split_whitespace().map(|word| word.parse().unwrap()).collect()
+    }
+
+    /// The centers that an OVF file gives its cells, in nm where it is in m, and where each cell begins and ends.
+    fn ovf_cells(chain: &Chain) -> Vec<[f64; 3]> {
+        let spins = vec![[0.0, 0.0, 1.0]; chain.sites];
+        let bytes = files::write_ovf(OvfData::Text, &mesh(chain), &[Segment { description: "cells", spins: &spins }]);
+        let text = String::from_utf8(bytes).unwrap();
+        let value = |key: &str| {
+            let line = text.lines().find_map(|l| l.strip_prefix(&format!("# {key}: "))).unwrap();
+            line.parse::<f64>().unwrap_or_else(|_| panic!("{key}: {line}"))
+        };
+        let scale = if text.contains("meshunit: m\n") { 1e9 } else { 1.0 };
+        let (base, step, nodes) = (value("xbase"), value("xstepsize"), value("xnodes"));
+        assert!((value("xmin") + 0.5 * step - base).abs() < 1e-12 * step);
+        assert!((value("xmax") - value("xmin") - nodes * step).abs() < 1e-12 * nodes * step);
+        for axis in ["y", "z"] {
+            assert_eq!(value(&format!("{axis}base")), 0.0);
+            assert_eq!(value(&format!("{axis}min")), -value(&format!("{axis}max")));
+        }
+        (0..nodes as usize).map(|i| [scale * (base + i as f64 * step), 0.0, 0.0]).collect()
+    }
+
+    fn vtp_points(chain: &Chain) -> Vec<[f64; 3]> {
+        let (positions, unit) = positions(chain, chain.sites);
+        let spins = vec![[0.0, 0.0, 1.0]; chain.sites];
+        let text = String::from_utf8(files::write_vtp(&positions, chain.periodic, &spins, unit)).unwrap();
+        let (_, from) = text.split_once("<Points>").unwrap();
+        let (_, from) = from.split_once("format=\"ascii\">").unwrap();
+        let (points, _) = from.split_once("</DataArray>").unwrap();
+        numbers(points).chunks(3).map(|p| [p[0], p[1], p[2]]).collect()
+    }
+
+    #[test]
+    fn vtk_and_ovf_have_every_site_at_the_same_place() {
+        let chain = |text: &str| serde_json::from_str::<Chain>(text).unwrap();
+        for (text, first, step) in [
+            (r#"{"sites": 5}"#, 0.0, 1.0),
+            (r#"{"sites": 5, "spacing": "0.25 nm"}"#, 0.0, 0.25),
+            (r#"{"sites": 5, "spacing": "2 nm", "cross_section": ["20 nm", "5 nm"]}"#, 1.0, 2.0),
+        ] {
+            let (cells, points) = (ovf_cells(&chain(text)), vtp_points(&chain(text)));
+            assert_eq!((cells.len(), points.len()), (5, 5));
+            for (i, (cell, point)) in cells.iter().zip(&points).enumerate() {
+                assert!((0..3).all(|c| (cell[c] - point[c]).abs() < 1e-12), "{text}: {cell:?} {point:?}");
+                assert!((point[0] - first - step * i as f64).abs() < 1e-12, "{text}: {point:?}");
+            }
+        }
+    }
 }

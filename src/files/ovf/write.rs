@@ -28,6 +28,8 @@ impl OvfData {
 /// A chain as a mesh of N × 1 × 1 cells; x counts along the chain, whichever way it points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mesh {
+    /// Center of the first cell.
+    pub base: [f64; 3],
     /// Size of a cell.
     pub step: [f64; 3],
     /// Unit of that size.
@@ -63,8 +65,8 @@ fn line(out: &mut Vec<u8>, text: &str) {
 }
 
 fn write_segment(out: &mut Vec<u8>, data: OvfData, mesh: &Mesh, segment: &Segment) {
-    let [x, y, z] = mesh.step;
-    let n = segment.spins.len();
+    let ([x, y, z], n) = (mesh.step, segment.spins.len());
+    let low = [0, 1, 2].map(|c| mesh.base[c] - 0.5 * mesh.step[c]);
     let header = [
         ("Begin", "Segment".into()),
         ("Begin", "Header".into()),
@@ -72,21 +74,21 @@ fn write_segment(out: &mut Vec<u8>, data: OvfData, mesh: &Mesh, segment: &Segmen
         ("Desc", segment.description.into()),
         ("meshunit", mesh.unit.into()),
         ("meshtype", "rectangular".into()),
-        ("xbase", format!("{:e}", 0.5 * x)),
-        ("ybase", format!("{:e}", 0.5 * y)),
-        ("zbase", format!("{:e}", 0.5 * z)),
+        ("xbase", format!("{:e}", mesh.base[0])),
+        ("ybase", format!("{:e}", mesh.base[1])),
+        ("zbase", format!("{:e}", mesh.base[2])),
         ("xstepsize", format!("{x:e}")),
         ("ystepsize", format!("{y:e}")),
         ("zstepsize", format!("{z:e}")),
         ("xnodes", n.to_string()),
         ("ynodes", "1".into()),
         ("znodes", "1".into()),
-        ("xmin", "0".into()),
-        ("ymin", "0".into()),
-        ("zmin", "0".into()),
-        ("xmax", format!("{:e}", n as f64 * x)),
-        ("ymax", format!("{y:e}")),
-        ("zmax", format!("{z:e}")),
+        ("xmin", format!("{:e}", low[0])),
+        ("ymin", format!("{:e}", low[1])),
+        ("zmin", format!("{:e}", low[2])),
+        ("xmax", format!("{:e}", low[0] + n as f64 * x)),
+        ("ymax", format!("{:e}", low[1] + y)),
+        ("zmax", format!("{:e}", low[2] + z)),
         ("valuedim", "3".into()),
         ("valuelabels", "m_x m_y m_z".into()),
         ("valueunits", "1 1 1".into()),
