@@ -1,5 +1,7 @@
 //! Seeded mutations of configs and of files of spins, and what must hold whatever comes of them.
 
+use super::reader::{self, Vectors};
+use super::writer;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde_json::Value;
@@ -121,10 +123,12 @@ impl Corpus {
                 catch_unwind(AssertUnwindSafe(|| self.config(text)))
             }
             Kind::Files => {
-                let name = self.files[r.random_range(0..self.files.len())].0;
-                let corpus: Vec<&[u8]> = self.files.iter().map(|(_, bytes)| &bytes[..]).collect();
-                let bytes = mutated(&corpus, &mut r);
-                catch_unwind(AssertUnwindSafe(|| file(name, &bytes)))
+                let (name, bytes, truth) = self.file(&mut r);
+                let shown = || {
+                    String::from_utf8_lossy(&bytes).chars().take(2000).flat_map(char::escape_debug).collect::<String>()
+                };
+                let outcome = catch_unwind(AssertUnwindSafe(|| compared(name, &bytes, truth)));
+                outcome.map(|done| done.map_err(|what| format!("{what}; {name} is {}", shown())))
             }
         };
         match outcome {
@@ -135,6 +139,25 @@ impl Corpus {
                 .or(panic.downcast_ref::<&str>().copied())
                 .unwrap_or("a panic")
                 .to_string()),
+        }
+    }
+
+    /// A file as some program writes it, with what stands in it, or a mutated one.
+    fn file(&self, r: &mut ChaCha8Rng) -> (&'static str, Vec<u8>, Option<Vectors>) {
+        match r.random_range(0..4) {
+            0 => {
+                let (name, bytes, vectors) = writer::file(r);
+                (name, bytes, Some(vectors))
+            }
+            1 => {
+                let (name, bytes, _) = writer::file(r);
+                (name, mutated(&[bytes], r), None)
+            }
+            _ => {
+                let name = self.files[r.random_range(0..self.files.len())].0;
+                let corpus: Vec<&[u8]> = self.files.iter().map(|(_, bytes)| &bytes[..]).collect();
+                (name, mutated(&corpus, r), None)
+            }
         }
     }
 
@@ -203,19 +226,43 @@ impl Corpus {
     }
 }
 
-fn file(name: &str, bytes: &[u8]) -> Result<bool, String> {
-    match read(name, bytes) {
-        Err(e) if e.to_string().starts_with(name) => Ok(false),
-        Err(e) => Err(format!("no file in {e}")),
-        Ok(found) => {
-            let sites = found.images[0].len();
-            let unit = |v: &Vector| (v[0] * v[0] + v[1] * v[1] + v[2] * v[2] - 1.0).abs() < 1e-14;
-            match sites > 0 && found.images.iter().all(|i| i.len() == sites && i.iter().all(unit)) {
-                true => Ok(true),
-                false => Err("images that are none were read".into()),
+/// Reads a file with the program's reader and with another one: the same directions, those that are known to stand in it, or none.
+fn compared(name: &str, bytes: &[u8], truth: Option<Vectors>) -> Result<bool, String> {
+    let other = reader::read(name, bytes);
+    let found = match read(name, bytes) {
+        Err(e) if !e.to_string().starts_with(name) => return Err(format!("no file in {e}")),
+        Err(e) => Err(e.to_string()),
+        Ok(found) => Ok(found.images),
+    };
+    match (found, other, truth) {
+        (_, other, Some(truth)) if other.as_ref() != Some(&truth) => {
+            Err("the other reader does not read what was written".into())
+        }
+        (Ok(images), Some(other), _) => same(&images, &other).map(|()| true),
+        (Err(_), None, _) => Ok(false),
+        // an archive may be damaged where the spins are not: their check value is compared by both
+        (found, _, _) if bytes.starts_with(b"PK") => Ok(found.is_ok()),
+        (Ok(_), None, _) => Err("a file that the other reader refuses is read".into()),
+        (Err(e), Some(_), _) => Err(format!("a file that the other reader reads is refused: {e}")),
+    }
+}
+
+/// Unit vectors along the others.
+fn same(images: &[Vec<Vector>], other: &Vectors) -> Result<(), String> {
+    let lengths = |n: usize, m: usize| if n == m { Ok(()) } else { Err(format!("{n} instead of {m}")) };
+    lengths(images.len(), other.len()).map_err(|e| format!("{e} images"))?;
+    for (k, (image, other)) in images.iter().zip(other).enumerate() {
+        lengths(image.len(), other.len()).map_err(|e| format!("image {k}: {e} sites"))?;
+        for (i, (m, v)) in image.iter().zip(other).enumerate() {
+            let largest = v.iter().fold(0.0, |l: f64, x| l.max(x.abs()));
+            let v = v.map(|x| x / largest);
+            let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+            if (0..3).any(|c| (m[c] - v[c] / length).abs() > 4e-15) {
+                return Err(format!("image {k}, site {i}: {m:?} instead of {v:?}"));
             }
         }
     }
+    Ok(())
 }
 
 /// A value and all values in it.

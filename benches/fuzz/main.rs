@@ -3,11 +3,19 @@
 //! No panic, no second of work for a case, no gigabyte of memory; the first case that breaks this is printed with its number, and
 //! the exit code is 1. The same seed gives the same cases. A small number runs in `tests/fuzz.rs`.
 
+mod arrays;
 mod cases;
+mod check;
+mod physical;
+mod reader;
+mod runs;
+mod writer;
 
 use cases::{Corpus, Kind};
 use cpu_time::ThreadTime;
+use runs::{Runs, Tally};
 use std::process::exit;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -17,7 +25,14 @@ const LONGEST_S: f64 = 1.0;
 /// After this long (s of the clock) a case hangs.
 const HANGS_S: u64 = 20;
 
+/// So many configs at a time, most of them in one process.
+const BATCH: u64 = 40;
+
 fn main() {
+    if let Some(at) = std::env::args().position(|a| a == "run") {
+        let numbers: Vec<u64> = std::env::args().skip(at + 1).filter_map(|a| a.parse().ok()).collect();
+        return campaign(numbers.first().copied().unwrap_or(1000), numbers.get(1).copied().unwrap_or(1));
+    }
     let numbers: Vec<u64> = std::env::args().filter_map(|a| a.parse().ok()).collect();
     let (count, seed) = (numbers.first().copied().unwrap_or(20_000), numbers.get(1).copied().unwrap_or(1));
     let folder = tempfile::tempdir().expect("a folder to write in");
@@ -33,6 +48,35 @@ fn main() {
             1e3 * slowest,
             memory()
         );
+    }
+}
+
+/// Mutated configs as a user runs them, until so many have run; faults are told as they are found, and their configs are kept.
+fn campaign(count: u64, seed: u64) {
+    let started = Instant::now();
+    let program = std::env::var_os("SPINNEB").map_or(env!("CARGO_BIN_EXE_spinneb").into(), std::path::PathBuf::from);
+    let folder = tempfile::tempdir().expect("a folder to write in").keep();
+    println!("in {}", folder.display());
+    let runs = Runs::new(&program, &folder, seed);
+    let (next, total) = (AtomicU64::new(0), Mutex::new(Tally::default()));
+    std::panic::set_hook(Box::new(|panic| eprintln!("{panic}")));
+    thread::scope(|scope| {
+        for _ in 0..thread::available_parallelism().map_or(1, |n| n.get()) {
+            scope.spawn(|| {
+                while total.lock().expect("no panic").runs < count as usize {
+                    let first = next.fetch_add(BATCH, Ordering::Relaxed);
+                    let tally = runs.batch(first..first + BATCH);
+                    tally.faults.iter().for_each(|(number, what)| println!("config {number}: {what}"));
+                    let mut total = total.lock().expect("no panic");
+                    *total = std::mem::take(&mut *total).and(tally);
+                }
+            });
+        }
+    });
+    let total = total.into_inner().expect("no panic");
+    println!("seed {seed}, {:.0} s: {total}", started.elapsed().as_secs_f64());
+    if !total.faults.is_empty() {
+        exit(1);
     }
 }
 

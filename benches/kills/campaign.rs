@@ -1,9 +1,13 @@
 //! Runs that are killed at random moments and go on: what a directory holds must be right at any time, and the end the same as
 //! without a kill, to the last bit.
 
+#[path = "files.rs"]
+mod files;
+
+use files::files;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use serde_json::Value;
+use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::Read;
@@ -12,19 +16,43 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 /// Short runs that pass through everything that is recorded: a row of minima, a plain reversal, a slow method that does not
-/// converge, a ring.
-const CONFIGS: [(&str, &str); 4] = [
+/// converge and writes folders of files, a ring, magnetostatics, a state from a file.
+const CONFIGS: [(&str, &str); 6] = [
     (
         "row",
-        r#"{"chain": {"sites": 14}}, "energy": [{"anisotropy": {"K": "9.5 meV", "axis": [0, 0, 1]}}], "rates": {"temperatures": ["300 K"]}"#,
+        r#"{"lattice": {"chain": {"sites": 14}}, "energy": [{"anisotropy": {"K": "9.5 meV", "axis": [0, 0, 1]}}],
+            "rates": {"temperatures": ["300 K"]}}"#,
     ),
-    ("reversal", r#"{"chain": {"sites": 100}}"#),
+    ("reversal", r#"{"lattice": {"chain": {"sites": 100}}}"#),
     (
         "slow",
-        r#"{"chain": {"sites": 30}}, "path": {"images": 11, "guess": {"sweep": {"from": "left"}}}, "neb": {"optimiser": {"velocity_projection": {}}, "max_evaluations": 300}"#,
+        r#"{"lattice": {"chain": {"sites": 30}}, "path": {"images": 11, "guess": {"sweep": {"from": "left"}}},
+            "neb": {"optimiser": {"velocity_projection": {}}, "max_evaluations": 300},
+            "output": {"formats": ["csv", "npz", "ovf_images", "vtk"], "plots": []}}"#,
     ),
-    ("ring", r#"{"chain": {"sites": 60, "periodic": true}}, "energy": [{"zeeman": {"B": ["0 T", "0 T", "-1 T"]}}]"#),
+    (
+        "ring",
+        r#"{"lattice": {"chain": {"sites": 60, "periodic": true}}, "energy": [{"zeeman": {"B": ["0 T", "0 T", "-1 T"]}}]}"#,
+    ),
+    (
+        "demag",
+        r#"{"lattice": {"chain": {"sites": 40, "spacing": "5 nm", "cross_section": ["20 nm", "5 nm"]}},
+            "material": {"name": "soft", "Ms": "800 kA/m", "energy": [{"exchange": {"A": "13 pJ/m"}}, {"demag": {}}]},
+            "initial": {"uniform": {"direction": [1, 0, 0]}}, "final": {"uniform": {"direction": [-1, 0, 0]}}}"#,
+    ),
+    (
+        "from_file",
+        r#"{"lattice": {"chain": {"sites": 24}}, "initial": {"file": {"path": "up.csv", "segment": 0}},
+            "final": {"file": {"path": "up.csv", "segment": 1}}, "output": {"formats": ["csv", "ovf_images"], "plots": []}}"#,
+    ),
 ];
+
+/// What the configs have unless they say otherwise.
+const USUAL: &str = r#"{
+    "material": {"name": "toy", "moment": "2 mu_B",
+        "energy": [{"exchange": {"J": ["10 meV"]}}, {"anisotropy": {"K": "0.5 meV", "axis": [0, 0, 1]}}]},
+    "initial": {"uniform": {"direction": [0, 0, 1]}}, "final": {"uniform": {"direction": [0, 0, -1]}},
+    "output": {"formats": ["csv", "npz", "ovf"], "plots": ["svg"]}}"#;
 
 /// Every tenth kill is one of these signals instead, with its exit code.
 const SIGNALS: [(&str, i32); 2] = [("INT", 130), ("TERM", 143)];
@@ -40,10 +68,30 @@ pub struct Tally {
     pub too_late: usize,
     /// Kills after which there was a checkpoint to go on from.
     pub with_checkpoint: usize,
+    /// Processes that found finished steps in a checkpoint and went on from there.
+    pub went_on: usize,
     /// Kills between the first and the last file of a result.
     pub while_writing: usize,
     /// Runs that were brought to their end, each equal to the one that nobody disturbed.
     pub ends: usize,
+}
+
+impl Tally {
+    /// A process goes on from at least the steps that one before it found, if it lives long enough to say anything.
+    fn goes_on(&mut self, steps: &mut usize, said: &str) {
+        let words = said.split_once("going on from the checkpoint, with ").and_then(|(_, rest)| rest.split(' ').next());
+        match words.and_then(|n| n.parse().ok()) {
+            Some(found) => {
+                assert!(found >= *steps, "{found} steps are left of {steps}: {said}");
+                *steps = found;
+                self.went_on += usize::from(found > 0);
+            }
+            None => {
+                let nothing_to_do = said.trim().is_empty() || said.contains("holds the finished result");
+                assert!(*steps == 0 || nothing_to_do, "{steps} finished steps are not used: {said}");
+            }
+        }
+    }
 }
 
 /// A directory with the configs, and the ends of the runs that nobody disturbs.
@@ -67,15 +115,14 @@ impl<'a> Campaign<'a> {
     /// Kills the program's runs in `folder`, at the moments that a seed tells.
     pub fn new(program: &'a Path, folder: &'a Path, seed: u64) -> Campaign<'a> {
         let mut campaign = Campaign { program, folder, random: ChaCha8Rng::seed_from_u64(seed), cases: Vec::new() };
+        let image = |k: usize, z: f64| (0..24).map(|i| format!("{k} {i} 0 0 {z}\n")).collect::<String>();
+        let spins = format!("image site m_x m_y m_z\n{}{}", image(0, 1.0), image(1, -1.0));
+        fs::write(folder.join("up.csv"), spins).unwrap();
         for (name, rest) in CONFIGS {
             let config = folder.join(format!("{name}.json"));
-            let text = format!(
-                r#"{{"material": {{"name": "toy", "moment": "2 mu_B", "energy": [{{"exchange": {{"J": ["10 meV"]}}}},
-                    {{"anisotropy": {{"K": "0.5 meV", "axis": [0, 0, 1]}}}}]}},
-                    "initial": {{"uniform": {{"direction": [0, 0, 1]}}}}, "final": {{"uniform": {{"direction": [0, 0, -1]}}}},
-                    "output": {{"formats": ["csv", "npz", "ovf"], "plots": ["svg"]}}, "lattice": {rest}}}"#
-            );
-            fs::write(&config, text).unwrap();
+            let mut whole: Map<String, Value> = serde_json::from_str(USUAL).unwrap();
+            whole.extend(serde_json::from_str::<Map<String, Value>>(rest).unwrap());
+            fs::write(&config, Value::from(whole).to_string()).unwrap();
             let [plain, watched] = ["off", "0 s"].map(|every| {
                 let out = folder.join(format!("{name} {every}"));
                 let started = Instant::now();
@@ -101,12 +148,13 @@ impl<'a> Campaign<'a> {
         while tally.kills + tally.signals < count {
             let case = tally.ends % self.cases.len();
             let out = self.folder.join(format!("run_{}", tally.ends));
+            let mut steps = 0;
             for _ in 0..self.random.random_range(1..=5) {
                 if tally.kills + tally.signals == count {
                     break;
                 }
                 let before = tally.too_late;
-                self.kill_once(case, &out, &mut tally);
+                self.kill_once(case, &out, &mut steps, &mut tally);
                 let late = tally.too_late > before;
                 let takes = &mut self.cases[case].takes;
                 *takes = takes.mul_f64(if late { 0.85 } else { 1.04 });
@@ -116,6 +164,7 @@ impl<'a> Campaign<'a> {
             }
             let (code, said) = ended(self.start(&self.cases[case].config, &out, "0 s", &["--resume"]));
             let case = &self.cases[case];
+            tally.goes_on(&mut steps, &said);
             assert_eq!(code, case.code, "{}: {said}", out.display());
             let files = files(&out);
             let names = |files: &BTreeMap<String, Vec<u8>>| files.keys().cloned().collect::<Vec<_>>();
@@ -129,7 +178,7 @@ impl<'a> Campaign<'a> {
         tally
     }
 
-    fn kill_once(&mut self, case: usize, out: &Path, tally: &mut Tally) {
+    fn kill_once(&mut self, case: usize, out: &Path, steps: &mut usize, tally: &mut Tally) {
         let threads = ["--resume", "--threads", ["1", "2"][self.random.random_range(0..2)]];
         let signal = (self.random.random_range(0..10) == 0).then(|| SIGNALS[self.random.random_range(0..2)]);
         let takes = self.cases[case].takes;
@@ -148,6 +197,7 @@ impl<'a> Campaign<'a> {
             }
         }
         let (code, said) = ended(child);
+        tally.goes_on(steps, &said);
         let case = &self.cases[case];
         match (signal, code) {
             (None, None) => tally.kills += 1,
@@ -178,7 +228,8 @@ impl<'a> Campaign<'a> {
         tally.while_writing += usize::from(!finished && !own.is_empty());
         let others = files.keys().filter(|name| !case.files.contains_key(*name));
         for name in others {
-            let known = [".spinneb", "checkpoint/", "partial"].iter().any(|start| name.starts_with(start));
+            let known = ["checkpoint/", "partial"].iter().any(|start| name.starts_with(start))
+                || name.rsplit('/').next().is_some_and(|last| last.starts_with(".spinneb"));
             assert!(known, "{}: an unknown file {name}", out.display());
         }
     }
@@ -189,31 +240,4 @@ fn ended(mut child: Child) -> (Option<i32>, String) {
     let mut said = String::new();
     child.stderr.take().unwrap().read_to_string(&mut said).unwrap();
     (child.wait().unwrap().code(), said)
-}
-
-/// All files in a directory, with what may differ taken out of `summary.json`.
-fn files(directory: &Path) -> BTreeMap<String, Vec<u8>> {
-    let mut found = BTreeMap::new();
-    let mut folders = vec![String::new()];
-    while let Some(folder) = folders.pop() {
-        let Ok(entries) = fs::read_dir(directory.join(&folder)) else { continue };
-        for entry in entries {
-            let entry = entry.unwrap();
-            let name = format!("{folder}{}", entry.file_name().to_str().unwrap());
-            if entry.path().is_dir() {
-                folders.push(format!("{name}/"));
-                continue;
-            }
-            let mut bytes = fs::read(entry.path()).unwrap();
-            if name == "summary.json" {
-                let mut summary: Value = serde_json::from_slice(&bytes).expect("a whole summary");
-                for key in ["seconds", "threads"] {
-                    summary["work"][key].take();
-                }
-                bytes = serde_json::to_vec(&summary).unwrap();
-            }
-            found.insert(name, bytes);
-        }
-    }
-    found
 }

@@ -15,4 +15,5 @@ fn main() {
     let mut campaign = Campaign::new(Path::new(env!("CARGO_BIN_EXE_spinneb")), folder.path(), seed);
     let tally = campaign.kill(count);
     println!("seed {seed}, {:.0} s: {tally:#?}", started.elapsed().as_secs_f64());
+    assert!(tally.went_on > tally.with_checkpoint / 2, "resumes begin anew");
 }

@@ -37,7 +37,7 @@ impl Columns {
                 column.push(number.ok_or_else(|| wrong(k + 1, message()))?);
             }
         }
-        Columns { file: file.into(), columns }.checked()
+        Ok(Columns { file: file.into(), columns })
     }
 
     /// From arrays under their names.
@@ -47,10 +47,11 @@ impl Columns {
             let found = column.len();
             return Err(Error::invalid(file, format!("the array {name} has {found} numbers, not {length}: {WAY_OUT}")));
         }
-        Columns { file, columns }.checked()
+        Ok(Columns { file, columns })
     }
 
-    fn checked(self) -> Result<Columns> {
+    /// Those that have rows.
+    pub(super) fn not_empty(self) -> Result<Columns> {
         match self.rows() {
             0 => Err(Error::invalid(self.file, format!("there are no rows: {WAY_OUT}"))),
             _ => Ok(self),
@@ -98,7 +99,6 @@ mod tests {
     fn what_is_damaged_is_named_with_its_line() {
         for (text, said) in [
             ("", "t.csv: line 1: there is no header"),
-            ("a,b\n", "t.csv: there are no rows"),
             ("a,b\n1,2\n3\n", "t.csv: line 3: found 1 cells, expected 2"),
             ("a,b\n1,2\n3,x\n", "t.csv: line 3: b: found \"x\", expected a number"),
             ("a,b\n1,NaN\n", "t.csv: line 2: b: found \"NaN\", expected a number"),
@@ -107,6 +107,8 @@ mod tests {
             let message = Columns::read("t.csv", text).unwrap_err().to_string();
             assert!(message.starts_with(said), "{message}");
         }
+        let message = Columns::read("t.csv", "a,b\n").unwrap().not_empty().unwrap_err().to_string();
+        assert!(message.starts_with("t.csv: there are no rows"), "{message}");
         let columns = Columns::read("t.csv", "a\n1\n").unwrap();
         assert!(columns.named("c").unwrap_err().to_string().starts_with("t.csv: there is no column \"c\""));
     }
