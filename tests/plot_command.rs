@@ -396,3 +396,19 @@ fn a_config_chooses_the_style_and_the_width() {
     assert_eq!(spinneb(here, &["plot", "a", "--out", "paper", "--style", "paper", "--width", "85", "-q"]).0, Some(0));
     assert!(text(&here.join("paper"), "energy_path.svg").contains("width=\"85mm\""));
 }
+
+#[test]
+fn a_result_without_a_band_is_drawn_anew() {
+    let folder = tempfile::tempdir().unwrap();
+    let config = CONFIG.replace("[0, 0, -1]", "[0.1, 0, 1]");
+    fs::write(folder.path().join("same.json"), config).unwrap();
+    let (code, said) = spinneb(folder.path(), &["run", "same.json", "--out", "same", "-q"]);
+    assert_eq!(code, Some(3), "{said}");
+    let dir = folder.path().join("same");
+    assert_eq!(text(&dir, "profile.csv").lines().count(), 1);
+    let before: Vec<Vec<u8>> = names(&dir).iter().map(|name| read(&dir, name)).collect();
+    let (code, said) = spinneb(folder.path(), &["plot", "same"]);
+    assert_eq!(code, Some(0), "{said}");
+    let after: Vec<Vec<u8>> = names(&dir).iter().map(|name| read(&dir, name)).collect();
+    assert!(before == after, "{said}");
+}

@@ -104,8 +104,15 @@ fn read(folder: &Path, faults: &mut Faults) -> Result<(Value, Value, Table, BTre
     let bytes = |name: &str| fs::read(folder.join(name)).map_err(|e| format!("{name}: {e}"));
     let json = |name: &str| serde_json::from_slice::<Value>(&bytes(name)?).map_err(|e| format!("{name}: {e}"));
     let (summary, config) = (json("summary.json")?, json("config.json")?);
-    let hash: String = Sha256::digest(bytes("config.json")?).iter().map(|b| format!("{b:02x}")).collect();
-    faults.unless(summary["config_sha256"] == hash.as_str(), || "config_sha256 is not that of config.json".into());
+    let hash = |name: &str| -> Result<String, String> {
+        Ok(Sha256::digest(bytes(name)?).iter().map(|b| format!("{b:02x}")).collect())
+    };
+    let own = hash("config.json")?;
+    faults.unless(summary["config_sha256"] == own.as_str(), || "config_sha256 is not that of config.json".into());
+    for (name, told) in summary["manifest"]["files"].as_object().ok_or("there is no manifest")? {
+        let found = hash(name)?;
+        faults.unless(*told == found.as_str(), || format!("{name} is not the file of the manifest"));
+    }
     let members = arrays::members(&bytes("path.npz")?).ok_or("path.npz is no archive")?;
     let mut found = BTreeMap::new();
     for (name, content) in members {

@@ -12,7 +12,7 @@ pub(super) struct Columns {
 }
 
 impl Columns {
-    /// From a table with a header; every cell a finite number.
+    /// From a table with a header; every cell a finite number. Two ends in one minimum have no band, and tables of it no rows.
     pub(super) fn read(file: &str, text: &str) -> Result<Columns> {
         let wrong = |line: usize, message: String| Error::invalid(format!("{file}: line {line}"), message);
         let mut lines = text.lines().enumerate();
@@ -48,14 +48,6 @@ impl Columns {
             return Err(Error::invalid(file, format!("the array {name} has {found} numbers, not {length}: {WAY_OUT}")));
         }
         Ok(Columns { file, columns })
-    }
-
-    /// Those that have rows.
-    pub(super) fn not_empty(self) -> Result<Columns> {
-        match self.rows() {
-            0 => Err(Error::invalid(self.file, format!("there are no rows: {WAY_OUT}"))),
-            _ => Ok(self),
-        }
     }
 
     /// Number of rows.
@@ -107,8 +99,6 @@ mod tests {
             let message = Columns::read("t.csv", text).unwrap_err().to_string();
             assert!(message.starts_with(said), "{message}");
         }
-        let message = Columns::read("t.csv", "a,b\n").unwrap().not_empty().unwrap_err().to_string();
-        assert!(message.starts_with("t.csv: there are no rows"), "{message}");
         let columns = Columns::read("t.csv", "a\n1\n").unwrap();
         assert!(columns.named("c").unwrap_err().to_string().starts_with("t.csv: there is no column \"c\""));
     }

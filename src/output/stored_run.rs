@@ -108,7 +108,6 @@ impl StoredRun {
         agree(&table.0, table.1.rows(), images)?;
         let table = table.1;
         let points = table.points("reaction_coordinate_rad", "energy_above_initial_meV")?;
-<<<<<<< HEAD
         let terms_mev = terms(&table);
         let (profile, terms_profile_mev) = match text(dir, "profile.csv")? {
             Some(text) => {
@@ -119,22 +118,13 @@ impl StoredRun {
                     |(name, _): &(String, _)| table.named(&format!("{name}_above_initial_meV")).map(<[f64]>::to_vec);
                 (profile, terms_mev.iter().map(term).collect::<Result<_>>().unwrap_or_default())
             }
-=======
-        // two ends in one minimum have no band between them
-        let band = |name: &str, text: &str| {
-            let table = Columns::read(&shown(dir, name), text)?;
-            if summary.barrier_meV.is_some() { table.not_empty() } else { Ok(table) }
-        };
-        let profile = match text(dir, "profile.csv")? {
-            Some(text) => band("profile.csv", &text)?.points("reaction_coordinate_rad", "energy_above_initial_meV")?,
->>>>>>> 5c17792 (Mutated configs are run in processes with limits and their results checked; a second reader of files of spins; kills see resumes go on; no unsafe code; settings of cargo-deny)
             None => {
                 notes.push("there is no profile.csv: curves join the images by straight lines".into());
                 (Vec::new(), Vec::new())
             }
         };
         let history = match text(dir, "history.csv")? {
-            Some(text) => history(&band("history.csv", &text)?)?,
+            Some(text) => history(&Columns::read(&shown(dir, "history.csv"), &text)?)?,
             None => {
                 notes.push("there is no history.csv: the convergence cannot be drawn".into());
                 Vec::new()
