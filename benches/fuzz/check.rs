@@ -369,6 +369,7 @@ fn rates(stored: &Stored, faults: &mut Faults) {
                 faults.unless(rate.is_none() || prefactor.is_some(), || {
                     format!("{what}: a rate by {theory} without a prefactor")
                 });
+                faults.unless(rate.is_none() || delta >= 1.0, || format!("{what}: a rate at ΔE = {delta} k_BT"));
                 if let (Some(rate), Some(prefactor)) = (rate, prefactor) {
                     let wanted = many * prefactor * (t / first).powf(exponent) * (-delta).exp();
                     faults.near(&format!("{what}: rate by {theory}"), rate, wanted, 1e-9 * wanted + 1e-300);
