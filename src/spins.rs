@@ -7,6 +7,8 @@ use crate::error::{Error, Result};
 use crate::geometry::Direction;
 use crate::geometry::vector::{Vector, unit};
 use ndarray::{Array2, ArrayView2};
+use rand::{RngExt, SeedableRng};
+use std::f64::consts::TAU;
 
 /// Unit vectors, one a site. Nothing here makes a vector that is not of unit length to rounding.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,6 +21,19 @@ impl Spins {
     pub fn uniform(sites: usize, direction: Direction) -> Spins {
         let d = direction.vector();
         Spins { m: Array2::from_shape_fn((3, sites), |(c, _)| d[c]) }
+    }
+
+    /// Directions spread evenly over the sphere, from a seed of the ChaCha8 generator: z even on [−1, 1], azimuth even
+    /// (Archimedes).
+    pub fn random(sites: usize, seed: u64) -> Spins {
+        let mut r = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
+        let mut one = |_| {
+            let z: f64 = r.random_range(-1.0..1.0);
+            let (sin, cos) = libm::sincos(r.random_range(0.0..TAU));
+            let across = (1.0 - z * z).sqrt();
+            [across * cos, across * sin, z]
+        };
+        Spins::from_unit_vectors(&(0..sites).map(&mut one).collect::<Vec<_>>())
     }
 
     /// From one vector a site; each is normalised. An error where one has no direction.

@@ -176,22 +176,55 @@ fn a_long_chain_in_tiles_has_the_gradient_of_its_sites_one_by_one() {
     }
 }
 
+/// How much a turn of all spins about an axis changes the energy of a state (meV).
+fn change_by_a_turn(h: &Hamiltonian, m: &[f64], axis: [f64; 3]) -> f64 {
+    let direction = Direction::new(axis).unwrap();
+    let turned: Vec<_> = (0..h.sites()).map(|i| rotate(Components::new(m).get(i), direction, 0.7)).collect();
+    h.difference_mev(Spins::from_vectors(&turned).unwrap().as_slice(), m)
+}
+
 #[test]
-fn a_declared_symmetry_axis_leaves_the_energy_as_it_is_and_an_undeclared_one_does_not() {
+fn an_axis_of_symmetry_leaves_the_energy_as_it_is_and_another_does_not() {
     for text in fragments() {
         let chain = chain(9, true);
         let term = build(&text, &chain);
-        let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.6, 0.0, 0.8]].into_iter().chain(term.axes());
-        let declared: Vec<_> = axes.map(|a| (a, term.invariant_about(a))).collect();
+        let named = term.axes();
         let h = Hamiltonian::new(&chain, vec![term]).unwrap();
         let m = random_spins(9, 9);
-        for (axis, invariant) in declared {
-            let turned: Vec<_> =
-                (0..9).map(|i| rotate(Components::new(&m).get(i), Direction::new(axis).unwrap(), 0.7)).collect();
-            let change = h.difference_mev(Spins::from_vectors(&turned).unwrap().as_slice(), &m);
-            assert_eq!(change.abs() < 1e-12 * h.stiffness_mev().max(1.0), invariant, "{text} about {axis:?}: {change}");
+        let found = h.symmetry_axes();
+        for axis in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.6, 0.0, 0.8]].into_iter().chain(named) {
+            let is_axis = found.len() == 3 || found.iter().any(|a| vector::norm(vector::cross(*a, axis)) < 1e-12);
+            let change = change_by_a_turn(&h, &m, axis);
+            let rounding = 1e-12 * h.stiffness_mev().max(1.0);
+            assert_eq!(change.abs() < rounding, is_axis, "{text} about {axis:?}: {change}");
         }
     }
+}
+
+#[test]
+fn axes_of_symmetry_are_those_of_the_sum_of_all_terms() {
+    let axes = |terms: &[&str], sites: usize| {
+        let chain = chain(sites, false);
+        let terms = terms.iter().map(|text| build(text, &chain)).collect();
+        Hamiltonian::new(&chain, terms).unwrap().symmetry_axes().to_vec()
+    };
+    let exchange = r#"{"exchange": {"J": ["10 meV"]}}"#;
+    let oblique = r#"{"anisotropy": {"K": "1 meV", "axis": [1, 2, 2]}}"#;
+    assert_eq!(axes(&[exchange], 7).len(), 3);
+    let third = [1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0];
+    let [found] = axes(&[exchange, oblique], 7)[..] else { panic!("one axis") };
+    assert!(vector::norm(vector::cross(found, third)) < 1e-15);
+    // three hard axes of one strength, at right angles, are no anisotropy at all; two of them are an easy axis, which none names
+    let hard = |axis: &str| format!(r#"{{"anisotropy": {{"K": "-1 meV", "axis": {axis}}}}}"#);
+    let [a, b, c] = [hard("[1, 2, 2]"), hard("[2, 1, -2]"), hard("[2, -2, 1]")];
+    assert_eq!(axes(&[exchange, &a, &b, &c], 7).len(), 3);
+    let [found] = axes(&[exchange, &a, &b], 7)[..] else { panic!("one axis") };
+    assert!(vector::norm(vector::cross(found, [2.0 / 3.0, -2.0 / 3.0, 1.0 / 3.0])) < 1e-12);
+    assert!(axes(&[exchange, &a, r#"{"anisotropy": {"K": "1 meV", "axis": [0, 0, 1]}}"#], 7).is_empty());
+    // an anisotropy of a billionth of the exchange is one
+    let weak = r#"{"anisotropy": {"K": "1e-8 meV", "axis": [0, 0, 1]}}"#;
+    assert_eq!(axes(&[exchange, weak], 2000), [[0.0, 0.0, 1.0]]);
+    assert!(axes(&[exchange, weak, r#"{"anisotropy": {"K": "1e-8 meV", "axis": [0, 1, 0]}}"#], 2000).is_empty());
 }
 
 #[test]

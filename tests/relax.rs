@@ -142,7 +142,7 @@ fn a_state_on_a_saddle_is_left_and_two_states_of_one_minimum_are_told() {
     ];
     let (code, out, said) = spinneb(folder.path(), &[&["relax", "wall.json"][..], &sets].concat());
     assert_eq!(code, Some(0), "{said}");
-    assert!(said.contains("wall: warning: the initial state was stationary but no minimum"), "{said}");
+    assert!(said.contains("wall: warning: the initial state came to rest where it is no minimum: the energy falls by"), "{said}");
     assert!(out.ends_with("  both states relax to the same minimum\n"), "{out}");
     let states = relaxed(folder.path(), &sets);
     assert!(states.iter().all(|s| s["left_saddle"] == true && s["minimum"] == true));

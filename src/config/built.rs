@@ -106,7 +106,7 @@ impl Loaded {
         })?;
         self.affordable(memory::hamiltonian_bytes(chain.sites, 1, self.specs().count()), None)?;
         let terms = self.terms(chain)?;
-        let idle = idle_direction(&terms);
+        let idle = idle_direction(&terms, chain.sites);
         let chain = chain.clone().with_vacancies_frozen(idle);
         let hamiltonian = Hamiltonian::new(&chain, terms).map_err(here)?;
         let scales = Scales::of_terms(&hamiltonian);
@@ -271,8 +271,8 @@ fn not_both(chain: &Chain) -> Result<()> {
 }
 
 /// Where the idle spins of vacant sites point: along the axis of symmetry, if there is one, which they must not break.
-fn idle_direction(terms: &[Box<dyn EnergyTerm>]) -> Direction {
-    let axis = symmetry_axes(terms).into_iter().last();
+fn idle_direction(terms: &[Box<dyn EnergyTerm>], sites: usize) -> Direction {
+    let axis = symmetry_axes(terms, sites).into_iter().last();
     axis.and_then(|axis| Direction::new(axis).ok()).unwrap_or(Direction::Z)
 }
 

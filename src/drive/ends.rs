@@ -3,6 +3,8 @@
 use super::outcome::MOVED_FAR_RAD;
 use crate::energy::Hamiltonian;
 use crate::error::{Error, Result};
+use crate::field::Components;
+use crate::geometry::{Vector, vector};
 use crate::linalg::{Banded, Ldl, slab};
 use crate::path::largest_angle;
 use crate::saddle::{Point, Spectrum, State, descend, polish};
@@ -12,10 +14,12 @@ use std::mem::take;
 
 /// Largest rotation of a spin in one step (rad).
 const CAP: f64 = 0.5;
-/// Most Newton steps.
+/// Most Newton steps to a stationary state.
 const STEPS: usize = 500;
-/// How often a stationary state that is no minimum is left.
-const KICKS: usize = 8;
+/// Forces of this many tolerances are rounding error beside steps that a shift makes short: the state is as good as stationary.
+const NEARLY: f64 = 1e6;
+/// The first shift and the least one, in parts of the largest stiffness; one below the third gives way to none where it can.
+const SHIFTS: [f64; 3] = [1e-3, 1e-9, 1e-4];
 
 /// A relaxed state.
 #[derive(Clone, Debug)]
@@ -28,22 +32,63 @@ pub struct Relaxed {
     pub steps: usize,
     /// Largest rotation of any spin from where it was put (rad).
     pub largest_rotation_rad: f64,
-    /// The state as given was stationary but no minimum, and was left along its lowest mode.
-    pub left_saddle: bool,
+    /// How a stationary state that is no minimum was left, if the relaxation came to one: the first of them.
+    pub left: Option<WayDown>,
     /// The force fell below the tolerance.
     pub converged: bool,
 }
 
-/// The minimum that `start` relaxes to, with every force component below `tolerance_mev`.
+/// How a saddle was left for a minimum.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WayDown {
+    /// The site that its lowest mode turns most.
+    pub site: usize,
+    /// Where that site's spin turns to first, of unit length.
+    pub direction: Vector,
+    /// How far the energy fell (meV).
+    pub fallen_mev: f64,
+}
+
+/// The minimum that `start` relaxes to, with every force component below `tolerance_mev`. Stationary states on the way that are
+/// no minima are left, however many, as long as the energy falls.
 pub fn relax_to_minimum(h: &Hamiltonian, start: &Spins, tolerance_mev: f64) -> Result<Relaxed> {
     let mut p = Point::at(h, start.as_slice().to_vec());
-    let mut shift = 0.0;
-    let mut left_saddle = false;
-    let mut kicks = 0;
+    let mut left = None;
     let mut steps = 0;
-    let mut stalled = 0;
     let mut memory = Banded::default();
-    while steps < STEPS {
+    loop {
+        p = stationary(h, p, tolerance_mev, &mut steps, &mut memory)?;
+        let Some((below, way)) = way_down(h, &p, &mut memory) else { break };
+        if way.fallen_mev <= 0.0 {
+            break;
+        }
+        left.get_or_insert(way);
+        steps += 1;
+        p = below;
+    }
+    Ok(Relaxed {
+        max_torque_mev: p.max_torque_mev(),
+        steps,
+        largest_rotation_rad: largest_angle(start.as_slice(), &p.m),
+        left,
+        converged: p.max_torque_mev() <= 1e3 * tolerance_mev,
+        spins: Spins::from_unit_components(&p.m),
+    })
+}
+
+/// Newton's method down to a stationary state, minimum or not. Beside a saddle that the forces do not lead away from, its steps
+/// along soft modes are short, and it ends before.
+fn stationary(
+    h: &Hamiltonian,
+    mut p: Point,
+    tolerance_mev: f64,
+    steps: &mut usize,
+    memory: &mut Banded,
+) -> Result<Point> {
+    let mut shift = 0.0;
+    let mut stalled = 0;
+    let most = *steps + STEPS;
+    while *steps < most {
         if h.is_stopped() {
             return Err(Error::Stopped);
         }
@@ -53,45 +98,33 @@ pub fn relax_to_minimum(h: &Hamiltonian, start: &Spins, tolerance_mev: f64) -> R
             ));
         }
         if p.max_torque_mev() <= tolerance_mev || stalled >= 2 {
-            if kicks == KICKS {
-                break;
-            }
-            let Some(below) = way_down(h, &p, &mut memory) else { break };
-            left_saddle = true;
-            kicks += 1;
-            p = below;
-            (shift, stalled, steps) = (0.0, 0, steps + 1);
-            continue;
+            break;
         }
         let before = p.max_torque_mev();
-        let next = newton_step(h, &p, &mut shift, &mut memory);
-        let Some(next) = next else { break };
+        let Some(next) = newton_step(h, &p, &mut shift, memory) else { break };
         let torque = next.max_torque_mev();
         stalled = if torque > 0.5 * before && torque < 20.0 * tolerance_mev { stalled + 1 } else { 0 };
         p = next;
-        steps += 1;
+        *steps += 1;
     }
-    if p.max_torque_mev() > tolerance_mev && p.max_torque_mev() < 1e6 * tolerance_mev {
+    if p.max_torque_mev() > tolerance_mev && p.max_torque_mev() < NEARLY * tolerance_mev {
         // the shift makes steps along a valley that is all but flat short
         p = polish(h, State::of(h, p)).point;
     }
-    Ok(Relaxed {
-        max_torque_mev: p.max_torque_mev(),
-        steps,
-        largest_rotation_rad: largest_angle(start.as_slice(), &p.m),
-        left_saddle,
-        converged: p.max_torque_mev() <= 1e3 * tolerance_mev,
-        spins: Spins::from_unit_components(&p.m),
-    })
+    Ok(p)
 }
 
-/// One accepted step: (H + shift) v = F, capped, with a larger shift as long as the energy would rise.
+/// One accepted step: (H + shift) v = F, capped, with a larger shift as long as the energy would rise. The shift to go on with
+/// comes down while H stays indefinite, to the size of its lowest eigenvalue: near a saddle the falling mode then grows from step
+/// to step by a part that does not depend on how soft it is.
 fn newton_step(h: &Hamiltonian, p: &Point, shift: &mut f64, memory: &mut Banded) -> Option<Point> {
     let scale = h.stiffness_mev();
     let slack = 1e-13 * (p.energy_mev.abs() + scale);
-    while *shift < 1e6 * scale {
+    let [first, least, small] = SHIFTS.map(|part| part * scale);
+    let mut trial = if *shift > small { *shift } else { 0.0 };
+    while trial < 1e6 * scale {
         let mut matrix = take(memory);
-        p.write_hessian(h, *shift + 1e-12 * scale, &mut matrix);
+        p.write_hessian(h, trial + 1e-12 * scale, &mut matrix);
         let mut x = p.downhill();
         let factors = Ldl::solving(matrix, &mut x, 1);
         let positive = factors.negatives() == 0;
@@ -105,24 +138,32 @@ fn newton_step(h: &Hamiltonian, p: &Point, shift: &mut f64, memory: &mut Banded)
             let mut next = Point::default();
             next.go(h, p, &v);
             if next.energy_mev <= p.energy_mev + slack {
-                *shift = if *shift > 1e-4 * scale { *shift / 4.0 } else { 0.0 };
+                *shift = if trial > 0.0 { (trial / 4.0).max(least) } else { 0.0 };
                 return Some(next);
             }
         }
-        *shift = (4.0 * *shift).max(1e-3 * scale);
+        trial = match (trial > 0.0, *shift > 0.0) {
+            (true, _) => 4.0 * trial,
+            (false, true) => *shift,
+            (false, false) => first,
+        };
     }
     None
 }
 
-/// From a stationary state with a negative direction: the minimum below it; nothing if it is a minimum itself.
-fn way_down(h: &Hamiltonian, p: &Point, memory: &mut Banded) -> Option<Point> {
+/// From a state with a negative direction, stationary or nearly so: the minimum below it; nothing if there is no such direction.
+fn way_down(h: &Hamiltonian, p: &Point, memory: &mut Banded) -> Option<(Point, WayDown)> {
     if Spectrum::negatives(h, p, memory) == 0 {
         return None;
     }
     let state = State::of(h, p.clone());
-    let mode = state.lowest_mode()?;
-    let descent = descend(h, &state, &state.field(&mode.vector), h.stiffness_mev());
-    Some(Point::at(h, descent.m))
+    let mode = state.field(&state.lowest_mode()?.vector);
+    let below = Point::at(h, descend(h, &state, &mode, h.stiffness_mev()).m);
+    let turns = Components::new(&mode);
+    let largest = (0..h.sites()).max_by(|i, j| vector::norm(turns.get(*i)).total_cmp(&vector::norm(turns.get(*j))));
+    let site = largest.unwrap_or(0);
+    let way = WayDown { site, direction: vector::unit_or(turns.get(site), [0.0; 3]), fallen_mev: p.above_mev(&below) };
+    Some((below, way))
 }
 
 /// An end that stays as given.
@@ -132,7 +173,7 @@ pub fn kept(h: &Hamiltonian, spins: &Spins) -> Relaxed {
         max_torque_mev: Point::at(h, spins.as_slice().to_vec()).max_torque_mev(),
         steps: 0,
         largest_rotation_rad: 0.0,
-        left_saddle: false,
+        left: None,
         converged: true,
     }
 }
@@ -141,8 +182,11 @@ pub fn kept(h: &Hamiltonian, spins: &Spins) -> Relaxed {
 pub fn judge_end(r: &Relaxed, which: &str) -> Vec<String> {
     let mut warnings = Vec::new();
     let degrees = r.largest_rotation_rad.to_degrees();
-    if r.left_saddle {
-        warnings.push(format!("the {which} state was stationary but no minimum; it was left along its lowest mode"));
+    if let Some(WayDown { site, direction: [x, y, z], fallen_mev }) = &r.left {
+        warnings.push(format!(
+            "the {which} state came to rest where it is no minimum: the energy falls by {fallen_mev:.3e} meV on the way that \
+             turns site {site} most, towards ({x:.2}, {y:.2}, {z:.2}); it was relaxed further that way"
+        ));
     }
     if r.largest_rotation_rad > MOVED_FAR_RAD {
         warnings.push(format!("the {which} state relaxed far from where it was put: a spin turned by {degrees:.0} degrees, so it may be another state than meant"));

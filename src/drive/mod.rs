@@ -22,7 +22,7 @@ mod stop;
 mod stored;
 mod top;
 
-pub use ends::{Relaxed, relax_to_minimum};
+pub use ends::{Relaxed, WayDown, relax_to_minimum};
 pub use explore::natural_guesses;
 pub use minimum::{Link, Minimum};
 pub use outcome::*;

@@ -4,7 +4,7 @@
 
 use super::bytes::{Reader, Writer};
 use super::climb::Found;
-use super::ends::Relaxed;
+use super::ends::{Relaxed, WayDown};
 use super::minimum::{Link, Minimum};
 use super::outcome::HistoryRow;
 use super::top::Top;
@@ -44,6 +44,10 @@ fn spins(r: &mut Reader, h: &Hamiltonian) -> Option<Spins> {
     row_of(r, h).map(|row| Spins::from_unit_components(&row))
 }
 
+fn way_down(r: &mut Reader) -> Option<WayDown> {
+    Some(WayDown { site: r.whole()?, direction: [r.real()?, r.real()?, r.real()?], fallen_mev: r.real()? })
+}
+
 impl Stored for [Relaxed; 2] {
     const KIND: usize = 1;
 
@@ -53,7 +57,12 @@ impl Stored for [Relaxed; 2] {
             w.real(end.max_torque_mev);
             w.whole(end.steps);
             w.real(end.largest_rotation_rad);
-            w.flag(end.left_saddle);
+            w.flag(end.left.is_some());
+            if let Some(way) = &end.left {
+                w.whole(way.site);
+                way.direction.into_iter().for_each(|c| w.real(c));
+                w.real(way.fallen_mev);
+            }
             w.flag(end.converged);
         }
     }
@@ -65,7 +74,7 @@ impl Stored for [Relaxed; 2] {
                 max_torque_mev: r.finite()?,
                 steps: r.count()?,
                 largest_rotation_rad: r.real()?,
-                left_saddle: r.flag()?,
+                left: if r.flag()? { Some(way_down(r)?) } else { None },
                 converged: r.flag()?,
             })
         };

@@ -154,11 +154,6 @@ impl EnergyTerm for Anisotropy {
         self.k2.iter().all(|k| *k == 0.0)
     }
 
-    fn invariant_about(&self, axis: Vector) -> bool {
-        let nothing = self.k.iter().chain(&self.k2).all(|k| *k == 0.0);
-        nothing || vector::norm(vector::cross(axis, self.axis)) < 1e-14
-    }
-
     fn axes(&self) -> Vec<Vector> {
         vec![self.axis]
     }

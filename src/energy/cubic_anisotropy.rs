@@ -146,10 +146,6 @@ impl EnergyTerm for CubicAnisotropy {
         self.k.iter().all(|k| *k == 0.0)
     }
 
-    fn invariant_about(&self, _: Vector) -> bool {
-        self.k.iter().all(|k| *k == 0.0)
-    }
-
     fn axes(&self) -> Vec<Vector> {
         self.axes.to_vec()
     }

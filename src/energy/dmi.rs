@@ -135,10 +135,6 @@ impl EnergyTerm for Dmi {
         1
     }
 
-    fn invariant_about(&self, axis: Vector) -> bool {
-        self.d.iter().all(|d| *d == 0.0) || vector::norm(vector::cross(axis, self.direction)) < 1e-14
-    }
-
     fn axes(&self) -> Vec<Vector> {
         vec![self.direction]
     }

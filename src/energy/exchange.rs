@@ -198,10 +198,6 @@ impl EnergyTerm for Exchange {
         self.shells.len()
     }
 
-    fn invariant_about(&self, _: Vector) -> bool {
-        true
-    }
-
     fn axes(&self) -> Vec<Vector> {
         Vec::new()
     }

@@ -1,6 +1,6 @@
 //! The sum of the terms, on a chain.
 
-use super::{Blocks, EnergyTerm, Magnetostatics};
+use super::{Blocks, EnergyTerm, Magnetostatics, symmetry_axes};
 use crate::error::{Error, Result};
 use crate::field::{Components, ComponentsMut, TILE, project_row, tiles};
 use crate::geometry::{Direction, Vector, vector};
@@ -53,7 +53,7 @@ impl Hamiltonian {
             return Err(twice(terms[first].name(), second.name()));
         }
         let reach = terms.iter().map(|t| t.reach()).max().unwrap_or(0).min(chain.sites - 1);
-        let axes = symmetry_axes(&terms);
+        let axes = symmetry_axes(&terms, chain.sites);
         let mut h = Hamiltonian {
             sites: chain.sites,
             periodic: chain.periodic,
@@ -365,15 +365,4 @@ fn twice(first: &str, second: &str) -> Error {
         "energy",
         format!("{what}, of the material or here: keep one, or the moments act on each other twice"),
     )
-}
-
-/// Unit vectors about which a rotation of all spins leaves all terms as they are: none, one, or x, y and z.
-pub fn symmetry_axes(terms: &[Box<dyn EnergyTerm>]) -> Vec<Vector> {
-    let invariant = |axis: &Vector| terms.iter().all(|t| t.invariant_about(*axis));
-    let cartesian = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    let tilted = [0.6, 0.0, 0.8];
-    if cartesian.iter().all(invariant) && invariant(&tilted) {
-        return cartesian.to_vec();
-    }
-    terms.iter().flat_map(|t| t.axes()).find(|axis| invariant(axis)).into_iter().collect()
 }

@@ -18,6 +18,7 @@ mod hamiltonian;
 mod hessian;
 pub mod magnetostatics;
 mod spec;
+mod symmetry;
 mod zeeman;
 
 pub use anisotropy::{Anisotropy, AnisotropySpec};
@@ -27,10 +28,11 @@ pub use demag::DemagSpec;
 pub use dipolar::DipolarSpec;
 pub use dmi::{Dmi, DmiSpec};
 pub use exchange::{Exchange, ExchangeSpec};
-pub use hamiltonian::{Hamiltonian, symmetry_axes};
+pub use hamiltonian::Hamiltonian;
 pub use hessian::{Assembly, BasisTile, TangentBasis, assemble, assemble_into, assemble_shifted};
 pub use magnetostatics::Magnetostatics;
 pub use spec::{Medium, TermBuilder, TermSpec};
+pub use symmetry::symmetry_axes;
 pub use zeeman::{Zeeman, ZeemanSpec};
 
 use crate::field::{Components, ComponentsMut};
@@ -81,10 +83,7 @@ pub trait EnergyTerm: Debug + Send + Sync {
         true
     }
 
-    /// Whether a rotation of all spins about `axis` leaves the energy as it is.
-    fn invariant_about(&self, axis: Vector) -> bool;
-
-    /// Axes that the term itself singles out: candidates for a symmetry axis.
+    /// Axes that the term itself singles out: the candidates for an axis of symmetry that are tried first.
     fn axes(&self) -> Vec<Vector>;
 
     /// The term as one that joins all pairs of sites, if it does: its gradient is then asked for once a configuration, for all

@@ -103,10 +103,6 @@ impl EnergyTerm for Zeeman {
         0
     }
 
-    fn invariant_about(&self, axis: Vector) -> bool {
-        self.b.iter().all(|b| *b == 0.0) || vector::norm(vector::cross(axis, self.direction)) < 1e-14
-    }
-
     fn axes(&self) -> Vec<Vector> {
         vec![self.direction]
     }

@@ -94,7 +94,7 @@ impl<'a> RelaxReport<'a> {
             energy_as_given_meV: Number(state.given_mev),
             max_torque_as_given_meV: Number(state.given_torque_mev),
             largest_rotation_rad: Number(relaxed.largest_rotation_rad),
-            left_saddle: relaxed.left_saddle,
+            left_saddle: relaxed.left.is_some(),
             steps: relaxed.steps,
             warnings: &state.warnings,
             files: if written { spin_files(which, self.formats) } else { Vec::new() },

@@ -7,7 +7,7 @@
 use crate::energy::Hamiltonian;
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, Vector, rotate, vector};
-use rand::{RngExt, SeedableRng};
+use crate::spins::Spins;
 
 /// Spins of two states that are the same differ by less (rad).
 const SAME: f64 = 1e-3;
@@ -114,13 +114,7 @@ pub(super) fn period(m: &[f64]) -> usize {
 
 /// A state without any symmetry: what leaves its energy as it is leaves all energies so.
 fn sample(sites: usize) -> Vec<f64> {
-    let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(0x5a3e);
-    let mut m = vec![0.0; 3 * sites];
-    for i in 0..sites {
-        let v = [0, 1, 2].map(|_| random.random_range(-1.0..1.0));
-        ComponentsMut::new(&mut m).set(i, vector::unit_or(v, [0.6, 0.0, 0.8]));
-    }
-    m
+    Spins::random(sites, 0x5a3e).as_slice().to_vec()
 }
 
 fn is_symmetric(

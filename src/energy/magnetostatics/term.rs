@@ -280,18 +280,6 @@ impl EnergyTerm for Magnetostatics {
         self.exponentials(true).map_or(0, |e| e.shells)
     }
 
-    fn invariant_about(&self, axis: Vector) -> bool {
-        let about_itself = vector::norm(vector::cross(axis, self.frame[0])) < 1e-14;
-        let moments = &self.moments;
-        let axial = match &self.coupling {
-            Coupling::Distance(by) => by.kernel.is_axial(),
-            Coupling::Pairs(pairs) => pairs.is_axial(),
-        };
-        let [x, y, _] = self.pair(0, 0);
-        let alone = moments.len() == 1 && (x - y).abs() <= 1e-14 * x.abs();
-        moments.iter().all(|m| *m == 0.0) || (axial && (about_itself || alone))
-    }
-
     fn axes(&self) -> Vec<Vector> {
         self.frame.to_vec()
     }
