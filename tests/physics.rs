@@ -215,3 +215,30 @@ fn claims_hold(problem: &Problem, text: &str) -> bool {
     assert!((top - forward(&outcome)).abs() < 1e-12, "{text}");
     true
 }
+
+/// A wall in a chain with a weak site, its ends kept as they are: at `from` and at `to`.
+fn kept(from: f64, to: f64) -> Outcome {
+    let build = Build::open(40).easy(0.05).defect(19, -0.04);
+    let wall = |center: f64| build.wall(center, 3.2, Direction::X);
+    let (a, b) = (wall(from), wall(to));
+    let mut problem = build.problem(a, b);
+    problem.relax_ends = false;
+    solve(&problem)
+}
+
+#[test]
+fn kept_ends_that_are_the_highest_point_of_the_path_give_no_barrier_and_the_reason() {
+    for (from, to, which) in [(12.0, 19.0, "initial"), (19.0, 12.0, "final")] {
+        let outcome = kept(from, to);
+        let difference = outcome.initial.energy_mev - outcome.final_state.energy_mev;
+        assert!(difference.abs() > 1e-3 && (difference > 0.0) == (which == "initial"), "{difference}");
+        assert!(outcome.barrier.is_none() && !outcome.converged && !outcome.certified, "{which}");
+        assert_eq!(outcome.stop_code, StopCode::KeptEnd, "{}", outcome.stop_reason);
+        assert!(
+            outcome.stop_reason.contains(&format!("is the {which} state, kept as given")),
+            "{}",
+            outcome.stop_reason
+        );
+        assert_eq!(outcome.initial.moved_rad, None);
+    }
+}

@@ -697,3 +697,26 @@ fn stored_states_give_the_rates_of_the_run_and_must_prove_themselves() {
     minima[1] = outcome.saddles[0].spins.clone();
     assert!(why(again(&outcome.saddles, &minima)).starts_with("saddle 0: "));
 }
+
+#[test]
+fn a_square_thin_cell_lives_as_long_as_a_spin_with_an_easy_axis_of_its_barrier() {
+    let config = r#"{
+      "material": {"name": "thin cell", "source": "this test", "Ms": "1 MA/m",
+        "energy": [{"exchange": {"A": "15 pJ/m"}}, {"anisotropy": {"K": "0.8 MJ/m^3", "axis": [0, 0, 1]}}, {"demag": {}}]},
+      "lattice": {"chain": {"sites": 1, "spacing": "20 nm", "cross_section": ["20 nm", "1.2 nm"]}},
+      "initial": {"uniform": {"direction": [0, 0, 1]}},
+      "final": {"uniform": {"direction": [0, 0, -1]}},
+      "rates": {"temperatures": ["300 K"], "damping": 0.1}
+    }"#;
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("cell.json");
+    std::fs::write(&path, config).expect("a config");
+    let cell = solve(&spinneb::config::load(&path, &[]).expect("a config").problem().expect("a problem"));
+    assert!(cell.certified && cell.saddles[0].zero_modes == Some(1), "{:?}", cell.warnings);
+    let barrier = cell.barrier.expect("a barrier").forward_mev;
+    // Ms V in μ_B, CODATA 2022
+    let moment = 1e6 * 20e-9 * 20e-9 * 1.2e-9 / 9.2740100657e-24;
+    let spin = solve(&with(Build::open(1).easy(barrier).reversal(), settings(1, moment, 0.1, 300.0)));
+    let [cell, spin] = [&cell, &spin].map(|outcome| rate(outcome, Way::Forward).langer.expect("Langer").hz_at(300.0));
+    assert!((cell / spin - 1.0).abs() < 1e-9, "{cell} {spin}");
+}

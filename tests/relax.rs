@@ -142,7 +142,10 @@ fn a_state_on_a_saddle_is_left_and_two_states_of_one_minimum_are_told() {
     ];
     let (code, out, said) = spinneb(folder.path(), &[&["relax", "wall.json"][..], &sets].concat());
     assert_eq!(code, Some(0), "{said}");
-    assert!(said.contains("wall: warning: the initial state came to rest where it is no minimum: the energy falls by"), "{said}");
+    assert!(
+        said.contains("wall: warning: the initial state came to rest where it is no minimum: the energy falls by"),
+        "{said}"
+    );
     assert!(out.ends_with("  both states relax to the same minimum\n"), "{out}");
     let states = relaxed(folder.path(), &sets);
     assert!(states.iter().all(|s| s["left_saddle"] == true && s["minimum"] == true));
@@ -180,4 +183,35 @@ fn what_is_wrong_is_said_with_its_place_and_several_configs_have_the_worst_code(
     let both = ["relax", "wall.json", "other.json", "--out", "all", "--quiet"];
     assert_eq!(spinneb(folder.path(), &both).0, Some(0));
     assert!(["wall", "other"].iter().all(|name| folder.path().join("all").join(name).join("relax.json").is_file()));
+}
+
+/// A wall of the dear handedness between two stretches of weaker K in a film with DMI.
+fn dear_wall(weaker: &str) -> String {
+    format!(
+        r#"{{
+  "material": "cobalt_platinum",
+  "lattice": {{"chain": {{"sites": 200, "spacing": "1 nm", "cross_section": ["50 nm", "0.4 nm"]}}}},
+  "energy": [
+    {{"demag": {{}}}},
+    {{"anisotropy": {{"K": "{weaker}", "axis": [0, 0, 1], "sites": {{"from": 60, "to": 79}}}}}},
+    {{"anisotropy": {{"K": "{weaker}", "axis": [0, 0, 1], "sites": {{"from": 120, "to": 139}}}}}}
+  ],
+  "initial": {{"domain_wall": {{"center": 69.5, "through": [1, 0, 0]}}}}
+}}"#
+    )
+}
+
+#[test]
+fn a_saddle_is_left_where_no_force_leads_away_from_it_and_where_the_way_to_it_is_long() {
+    let folder = folder();
+    // the relaxation comes to rest on the saddle itself, and crawls along a soft mode beside it
+    for weaker in ["-0.2 MJ/m^3", "-0.08 MJ/m^3"] {
+        fs::write(folder.path().join("dear.json"), dear_wall(weaker)).unwrap();
+        let (code, out, said) = spinneb(folder.path(), &["relax", "dear.json", "--json"]);
+        assert_eq!(code, Some(0), "{said}");
+        assert!(said.contains("the energy falls by 2.50") && said.contains("most, towards ("), "{said}");
+        let state: Value = serde_json::from_str(&out).unwrap();
+        assert!(state["minimum"] == true && state["converged"] == true && state["left_saddle"] == true, "{out}");
+        assert_eq!(state["negative_modes"], 0);
+    }
 }
