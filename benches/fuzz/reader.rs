@@ -113,7 +113,7 @@ fn csv(bytes: &[u8]) -> Option<Vectors> {
     // no row may be cut short: each has an end, comments and blank lines aside
     let rows: Vec<&str> = text.split_inclusive('\n').collect();
     let whole = |row: &&str| row.ends_with('\n') || row.trim().is_empty() || row.trim().starts_with('#');
-    rows.iter().all(|row| whole(row)).then_some(())?;
+    rows.iter().all(whole).then_some(())?;
     let (mut named, mut promised, mut begun) = (None, None, false);
     // image, site, vector
     let mut found: Vec<(Option<usize>, Option<usize>, [f64; 3])> = Vec::new();

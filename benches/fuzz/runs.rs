@@ -307,7 +307,7 @@ impl<'a> Runs<'a> {
         match case.number % 50 {
             _ if !quick => {}
             0 | 1 => found.extend(self.on_two_threads(case, result, tally)),
-            2 | 3 => found.extend(self.from_its_own_config(result, tally)),
+            2 | 3 => found.extend(self.its_own_config(result, tally)),
             4..7 => found.extend(self.after_a_kill(case, result, tally)),
             7 => found.extend(self.in_a_sweep(case, tally)),
             8 | 9 => found.extend(self.relaxed(case, &summary, tally)),
@@ -325,7 +325,7 @@ impl<'a> Runs<'a> {
         differences("on two threads", result, &again, &said)
     }
 
-    fn from_its_own_config(&self, result: &Path, tally: &mut Tally) -> Vec<String> {
+    fn its_own_config(&self, result: &Path, tally: &mut Tally) -> Vec<String> {
         tally.from_their_own_config += 1;
         let again = result.with_extension("again");
         let own = result.join("config.json");

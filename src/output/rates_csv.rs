@@ -49,15 +49,13 @@ impl Format for RatesCsv {
         column("barrier_over_kT", &|l| Some(l.2.barrier_over_kt));
         column("htst_rate_per_s", &|l| l.2.ln_htst_per_s.map(libm::exp));
         column("langer_rate_per_s", &|l| l.2.ln_langer_per_s.map(libm::exp));
-        let times: [(&str, fn(&Line) -> Option<f64>); 3] = [
-            ("lifetime_s", |l| l.2.ln_lifetime_s().filter(|_| l.3.is_none())),
-            ("escape_lifetime_s", |l| l.3.and_then(Row::ln_lifetime_s)),
-            ("first_passage_s", |l| l.2.ln_lifetime_s().filter(|_| l.3.is_some())),
-        ];
-        for (name, ln) in times {
+        let mut times = |name: &str, ln: &dyn Fn(&Line) -> Option<f64>| {
             column(name, &|l| ln(l).map(libm::exp));
             column(&format!("log10_{name}"), &|l| ln(l).map(|ln| ln / std::f64::consts::LN_10));
-        }
+        };
+        times("lifetime_s", &|l| l.2.ln_lifetime_s().filter(|_| l.3.is_none()));
+        times("escape_lifetime_s", &|l| l.3.and_then(Row::ln_lifetime_s));
+        times("first_passage_s", &|l| l.2.ln_lifetime_s().filter(|_| l.3.is_some()));
         column("known_within_factor", &|l| l.2.known_within);
         table.render()
     }
