@@ -332,11 +332,16 @@ pub struct Plot {
 #[command(after_help = "\
 Examples:
   spinneb list
-  spinneb list optimisers")]
+  spinneb list optimisers
+  spinneb list states domain_wall
+  spinneb list materials fept")]
 pub struct List {
     /// What to list; everything if left out
     #[arg(value_enum)]
     pub what: Option<What>,
+
+    /// One entry, with all its keys
+    pub name: Option<String>,
 }
 
 /// What can be listed.
@@ -362,9 +367,16 @@ pub fn report(error: &anyhow::Error) -> u8 {
     if error.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == ErrorKind::BrokenPipe) {
         return 0;
     }
-    note(&format!("error: {error}"));
+    let several = match error.downcast_ref::<Error>() {
+        Some(Error::Several(errors)) => &errors[..],
+        _ => &[],
+    };
+    several.iter().for_each(|error| note(&format!("error: {error}")));
+    if several.is_empty() {
+        note(&format!("error: {error}"));
+    }
     match error.downcast_ref::<Error>() {
-        Some(Error::Config { .. } | Error::Invalid { .. }) => USAGE,
+        Some(Error::Several(_) | Error::Config { .. } | Error::Invalid { .. }) => USAGE,
         Some(Error::Io { source, .. }) if source.kind() == ErrorKind::AlreadyExists => USAGE,
         _ => 1,
     }
@@ -407,6 +419,7 @@ mod tests {
             "spinneb check a.json --set a=1",
             "spinneb list",
             "spinneb list terms",
+            "spinneb list states domain_wall",
             "spinneb run a.json --resume",
             "spinneb run a.json --checkpoint-every off",
             "spinneb init",

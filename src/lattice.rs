@@ -288,12 +288,14 @@ fn positive(length: Length, place: &str) -> Result<()> {
 pub enum Selection {
     /// `[3, 4, 9]`.
     List(Vec<usize>),
-    /// `{"from": 3, "to": 9}`, both included.
+    /// `{"from": 3, "to": 9, "step": 2}`: every `step`th, both ends included where the steps meet them.
     Range {
         /// First.
         from: usize,
         /// Last.
         to: usize,
+        /// From one to the next; 1 if not given.
+        step: usize,
     },
 }
 
@@ -302,7 +304,11 @@ impl Selection {
     pub fn position(&self, index: usize) -> Option<(usize, usize)> {
         match self {
             Selection::List(list) => list.iter().position(|i| *i == index).map(|k| (k, list.len())),
-            Selection::Range { from, to } => (*from..=*to).contains(&index).then(|| (index - from, to - from + 1)),
+            Selection::Range { from, to, step } => {
+                let step = (*step).max(1);
+                let chosen = (*from..=*to).contains(&index) && (index - from).is_multiple_of(step);
+                chosen.then(|| ((index - from) / step, (to - from) / step + 1))
+            }
         }
     }
 
@@ -321,7 +327,10 @@ impl Selection {
                 }
                 Ok(list.clone())
             }
-            Selection::Range { from, to } => {
+            Selection::Range { from, to, step } => {
+                if *step == 0 {
+                    return Err(Error::invalid("step", "found 0, but a step leads from one to the next: 1 or more"));
+                }
                 if *to >= count {
                     return Err(out_of_range("to".into(), *to, count, what));
                 }
@@ -331,10 +340,14 @@ impl Selection {
                         format!("the range from {from} to {to} is empty: exchange the two"),
                     ));
                 }
-                Ok((*from..=*to).collect())
+                Ok((*from..=*to).step_by(*step).collect())
             }
         }
     }
+}
+
+fn one() -> usize {
+    1
 }
 
 fn out_of_range(place: String, found: usize, count: usize, what: &str) -> Error {
@@ -353,12 +366,12 @@ impl JsonSchema for Selection {
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         let index = json!({"type": "integer", "minimum": 0});
         json_schema!({
-            "description": "indices like [3, 4] or a range like {\"from\": 3, \"to\": 9}, both ends included",
+            "description": "indices like [3, 4] or a range like {\"from\": 3, \"to\": 9, \"step\": 2}, both ends included",
             "oneOf": [
                 {"type": "array", "items": index, "uniqueItems": true},
                 {
                     "type": "object",
-                    "properties": {"from": index, "to": index},
+                    "properties": {"from": index, "to": index, "step": {"type": "integer", "minimum": 1, "default": 1}},
                     "required": ["from", "to"],
                     "additionalProperties": false,
                 },
@@ -388,9 +401,11 @@ impl<'de> Deserialize<'de> for Selection {
                 struct Ends {
                     from: usize,
                     to: usize,
+                    #[serde(default = "one")]
+                    step: usize,
                 }
                 let e = Ends::deserialize(serde::de::value::MapAccessDeserializer::new(m))?;
-                Ok(Selection::Range { from: e.from, to: e.to })
+                Ok(Selection::Range { from: e.from, to: e.to, step: e.step })
             }
         }
         d.deserialize_any(Seen)
@@ -417,5 +432,18 @@ mod tests {
         assert_eq!(range.indices(4, "site").unwrap(), [1, 2, 3]);
         assert!(range.indices(3, "site").unwrap_err().to_string().contains("counted from 0 to 2"));
         assert!(serde_json::from_str::<Selection>(r#"{"from": 1}"#).is_err());
+    }
+
+    #[test]
+    fn a_range_with_a_step_chooses_every_other_site_and_knows_which_of_them_each_is() {
+        let range: Selection = serde_json::from_str(r#"{"from": 1, "to": 10, "step": 3}"#).unwrap();
+        assert_eq!(range.indices(11, "site").unwrap(), [1, 4, 7, 10]);
+        let positions: Vec<_> = (0..12).filter_map(|i| range.position(i)).collect();
+        assert_eq!(positions, [(0, 4), (1, 4), (2, 4), (3, 4)]);
+        let short: Selection = serde_json::from_str(r#"{"from": 1, "to": 9, "step": 3}"#).unwrap();
+        assert_eq!(short.indices(10, "site").unwrap(), [1, 4, 7]);
+        assert_eq!(short.position(7), Some((2, 3)));
+        let none: Selection = serde_json::from_str(r#"{"from": 1, "to": 9, "step": 0}"#).unwrap();
+        assert!(none.indices(10, "site").unwrap_err().to_string().starts_with("step: found 0"));
     }
 }

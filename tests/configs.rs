@@ -1,6 +1,9 @@
 //! The shipped configs run and give the barriers they are known for; the bad ones are refused in the words beside them.
 
 use serde_json::Value;
+use spinneb::config::estimate::Estimate;
+use spinneb::config::load;
+use spinneb::drive::Scales;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -92,8 +95,8 @@ fn a_wall_in_a_nanowire_leaves_its_pinning_region_over_less_than_the_region_s_de
 fn a_permalloy_wire_is_reversed_by_a_wall_that_enters_at_one_end() {
     let (forward, backward) = barriers(&shipped("permalloy_wire"));
     assert!((forward - backward).abs() < 1e-9 * forward);
-    // Above that of the same wire of 200 nm, 3298.70 meV, and below that of 700 nm, 3386.21 meV.
-    assert!(3298.8 < forward && forward < 3386.1, "{forward}");
+    // cells of 1.25 nm give 3318.6 meV, a change a quarter of that from cells of 5 nm (3340.0 meV) to these
+    assert!((forward - 3323.44).abs() < 0.01, "{forward}");
 }
 
 #[test]
@@ -102,7 +105,7 @@ fn a_wall_in_a_permalloy_wire_is_moved_past_a_shallow_notch_from_one_deep_one_to
     // the two deep notches are alike but for the halves of the shallow one between them
     assert!((forward - backward).abs() < 0.01 * forward, "{forward} {backward}");
     // of the 3.3 eV of a wall in the wide wire, less than the share of the section that a deep notch lacks, 40 %
-    assert!(0.1 * 3340.0 < forward && forward < 0.4 * 3340.0, "{forward}");
+    assert!(0.1 * 3320.0 < forward && forward < 0.4 * 3320.0, "{forward}");
 }
 
 #[test]
@@ -149,7 +152,8 @@ fn every_shipped_config_is_tested_and_checks() {
     for name in tested {
         let done = spinneb(&configs, &["check", &format!("{name}.json")]);
         assert_eq!(done.status.code(), Some(0), "{name}");
-        assert!(String::from_utf8_lossy(&done.stdout).starts_with(&format!("{name}.json: valid\n")), "{name}");
+        let said = String::from_utf8(done.stdout).unwrap();
+        assert!(said.starts_with(&format!("{name}.json: valid\n")) && !said.contains("warning"), "{said}");
     }
 }
 
@@ -163,26 +167,253 @@ fn a_check_prints_the_physics_before_a_run() {
     for row in [
         // √(2A/μ₀Ms²), √(A/K), 4√(AK) S, KV of the weak stretch and of the others
         "l_ex         8.4242 nm",
-        "wall width   2.5000 sites, 5.0000 nm",
+        "wall width   5.0000 sites, 5.0000 nm",
         "wall energy  1497.9622 meV, 12.0000 mJ/m²",
-        "site barrier 99.864145 to 149.796218 meV",
+        "site barrier 49.932073 to 74.898109 meV",
         "dominant     exchange",
         "memory       about",
         "time         about",
-        "warning      a wall is only 2.50 cells wide",
     ] {
         assert!(wire.contains(row), "{row}\n{wire}");
     }
-    let notch = said("permalloy_notch");
-    assert!(
-        notch.contains("warning      cells of 5 nm are longer than half the exchange length of 5.69 nm"),
-        "{notch}"
-    );
     let toy = said("wall_nucleation");
     assert!(toy.contains("wall energy  6.3246 meV") && !toy.contains("warning"), "{toy}");
     let listed = spinneb(&root(), &["list", "materials"]);
     let listed = String::from_utf8(listed.stdout).unwrap();
     assert!(listed.lines().count() >= 18 && listed.contains("5.69 nm") && listed.contains("15.80 mJ/m²"), "{listed}");
+}
+
+#[test]
+fn a_check_expects_the_work_of_every_shipped_config_within_a_factor_of_3() {
+    for name in names(&root().join("configs"), ".json") {
+        let loaded = load(&root().join(format!("configs/{name}.json")), &[]).unwrap();
+        let problem = loaded.problem().unwrap();
+        let scales = Scales::of_terms(&problem.hamiltonian);
+        let estimate = Estimate::of(&problem, &scales);
+        let summary = fs::read(root().join(format!("results/gallery/{name}/summary.json"))).unwrap();
+        let summary: Value = serde_json::from_slice(&summary).unwrap();
+        let taken = summary["work"]["force_evaluations"].as_f64().unwrap();
+        let factor = estimate.evaluations as f64 / taken;
+        assert!((1.0 / 3.0..=3.0).contains(&factor), "{name}: {estimate:?}, {taken}");
+        assert!(estimate.processor_seconds(&loaded, &problem, &scales) > 0.2, "two kinds of figures take longer");
+    }
+}
+
+/// Long cells for the Permalloy wire, which are warned of.
+const COARSE: [&str; 8] = [
+    "--set",
+    "lattice.chain.sites=60",
+    "--set",
+    "lattice.chain.spacing=\"5 nm\"",
+    "--set",
+    "output.formats=[]",
+    "--set",
+    "output.plots=[]",
+];
+
+#[test]
+fn what_a_check_warns_of_a_run_warns_of_too_in_the_terminal_in_json_and_in_the_summary() {
+    let out = tempfile::tempdir().unwrap();
+    let (config, folder) = ("configs/permalloy_wire.json", out.path().to_str().unwrap());
+    let check = spinneb(&root(), &[&["check", config], &COARSE[..]].concat());
+    let check = String::from_utf8(check.stdout).unwrap();
+    let warnings: Vec<&str> = check.lines().filter_map(|l| l.trim().strip_prefix("warning").map(str::trim)).collect();
+    assert_eq!(warnings.len(), 2, "{check}");
+    assert!(warnings[0].starts_with("cells of 5 nm are longer than half the exchange length of 5.69 nm"), "{check}");
+    assert!(warnings[1].starts_with("a wall is only 2.3"), "{check}");
+    let run = spinneb(&root(), &[&["run", config, "--out", folder, "--json"], &COARSE[..]].concat());
+    let said = String::from_utf8(run.stderr).unwrap();
+    let line: Value = serde_json::from_slice(&run.stdout).unwrap();
+    let summary: Value = serde_json::from_slice(&fs::read(out.path().join("summary.json")).unwrap()).unwrap();
+    for warning in warnings {
+        assert!(said.contains(&format!("warning: {warning}")), "{said}");
+        for list in [&line["warnings"], &summary["warnings"]] {
+            assert!(list.as_array().unwrap().iter().any(|w| w == warning), "{list}: {warning}");
+        }
+    }
+}
+
+#[test]
+fn templates_check_without_a_warning() {
+    let folder = tempfile::tempdir().unwrap();
+    for template in ["chain", "lifetime", "nanowire"] {
+        assert_eq!(spinneb(folder.path(), &["init", template]).status.code(), Some(0));
+        let done = spinneb(folder.path(), &["check", &format!("{template}.json")]);
+        let said = String::from_utf8(done.stdout).unwrap();
+        assert!(done.status.success() && !said.contains("warning"), "{said}");
+    }
+}
+
+#[test]
+fn all_that_is_wrong_is_told_at_once_and_each_as_an_error_of_its_own() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(
+        folder.path().join("wall.json"),
+        r#"{
+  "material": {"name": "toy", "energy": [{"exchange": {"J": "10 meV"}}, {"anistropy": {"K": 0.5, "axis": [0, 0, 1]}}]},
+  "latice": {"chain": {"sites": 20, "spacing": "0.25 mev"}},
+  "initial": {"domain_wall": {}},
+  "final": {"uniform": {"direction": [0, 0]}},
+  "path": {"images": 2}
+}"#,
+    )
+    .unwrap();
+    let wrong = |arguments: &[&str]| {
+        let done = spinneb(folder.path(), arguments);
+        assert_eq!(done.status.code(), Some(2));
+        String::from_utf8(done.stderr).unwrap()
+    };
+    let all = r#"error: wall.json:2:61: material.energy[0].exchange.J: found the string "10 meV", expected an array, such as ["10 meV"]
+error: wall.json:2:74: material.energy[1].anistropy: unknown kind "anistropy": did you mean "anisotropy"? (known kinds: exchange, anisotropy, cubic_anisotropy, dmi, zeeman, dipolar, demag)
+error: wall.json:2:93: material.energy[1].anistropy.K: found the number 0.5, but an energy per site or per volume needs its unit: write "0.5 meV" or "0.5 J/m^3" (J, eV, Ry or erg for a site, J/m^3 or erg/cm^3 for a volume, with SI prefixes)
+error: wall.json:3:3: latice: unknown key "latice": did you mean "lattice"? (known keys: $schema, comment, name, material, lattice, energy, initial, final, relax_ends, path, neb, saddle, rates, output)
+error: wall.json:3:48: latice.chain.spacing: "0.25 mev" is an energy
+"#;
+    let said = wrong(&["check", "wall.json"]);
+    let places: Vec<&str> = said.lines().map(|line| line.split(": ").nth(1).unwrap()).collect();
+    let expected: Vec<&str> = all.lines().map(|line| line.split(": ").nth(1).unwrap()).collect();
+    assert_eq!(places[..5], expected[..], "{said}");
+    assert_eq!(places[5..], ["wall.json:4:30", "wall.json:5:38", "wall.json:6:22"], "{said}");
+    for (said, expected) in said.lines().zip(all.lines().take(4)) {
+        assert_eq!(said, expected);
+    }
+
+    let said = wrong(&["run", "wall.json", "--set", "path.images=1", "--set", "latice.chain.sites=10000000"]);
+    assert!(
+        said.contains(
+            "
+error: wall.json:3:48: latice.chain.spacing: "
+        ),
+        "{said}"
+    );
+    assert!(said.contains("error: --set path.images: found 1, but a path has at least 3 images"), "{said}");
+    // what is only wrong together is told together too
+    let config = root().join("configs/wall_depinning.json");
+    let said = wrong(&[
+        "check",
+        config.to_str().unwrap(),
+        "--set",
+        r#"energy=[{"anisotropy": {"K": "1 meV", "axis": [0, 0, 1], "sites": [1000]}}, {"dipolar": {}}, {"demag": {}}]"#,
+    ]);
+    assert_eq!(said.lines().count(), 2, "{said}");
+    assert!(said.starts_with("error: --set energy: energy[0].anisotropy.sites[0]: found site 1000"), "{said}");
+    assert!(
+        said.contains(
+            "
+error: --set energy: energy[2].demag"
+        ),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_file_of_another_kind_is_called_what_it_is() {
+    let config = root().join("configs");
+    let summary = root().join("results/gallery/dmi_chain/summary.json");
+    for (arguments, words) in [
+        (
+            ["run", "sweeps/braun_nucleus.json"],
+            "sweeps/braun_nucleus.json:1:1: .: this is a sweep, not a config: `spinneb sweep` runs it",
+        ),
+        (["check", "sweeps/braun_nucleus.json"], "this is a sweep, not a config"),
+        (["sweep", "dmi_chain.json"], "dmi_chain.json:1:1: .: this is a config, not a sweep: `spinneb run` runs it"),
+        (
+            ["run", summary.to_str().unwrap()],
+            "this is a result's summary, not a config: the config that made it is config.json beside it",
+        ),
+        (["run", "materials/toy.json"], "this is a material, not a config: a config names it as its \"material\""),
+    ] {
+        let done = spinneb(&config, &arguments);
+        let said = String::from_utf8(done.stderr).unwrap().replace('\\', "/");
+        assert!(done.status.code() == Some(2) && said.contains(words) && said.lines().count() == 1, "{said}");
+    }
+}
+
+#[test]
+fn the_schema_takes_the_shipped_configs_and_refuses_units_that_do_not_fit() {
+    let schema = spinneb(&root(), &["schema"]).stdout;
+    let schema: Value = serde_json::from_slice(&schema).unwrap();
+    let validator = jsonschema::validator_for(&schema).unwrap();
+    let folder = root().join("configs");
+    let read = |path: PathBuf| -> Value { serde_json::from_slice(&fs::read(path).unwrap()).unwrap() };
+    for name in names(&folder, ".json") {
+        let config = read(folder.join(format!("{name}.json")));
+        assert!(validator.is_valid(&config), "{name}: {:?}", validator.iter_errors(&config).next());
+    }
+    let good = read(folder.join("nanowire_pinning.json"));
+    for (pointer, wrong) in [
+        ("/lattice/chain/spacing", "0.5 meters"),
+        ("/lattice/chain/spacing", "1"),
+        ("/lattice/chain/spacing", "1 meV"),
+        ("/lattice/chain/cross_section/1", "1 nm^2"),
+        ("/material/Ms", "580 kA"),
+        ("/material/Ms", "0.7 T"),
+        ("/material/energy/0/exchange/A", "15 pJ/m^2"),
+        ("/material/energy/1/anisotropy/K", "0.6 MJ/m"),
+        ("/energy/1/zeeman/B/2", "25 mev"),
+    ] {
+        for wrong in [Value::from(wrong), Value::from(2.5)] {
+            let mut config = good.clone();
+            *config.pointer_mut(pointer).unwrap() = wrong.clone();
+            assert!(!validator.is_valid(&config), "{pointer}: {wrong}");
+        }
+    }
+    for (pointer, right) in [
+        ("/lattice/chain/spacing", "10 Å"),
+        ("/material/Ms", "580 emu/cm^3"),
+        ("/material/energy/1/anisotropy/K", "6e6 erg/cc"),
+        ("/energy/1/zeeman/B/2", "20 kA/m"),
+        ("/energy/0/anisotropy/K", "-0.2 meV"),
+    ] {
+        let mut config = good.clone();
+        *config.pointer_mut(pointer).unwrap() = right.into();
+        assert!(validator.is_valid(&config), "{pointer}: {right}");
+    }
+}
+
+#[test]
+fn one_entry_of_a_list_has_all_its_keys_and_an_unknown_one_is_refused() {
+    let said = |arguments: &[&str]| {
+        let done = spinneb(&root(), &[&["list"], arguments].concat());
+        (done.status.code(), String::from_utf8(done.stdout).unwrap() + &String::from_utf8(done.stderr).unwrap())
+    };
+    let (code, wall) = said(&["states", "domain_wall"]);
+    assert_eq!(code, Some(0));
+    for key in ["center", "width", "left", "right", "through", "staggered"] {
+        assert!(wall.lines().any(|line| line.starts_with(key)), "{key}: {wall}");
+    }
+    assert!(wall.contains("(required)") && wall.contains("a number"), "{wall}");
+    // of every entry of every family, all keys of the schema
+    let schema: Value = serde_json::from_slice(&spinneb(&root(), &["schema"]).stdout).unwrap();
+    let mut entries = 0;
+    for (kind, family) in
+        [("terms", "TermSpec"), ("states", "StateSpec"), ("guesses", "GuessSpec"), ("optimisers", "OptimiserSpec")]
+    {
+        for choice in schema["definitions"][family]["oneOf"].as_array().unwrap() {
+            let (name, member) = choice["properties"].as_object().unwrap().iter().next().unwrap();
+            let member = schema.pointer(member["$ref"].as_str().unwrap().strip_prefix('#').unwrap()).unwrap();
+            let (code, entry) = said(&[kind, name]);
+            assert!(code == Some(0) && entry.starts_with(&format!("{name}: ")), "{entry}");
+            let keys = member["properties"].as_object().into_iter().flatten();
+            keys.for_each(|(key, _)| assert!(entry.lines().any(|line| line.starts_with(key)), "{key}: {entry}"));
+            entries += 1;
+        }
+    }
+    assert!(entries > 18, "{entries}");
+    let (_, exchange) = said(&["terms", "exchange"]);
+    assert!(exchange.contains("J, eV, Ry or erg") && exchange.contains(r#"{"exchange":"#), "{exchange}");
+    let (_, fept) = said(&["materials", "fept"]);
+    assert!(fept.starts_with("fept: ") && fept.contains("wall width") && fept.contains("references"), "{fept}");
+    assert!(said(&["formats", "vtk"]).1.contains("ParaView") && said(&["formats", "npy"]).0 == Some(0));
+    for (arguments, hint) in [
+        (["states", "domain_wal"], "did you mean \"domain_wall\"?"),
+        (["materials", "permaloy"], "did you mean \"permalloy\"?"),
+        (["optimisers", "magic"], "known are implicit, "),
+        (["formats", "cvs"], "did you mean \"csv\"?"),
+    ] {
+        let (code, said) = said(&arguments);
+        assert!(code == Some(2) && said.contains(hint), "{said}");
+    }
 }
 
 #[test]

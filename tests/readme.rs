@@ -1,6 +1,7 @@
 //! The README tells the truth: its commands, configs, files, keys and numbers are those of the program.
 
 use serde_json::Value;
+use spinneb::output::canvas::{Colour, diverging};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -184,4 +185,16 @@ fn what_is_linked_exists_and_the_rust_version_is_that_of_the_package() {
     let version = env!("CARGO_PKG_RUST_VERSION");
     assert_eq!(readme.matches(&format!("{version} or later")).count(), 2, "{version}");
     assert_eq!(readme.matches(" or later").count(), 2);
+}
+
+#[test]
+fn the_colours_of_the_notebook_are_those_of_the_figures() {
+    let notebook = &blocks("python")[0];
+    let (_, rest) = notebook.split_once("hues = \"").unwrap();
+    let hues: Vec<&str> = rest.split('"').next().unwrap().split(' ').collect();
+    let own = |k: usize| {
+        let Colour(r, g, b) = diverging(2.0 * k as f64 / (hues.len() - 1) as f64 - 1.0);
+        format!("#{r:02x}{g:02x}{b:02x}")
+    };
+    assert!(hues.len() >= 9 && (0..hues.len()).all(|k| hues[k] == own(k)), "{hues:?}");
 }

@@ -131,7 +131,7 @@ fn a_config_from_standard_input_is_run_and_its_result_has_no_source() {
     assert!(said.starts_with("error: results/stdin: holds a result of another config"), "{said}");
     let (code, _, said) = run(&CONFIG.replace("final", "finall"), &[]);
     assert_eq!(code, Some(2));
-    assert!(said.starts_with("error: stdin: line 8, column 3: finall: unknown key"), "{said}");
+    assert!(said.starts_with("error: stdin:8:3: finall: unknown key"), "{said}");
     // what it names is looked for in the working directory
     fs::write(folder.path().join("start.csv"), "0,0,1\n0,0,1\n0,0,1\n0,0,1\n").unwrap();
     let from_file = CONFIG.replace(r#"{"uniform": {"direction": [0, 0, 1]}}"#, r#"{"file": {"path": "start.csv"}}"#);
@@ -234,7 +234,7 @@ fn nothing_runs_unless_all_configs_are_right_and_have_folders_of_their_own() {
     let (code, _, said) = spinneb(folder.path(), &["run", "one.json", "two.json", "none.json"]);
     assert_eq!(code, Some(2));
     assert_eq!(said.lines().count(), 2, "{said}");
-    assert!(said.starts_with("error: two.json: line 8, column 3: finall: unknown key"), "{said}");
+    assert!(said.starts_with("error: two.json:8:3: finall: unknown key"), "{said}");
     assert!(said.contains("\nerror: none.json: "), "{said}");
     let (code, _, said) = spinneb(folder.path(), &["run", "one.json", "one.json"]);
     assert_eq!(code, Some(2));

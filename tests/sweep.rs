@@ -197,8 +197,7 @@ fn what_is_wrong_with_any_point_is_said_once_and_nothing_runs() {
     for arguments in [&["sweep", "many.json"][..], &["sweep", "many.json", "--list"], &["collect", "many.json"]] {
         let (code, out, said) = spinneb(folder.path(), arguments);
         assert_eq!((code, out.as_str()), (Some(2), ""), "{said}");
-        let place =
-            "many.json: line 5, column 40: grid[\"material.energy[1].anisotropy.K\"]: with \"0.1 T\", chain.json: ";
+        let place = "many.json:5:40: grid[\"material.energy[1].anisotropy.K\"]: with \"0.1 T\", chain.json: ";
         assert_eq!(said.matches(place).count(), 1, "{said}");
         assert_eq!(said.lines().count(), 3, "{said}");
     }
@@ -207,9 +206,7 @@ fn what_is_wrong_with_any_point_is_said_once_and_nothing_runs() {
     let (code, _, said) = spinneb(folder.path(), &["sweep", "many.json"]);
     assert_eq!(code, Some(2));
     assert!(
-        said.contains(
-            "error: many.json: line 4, column 32: grid[\"lattice.chain.sites\"][1]: chain.json: lattice.chain"
-        ),
+        said.contains("error: many.json:4:32: grid[\"lattice.chain.sites\"][1]: chain.json: lattice.chain"),
         "{said}"
     );
     assert!(!folder.path().join("results").exists());

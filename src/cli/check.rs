@@ -2,7 +2,8 @@
 
 use super::{Check, USAGE, report, worse};
 use anyhow::Result;
-use spinneb::config::physics::{Physics, estimated_seconds};
+use spinneb::config::estimate::Estimate;
+use spinneb::config::physics::Physics;
 use spinneb::config::{Loaded, expected_images, load, memory, needed_bytes};
 use spinneb::drive::{Images, Problem, Scales};
 use spinneb::rates::RateSettings;
@@ -55,7 +56,9 @@ fn print(out: &mut impl Write, loaded: &Loaded, problem: &Problem) -> io::Result
         row("rates", asked_for(rates))?;
     }
     row("memory", format!("about {}", memory::shown(needed_bytes(problem, &scales))))?;
-    row("time", format!("about {}, by a measured step", duration(estimated_seconds(problem, &scales))))?;
+    let estimate = Estimate::of(problem, &scales);
+    let seconds = estimate.processor_seconds(loaded, problem, &scales);
+    row("time", format!("about {} of one processor, by a measured step", duration(seconds)))?;
     for warning in physics.warnings.iter().chain(&loaded.warnings) {
         row("warning", warning.clone())?;
     }

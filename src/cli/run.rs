@@ -5,8 +5,8 @@ use super::signals::Signals;
 use super::{Run, UNFINISHED, USAGE, note, report, worse};
 use anyhow::{Context, Result};
 use serde_json::{Value, json};
-use spinneb::config::{Loaded, load};
-use spinneb::drive::{self, Observer, Outcome, Recorder};
+use spinneb::config::{Loaded, load, physics};
+use spinneb::drive::{self, Observer, Outcome, Recorder, Scales};
 use spinneb::error::Error;
 use spinneb::output::disk::{self, File};
 use spinneb::output::folder::{self, Destination, Intent, NewResult};
@@ -316,6 +316,8 @@ fn outcome_recorded(
     let mut outcome = drive::run_recorded(problem, observer, recorder)?;
     outcome.work.seconds = started.elapsed().as_secs_f64();
     outcome.warnings.extend(loaded.warnings.iter().cloned());
+    let h = &problem.hamiltonian;
+    outcome.warnings.extend(physics::warnings(loaded, h, &Scales::of_terms(h)));
     Ok(outcome)
 }
 

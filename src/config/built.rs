@@ -3,7 +3,7 @@
 use super::{Loaded, memory};
 use crate::drive::{FEWEST_IMAGES, Images, Outcome, Problem, Scales};
 use crate::energy::{EnergyTerm, Hamiltonian, Medium, TermSpec, symmetry_axes};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, both};
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, Vector, angle};
 use crate::lattice::{Chain, Lattice};
@@ -112,14 +112,13 @@ impl Loaded {
         let scales = Scales::of_terms(&hamiltonian);
         let free = scales.states(&chain, &hamiltonian);
         let within = |spec: &StateSpec, key: &str, e: Error| here(e.within(&format!("{key}.{}", spec.name())));
-        let sense = config.initial.sense(&free).map_err(|e| within(&config.initial, "initial", e))?;
-        let context = StateContext { sense, ..free };
+        let sense = config.initial.sense(&free).map_err(|e| within(&config.initial, "initial", e));
+        let context = StateContext { sense: *sense.as_ref().unwrap_or(&free.sense), ..free };
         let state = |spec: &StateSpec, key: &str| spec.build(&context).map_err(|e| within(spec, key, e));
-        let initial = state(&config.initial, "initial")?;
-        let final_state = match with_final {
-            true => Some(frozen(&chain, &initial, state(&config.final_state, "final")?).map_err(here)?),
-            false => None,
-        };
+        let initial = sense.and_then(|sense| Ok((sense, state(&config.initial, "initial")?)));
+        let final_state = with_final.then(|| state(&config.final_state, "final")).transpose();
+        let ((sense, initial), final_state) = both(initial, final_state)?;
+        let final_state = final_state.map(|state| frozen(&chain, &initial, state).map_err(here)).transpose()?;
         Ok(States { chain, hamiltonian, scales, initial, final_state, sense })
     }
 
@@ -163,7 +162,7 @@ impl Loaded {
     /// The material's terms and the config's, with numbers a site.
     fn terms(&self, chain: &Chain) -> Result<Vec<Box<dyn EnergyTerm>>> {
         let medium = self.medium(chain);
-        let mut terms = Vec::new();
+        let (mut terms, mut wrong) = (Vec::new(), Vec::new());
         let mut largest = 0.0f64;
         for (spec, own, place) in self.specs() {
             let text = self.material_text.as_ref().filter(|_| own).unwrap_or(&self.text);
@@ -171,7 +170,13 @@ impl Loaded {
                 largest = largest.max(torque(term.as_ref(), chain.sites)?);
                 Ok(term)
             });
-            terms.push(built.map_err(|e| text.locate(e.within(&place)))?);
+            match built {
+                Ok(term) => terms.push(term),
+                Err(e) => wrong.push(text.locate(e.within(&place))),
+            }
+        }
+        if !wrong.is_empty() {
+            return Err(Error::several(wrong));
         }
         let nothing = match terms.is_empty() {
             true => {

@@ -3,9 +3,9 @@
 use super::inputs::Inputs;
 use super::library;
 use super::material::{Material, MaterialChoice};
-use super::text::{apply_set, at_place, decode, nearest, parse};
+use super::text::{Text, apply_set, decode, nearest};
 use super::{Config, Name};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, both};
 use crate::files::open_file;
 use crate::output;
 use crate::words::quoted;
@@ -17,22 +17,6 @@ use std::path::{Path, PathBuf};
 
 /// Longest text that is read (bytes).
 const LONGEST: u64 = 1 << 30;
-
-/// A text and the file it is from, for messages.
-#[derive(Clone, Debug)]
-pub struct Text {
-    /// The file as messages name it.
-    pub file: String,
-    /// Its content.
-    pub text: String,
-}
-
-impl Text {
-    /// The error with the file, line and column of its place here.
-    pub fn locate(&self, error: Error) -> Error {
-        at_place(&self.file, &self.text, error)
-    }
-}
 
 /// A config with everything it names.
 #[derive(Clone, Debug)]
@@ -67,9 +51,7 @@ const STDIN: [&str; 2] = ["-", "stdin"];
 /// Reads a config, changed by `sets` (`KEY.PATH=JSON`), and the material it names. The path `-` stands for standard input; a
 /// config from there names files from the working directory on.
 pub fn load(path: &Path, sets: &[String]) -> Result<Loaded> {
-    let file = shown(path);
-    let text = apply_set(&file.display().to_string(), &read(path)?, sets)?;
-    from_text(file, text, known_file(path))
+    load_from(shown(path), read(path)?.set(sets)?, known_file(path))
 }
 
 fn is_stdin(path: &Path) -> bool {
@@ -88,39 +70,27 @@ fn known_file(path: &Path) -> Option<PathBuf> {
 
 /// Reads a config whose states alone are wanted; whether it has a `final` one, which it need not.
 pub fn load_states(path: &Path, sets: &[String]) -> Result<(Loaded, bool)> {
-    let file = shown(path).display().to_string();
-    let mut text = apply_set(&file, &read(path)?, sets)?;
-    let value: Value = parse(&file, &text)?;
+    let mut text = read(path)?.set(sets)?;
+    let value: Value = text.parse()?;
     let given = !value.is_object() || value.get("final").is_some();
     if !given {
         // it stands at the end and moves nothing else
-        text = apply_set(&file, &text, &[r#"final={"uniform": {"direction": [0, 0, 1]}}"#.into()])?;
+        text.text = apply_set(&text.file, &text.text, &[r#"final={"uniform": {"direction": [0, 0, 1]}}"#.into()])?;
     }
-    Ok((from_text(shown(path), text, known_file(path))?, given))
+    Ok((load_from(shown(path), text, known_file(path))?, given))
 }
 
 /// A config's text as if it were read from `path`, and what it names.
 pub fn load_text(path: &Path, text: String) -> Result<Loaded> {
-    from_text(path, text, known_file(path))
+    load_from(path, Text::new(path.display().to_string(), text), known_file(path))
 }
 
-fn from_text(path: &Path, text: String, source: Option<PathBuf>) -> Result<Loaded> {
-    let file = path.display().to_string();
-    let mut config: Config = parse(&file, &text)?;
-    let text = Text { file, text };
-    let name = name(path, &config).map_err(|e| text.locate(e))?;
-    let (material, material_text) = match &config.material {
-        MaterialChoice::Inline(material) => ((**material).clone(), None),
-        MaterialChoice::Named(named) => {
-            let from = material_file(path, named).map_err(|e| text.locate(e))?;
-            (parse(&from.file, &from.text)?, Some(from))
-        }
-    };
-    material.validate().map_err(|e| match &material_text {
-        Some(own) => own.locate(e),
-        None => text.locate(e.within("material")),
-    })?;
-    let inputs = Inputs::read(&mut config, path.parent().unwrap_or(Path::new(""))).map_err(|e| text.locate(e))?;
+fn load_from(path: &Path, text: Text, source: Option<PathBuf>) -> Result<Loaded> {
+    let mut config: Config = text.parse().map_err(|e| not_a(&text, "config", e))?;
+    let name = name(path, &config).map_err(|e| text.locate(e));
+    let material = material(path, &config, &text);
+    let inputs = Inputs::read(&mut config, path.parent().unwrap_or(Path::new(""))).map_err(|e| text.locate(e));
+    let ((name, (material, material_text)), inputs) = both(both(name, material), inputs)?;
     let as_run = as_run(&text, material_text.as_ref(), &name, &inputs)?;
     let sha256 = Sha256::digest(as_run.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect();
     let own = material_text.iter().map(|text| Path::new(&text.file)).chain(inputs.read.iter().map(PathBuf::as_path));
@@ -131,14 +101,50 @@ fn from_text(path: &Path, text: String, source: Option<PathBuf>) -> Result<Loade
     Ok(loaded)
 }
 
+/// The error, unless the text is another kind of file than the wanted one: then what that is and what takes it.
+pub(super) fn not_a(text: &Text, wanted: &str, error: Error) -> Error {
+    let Ok(Value::Object(keys)) = text.parse::<Value>() else { return error };
+    let has = |key: &str| keys.contains_key(key);
+    let (kind, way_out) = if has("config_sha256") && has("version") {
+        ("a result's summary", "the config that made it is config.json beside it")
+    } else if has("config") && (has("grid") || has("zip")) {
+        ("a sweep", "`spinneb sweep` runs it")
+    } else if has("lattice") && has("material") && !has("grid") && !has("zip") {
+        ("a config", "`spinneb run` runs it, and a sweep names it as its \"config\"")
+    } else if has("energy") && (has("moment") || has("Ms")) && !has("lattice") {
+        ("a material", "a config names it as its \"material\"")
+    } else {
+        return error;
+    };
+    let message = format!("this is {kind}, not a {wanted}: {way_out}");
+    if kind == format!("a {wanted}") { error } else { text.locate(Error::invalid("", message)) }
+}
+
+/// The material of a config, and its own text where it has one.
+fn material(path: &Path, config: &Config, text: &Text) -> Result<(Material, Option<Text>)> {
+    let (material, own) = match &config.material {
+        MaterialChoice::Inline(material) => ((**material).clone(), None),
+        MaterialChoice::Named(named) => {
+            let from = material_file(path, named).map_err(|e| text.locate(e))?;
+            (from.parse().map_err(|e| not_a(&from, "material", e))?, Some(from))
+        }
+    };
+    material.validate().map_err(|e| match &own {
+        Some(own) => own.locate(e),
+        None => text.locate(e.within("material")),
+    })?;
+    Ok((material, own))
+}
+
 /// The text of a file, for messages named as it was given.
-pub(super) fn read(path: &Path) -> Result<String> {
+pub(super) fn read(path: &Path) -> Result<Text> {
     let bytes = match is_stdin(path) {
         true => whole(io::stdin()),
         false => bytes(path),
     };
     let bytes = bytes.map_err(|source| Error::Io { path: shown(path).into(), source })?;
-    decode(&shown(path).display().to_string(), bytes)
+    let file = shown(path).display().to_string();
+    decode(&file, bytes).map(|text| Text::new(file, text))
 }
 
 fn bytes(path: &Path) -> io::Result<Vec<u8>> {
@@ -174,14 +180,14 @@ fn material_file(config: &Path, named: &str) -> Result<Text> {
     let file = path.display().to_string();
     if !path.is_file() {
         if let Some(found) = library::find(named)? {
-            return Ok(Text { file: library::file_name(found.key), text: found.text.into() });
+            return Ok(Text::new(library::file_name(found.key), found.text.into()));
         }
         if !path.exists() && !named.contains(['.', '/', '\\']) {
             return Err(Error::invalid("material", unknown(named)?));
         }
     }
     match bytes(&path) {
-        Ok(bytes) => decode(&file, bytes).map(|text| Text { file, text }),
+        Ok(bytes) => decode(&file, bytes).map(|text| Text::new(file, text)),
         Err(e) => {
             let (what, said) = (quoted(named), &e);
             let message = match e.kind() {
@@ -228,10 +234,10 @@ fn neighbours(path: &Path) -> String {
 
 /// The config as run, in one form: keys in order, two spaces deep, the material written out.
 fn as_run(text: &Text, material: Option<&Text>, name: &str, inputs: &Inputs) -> Result<String> {
-    let mut value: Value = parse(&text.file, &text.text)?;
+    let mut value: Value = text.parse()?;
     if let Some(config) = value.as_object_mut() {
         if let Some(own) = material {
-            let mut material: Value = parse(&own.file, &own.text)?;
+            let mut material: Value = own.parse()?;
             if let Some(keys) = material.as_object_mut() {
                 keys.remove("$schema");
             }

@@ -4,6 +4,7 @@
 //! wrong in a config is found before anything large is allocated or computed.
 
 mod built;
+pub mod estimate;
 mod inputs;
 mod json;
 pub mod library;
@@ -17,6 +18,7 @@ mod output;
 mod path;
 pub mod physics;
 pub mod rates;
+mod refusals;
 mod schema;
 mod set;
 mod strict;
@@ -24,7 +26,7 @@ pub mod sweep;
 pub mod text;
 
 pub use built::{States, expected_images, needed_bytes};
-pub use load::{Loaded, Text, load, load_states, load_text};
+pub use load::{Loaded, load, load_states, load_text};
 pub use material::{Material, MaterialChoice, Reference};
 pub use material_scales::MaterialScales;
 pub use name::Name;
@@ -32,7 +34,8 @@ pub use neb::{NebConfig, SaddleConfig};
 pub use output::OutputConfig;
 pub use path::{ImageCount, PathConfig};
 pub use rates::{RatesConfig, Temperatures};
-pub use schema::{SCHEMA_FILE, schema};
+pub use schema::{Key, SCHEMA_FILE, keys, schema};
+pub use text::Text;
 
 use crate::energy::TermSpec;
 use crate::lattice::Lattice;

@@ -1,4 +1,4 @@
-//! The physics of a config before it runs: lengths, energies, what is too coarse, and how long it will take.
+//! The physics of a config before it runs: lengths, energies, and what is too coarse.
 //!
 //! ```text
 //! l_ex = √(2A/μ₀Ms²)      δ = √(A/K) = √(J/c) sites      σ = 4√(AK) S = 2√(Jc)      K V = c/2
@@ -6,18 +6,15 @@
 //! J is the exchange of a bond and c the softest mode of a stable spin, 2KV for an easy axis (see [`Scales`]); the magnetostatics
 //! of a straight chain of equal spins count as anisotropy of its shape.
 
-use super::{Loaded, expected_images};
+use super::Loaded;
 use crate::drive::{Problem, Scales};
 use crate::energy::magnetostatics::MU_0_MU_B_SQUARED;
-use crate::energy::{EnergyTerm, Hamiltonian, TangentBasis, assemble_shifted};
+use crate::energy::{EnergyTerm, Hamiltonian, TermSpec};
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Vector, vector};
 use crate::lattice::Chain;
-use crate::linalg::{Banded, eigenvalues_symmetric};
-use std::time::Instant;
+use crate::linalg::eigenvalues_symmetric;
 
-/// Gradients of each image in a usual run, everything counted: between 10 and 70 in the shipped configs.
-const EVALUATIONS: f64 = 20.0;
 /// A wall of less than this many sites feels every one of them.
 const NARROW: f64 = 3.0;
 
@@ -46,12 +43,10 @@ impl Physics {
     /// Of a problem.
     pub fn of(loaded: &Loaded, problem: &Problem, scales: &Scales) -> Physics {
         let (h, chain) = (&problem.hamiltonian, loaded.chain());
-        let floor = 1e-9 * h.stiffness_mev();
-        let wall = scales.stiffness_mev > 2.0 * floor && scales.exchange_mev > floor;
+        let width = wall_width_sites(scales, floor_mev(h));
         let spacing = chain.spacing.map(|a| a.0);
-        let energy = wall.then(|| 2.0 * (scales.exchange_mev * scales.stiffness_mev).sqrt());
-        let width = wall.then(|| (scales.exchange_mev / scales.stiffness_mev).sqrt());
-        let mut physics = Physics {
+        let energy = width.map(|_| 2.0 * (scales.exchange_mev * scales.stiffness_mev).sqrt());
+        Physics {
             exchange_length_nm: exchange_length_nm(loaded, chain, scales),
             wall_width_sites: width,
             wall_width_nm: width.and_then(|w| Some(w * spacing?)),
@@ -60,38 +55,54 @@ impl Physics {
             wall_energy_mj_per_m2: energy.and_then(|e| Some(e * 1e-1 * 1.602176634 / chain.section_nm2()?)),
             site_barriers_mev: site_barriers(h),
             terms_mev: by_torque(h),
-            warnings: Vec::new(),
-        };
-        physics.warnings = physics.too_coarse(chain);
-        physics
+            warnings: warnings(loaded, h, scales),
+        }
     }
+}
 
-    fn too_coarse(&self, chain: &Chain) -> Vec<String> {
-        let mut warnings = Vec::new();
-        if let (Some(length), Some(cell)) = (self.exchange_length_nm, chain.spacing)
-            && cell.0 > 0.5 * length
-        {
-            warnings.push(format!(
-                "cells of {} nm are longer than half the exchange length of {length:.2} nm: halve the spacing and see whether \
-                 the barrier changes",
-                cell.0
-            ));
-        }
-        if let Some(width) = self.wall_width_sites.filter(|w| *w < NARROW) {
-            let continuum = chain.cross_section.is_some();
-            warnings.push(match continuum {
-                true => format!(
-                    "a wall is only {width:.2} cells wide, so it sticks to the cells: a continuum needs at least {NARROW}, with \
-                     a smaller spacing"
-                ),
-                false => format!(
-                    "a wall is only {width:.2} sites wide, so it sticks to single sites: right for atoms, too coarse for a \
-                     continuum"
-                ),
-            });
-        }
-        warnings
+/// What is too coarse, in words: cells of a continuum against the exchange length and the width of a wall. A chain of atoms is as
+/// discrete as it is: a narrow wall there is physics.
+pub fn warnings(loaded: &Loaded, h: &Hamiltonian, scales: &Scales) -> Vec<String> {
+    let chain = loaded.chain();
+    let Some(cell) = chain.spacing.filter(|_| is_continuum(loaded)) else { return Vec::new() };
+    let mut warnings = Vec::new();
+    if let Some(length) = exchange_length_nm(loaded, chain, scales)
+        && cell.0 > 0.5 * length
+    {
+        warnings.push(format!(
+            "cells of {} nm are longer than half the exchange length of {length:.2} nm: halve the spacing and see whether \
+             the barrier changes",
+            cell.0
+        ));
     }
+    if let Some(width) = wall_width_sites(scales, floor_mev(h)).filter(|w| *w < NARROW) {
+        warnings.push(format!(
+            "a wall is only {width:.2} cells wide, so it sticks to the cells: a continuum needs at least {NARROW}, with a \
+             smaller spacing"
+        ));
+    }
+    warnings
+}
+
+/// Whether the numbers are those of a continuum: densities, which cells make numbers.
+fn is_continuum(loaded: &Loaded) -> bool {
+    let density = |term: &TermSpec| match term {
+        TermSpec::Exchange(exchange) => exchange.A.is_some(),
+        _ => false,
+    };
+    let terms = loaded.material.energy.iter().chain(&loaded.config.energy);
+    loaded.material.Ms.is_some() || terms.into_iter().any(density)
+}
+
+/// Width of a wall, where there is an easy axis and exchange above rounding.
+fn wall_width_sites(scales: &Scales, floor_mev: f64) -> Option<f64> {
+    let wall = scales.stiffness_mev > 2.0 * floor_mev && scales.exchange_mev > floor_mev;
+    wall.then(|| (scales.exchange_mev / scales.stiffness_mev).sqrt())
+}
+
+/// Energies under this (meV) are rounding.
+fn floor_mev(h: &Hamiltonian) -> f64 {
+    1e-9 * h.stiffness_mev()
 }
 
 /// √(2A/μ₀Ms²) with A = J a/2S and Ms = μ/aS, of the middle cell.
@@ -145,25 +156,4 @@ fn by_torque(h: &Hamiltonian) -> Vec<(&'static str, f64)> {
 fn add_gradient(term: &dyn EnergyTerm, m: &[f64], g: &mut [f64]) {
     let mut density = vec![0.0; m.len() / 3];
     term.add_gradient(Components::new(m), ComponentsMut::new(g), &mut density, 0..m.len() / 3);
-}
-
-/// How long a run may take (s): the time of one gradient with its factorised Hessian, measured, times what usual runs need.
-/// Paths with many minima take several times as long.
-pub fn estimated_seconds(problem: &Problem, scales: &Scales) -> f64 {
-    let (h, m) = (&problem.hamiltonian, problem.initial.as_slice());
-    let mut g = vec![0.0; m.len()];
-    let basis = TangentBasis::at(m);
-    let mut matrix = Banded::default();
-    let mut once = || {
-        let start = Instant::now();
-        let _ = h.energy_gradient(m, &mut g);
-        assemble_shifted(h, m, &g, &basis, scales.stiffness_mev, &mut matrix);
-        matrix = std::mem::take(&mut matrix).factor().into_memory();
-        start.elapsed().as_secs_f64()
-    };
-    let first = once();
-    // the first is slowed by memory that is touched for the first time
-    let one = if first < 1.0 { once().min(first) } else { first };
-    let images = expected_images(problem, scales);
-    one * EVALUATIONS * images as f64 / rayon::current_num_threads().min(images).max(1) as f64
 }

@@ -5,14 +5,107 @@
 //! of the value itself.
 
 use super::json::{self, Node, Step, position, scan, written};
-use super::strict::Strict;
+use super::refusals::{self, Refusal, inline, missing, unknown};
 use crate::error::{Error, Result};
 use crate::words::quoted;
 use serde::de::DeserializeOwned;
-use serde_path_to_error::Segment;
 
 pub use super::set::apply_set;
 pub use crate::words::nearest;
+
+/// A text and the file it is from, for messages.
+#[derive(Clone, Debug)]
+pub struct Text {
+    /// The file as messages name it.
+    pub file: String,
+    /// Its content, with `--set` carried out.
+    pub text: String,
+    /// The content as the file has it, where `--set` changed it.
+    before: Option<String>,
+    /// The paths of `--set`.
+    sets: Vec<Vec<Step>>,
+}
+
+impl Text {
+    /// A text as its file has it.
+    pub fn new(file: impl Into<String>, text: String) -> Text {
+        Text { file: file.into(), text, before: None, sets: Vec::new() }
+    }
+
+    /// The text with each assignment carried out; see [`apply_set`].
+    pub fn set(self, assignments: &[String]) -> Result<Text> {
+        let text = apply_set(&self.file, &self.text, assignments)?;
+        let path = |assignment: &String| json::steps(assignment.split('=').next()?.trim());
+        Ok(Text { text, before: Some(self.text), sets: assignments.iter().filter_map(path).collect(), ..self })
+    }
+
+    /// The value that it is, or all that is wrong with it.
+    pub fn parse<T: DeserializeOwned>(&self) -> Result<T> {
+        let root = tree(&self.file, &self.text)?;
+        let bare = self.text.strip_prefix('\u{FEFF}').unwrap_or(&self.text);
+        let value: serde_json::Value = serde_json::from_str(bare).map_err(|e| Error::Config {
+            file: self.file.clone(),
+            line: e.line(),
+            column: e.column(),
+            place: ".".into(),
+            message: e.to_string(),
+        })?;
+        refusals::read(&value, self.text.len()).map_err(|refused| {
+            let errors = refused.into_iter().map(|r| {
+                let message = in_words(&self.text, &root, &r);
+                self.at(&r.steps, r.of_key(), written(&r.steps), message)
+            });
+            Error::several(errors.collect())
+        })
+    }
+
+    /// The error with the file, line and column of its place here, or with the `--set` that it comes from.
+    pub fn locate(&self, error: Error) -> Error {
+        match error {
+            Error::Invalid { place, message } => {
+                let steps = json::steps(&place).unwrap_or_default();
+                let place = if place.is_empty() { ".".into() } else { place };
+                self.at(&steps, false, place, message)
+            }
+            Error::Several(errors) => Error::several(errors.into_iter().map(|e| self.locate(e)).collect()),
+            other => other,
+        }
+    }
+
+    /// An error of a value, or of its key.
+    fn at(&self, steps: &[Step], of_key: bool, place: String, message: String) -> Error {
+        let own = self.before.as_ref().unwrap_or(&self.text);
+        let root = scan(own).ok();
+        let depth = root.as_ref().map_or(0, |root| root.descend(steps).1);
+        let made_by = |set: &&Vec<Step>| within(set, steps) || (depth < steps.len() && within(steps, set));
+        if let Some(set) = self.sets.iter().rev().find(made_by) {
+            let message = if set.len() == steps.len() { message } else { format!("{place}: {message}") };
+            return Error::invalid(format!("--set {}", written(set)), message);
+        }
+        let message = match self.sets.iter().find(|set| !of_key && !steps.is_empty() && within(steps, set)) {
+            Some(set) => format!("{message} (with --set {})", written(set)),
+            None => message,
+        };
+        let start = root.map_or(0, |root| match steps.split_last().filter(|_| of_key) {
+            Some((last, parent)) => {
+                let parent = root.descend(parent).0;
+                parent.child(last).map_or(parent.start, |(_, at)| at)
+            }
+            None => root.descend(steps).0.start,
+        });
+        let (line, column) = position(own, start);
+        Error::Config { file: self.file.clone(), line, column, place, message }
+    }
+}
+
+/// Whether the inner path begins as the outer one; an index may be written as a key.
+fn within(outer: &[Step], inner: &[Step]) -> bool {
+    let same = |(a, b): (&Step, &Step)| match (a, b) {
+        (Step::Index(i), Step::Key(key)) | (Step::Key(key), Step::Index(i)) => key.parse() == Ok(*i),
+        _ => a == b,
+    };
+    outer.len() <= inner.len() && outer.iter().zip(inner).all(same)
+}
 
 /// The text of a file's bytes, which must be UTF-8.
 pub fn decode(file: &str, bytes: Vec<u8>) -> Result<String> {
@@ -28,39 +121,9 @@ pub fn decode(file: &str, bytes: Vec<u8>) -> Result<String> {
     })
 }
 
-/// The value of a JSON text; `file` is the name that messages begin with.
+/// The value of a JSON text, or all that is wrong with it; `file` is the name that messages begin with.
 pub fn parse<T: DeserializeOwned>(file: &str, text: &str) -> Result<T> {
-    let root = tree(file, text)?;
-    let bare = text.strip_prefix('\u{FEFF}').unwrap_or(text);
-    let value: serde_json::Value = serde_json::from_str(bare).map_err(|e| Error::Config {
-        file: file.into(),
-        line: e.line(),
-        column: e.column(),
-        place: ".".into(),
-        message: e.to_string(),
-    })?;
-    serde_path_to_error::deserialize(Strict(&value)).map_err(|e| {
-        let steps = e.path().iter().filter_map(step).collect();
-        refusal(file, text, &root, steps, &e.inner().to_string())
-    })
-}
-
-/// Line and column (from 1) of the value at a JSON path, as far down as the text goes; of the start if it is no JSON.
-pub fn locate(text: &str, place: &str) -> (usize, usize) {
-    let found = scan(text).ok().zip(json::steps(place)).map(|(root, steps)| root.descend(&steps).0.start);
-    position(text, found.unwrap_or(0))
-}
-
-/// An unusable value ([`Error::Invalid`]) with the file, line and column of its place; other errors as they are.
-pub fn at_place(file: &str, text: &str, error: Error) -> Error {
-    match error {
-        Error::Invalid { place, message } => {
-            let (line, column) = locate(text, &place);
-            let place = if place.is_empty() { ".".into() } else { place };
-            Error::Config { file: file.into(), line, column, place, message }
-        }
-        other => other,
-    }
+    Text::new(file, text.into()).parse()
 }
 
 /// Where everything stands in the text, or what is wrong with it.
@@ -74,47 +137,30 @@ pub(super) fn at(file: &str, text: &str, at: usize, steps: &[Step], message: Str
     Error::Config { file: file.into(), line, column, place: written(steps), message }
 }
 
-fn step(segment: &Segment) -> Option<Step> {
-    match segment {
-        Segment::Seq { index } => Some(Step::Index(*index)),
-        Segment::Map { key } | Segment::Enum { variant: key } => Some(Step::Key(key.clone())),
-        Segment::Unknown => None,
+/// What was refused, in plain words.
+fn in_words(text: &str, root: &Node, refusal: &Refusal) -> String {
+    let Refusal { steps, said, example } = refusal;
+    if let Some((found, known)) = unknown(said, "field") {
+        return suggestion("key", "keys", found, &known);
+    }
+    if let Some((found, known)) = unknown(said, "variant") {
+        return suggestion("kind", "kinds", found, &known);
+    }
+    let (message, example) = (plain(said, text, root.descend(steps).0), example.as_ref().map(inline));
+    match (missing(said), example.filter(|e| e.len() <= LONGEST_EXAMPLE && !["[]", "{}"].contains(&e.as_str()))) {
+        (Some(key), Some(example)) => format!("{message}, such as {}: {example}", quoted(key)),
+        (None, Some(example)) if FORMS.iter().any(|form| message.ends_with(form)) => {
+            format!("{message}, such as {example}")
+        }
+        _ => message,
     }
 }
 
-/// What serde refused, in plain words and at its own place.
-fn refusal(file: &str, text: &str, root: &Node, mut steps: Vec<Step>, said: &str) -> Error {
-    let (node, depth) = root.descend(&steps);
-    // A kind given as a string is a step for serde, but not for the reader.
-    if depth + 1 == steps.len() && matches!(node.holds, json::Holds::Nothing) {
-        steps.pop();
-    }
-    let (found, message) = if let Some((found, known)) = unknown(said, "field") {
-        (found, suggestion("key", "keys", found, &known))
-    } else if let Some((found, known)) = unknown(said, "variant") {
-        (found, suggestion("kind", "kinds", found, &known))
-    } else {
-        return at(file, text, node.start, &steps, plain(said, text, node));
-    };
-    // What is unknown is the key, so that is where to look, and not at its value.
-    let key = Step::Key(found.into());
-    if matches!(node.holds, json::Holds::Members(_)) && node.child(&key).is_some() && steps.last() != Some(&key) {
-        steps.push(key);
-    }
-    let (parent, _) = root.descend(&steps[..steps.len().saturating_sub(1)]);
-    let own = match steps.last() {
-        Some(Step::Key(last)) if last == found => steps.last().and_then(|step| parent.child(step)),
-        _ => None,
-    };
-    at(file, text, own.map_or(node.start, |(_, at)| at), &steps, message)
-}
-
-/// The unknown word and the known ones of "unknown field `x`, expected one of `a`, `b`".
-fn unknown<'a>(said: &'a str, what: &str) -> Option<(&'a str, Vec<&'a str>)> {
-    let rest = said.strip_prefix(&format!("unknown {what} `"))?;
-    let (found, known) = rest.rsplit_once("`, expected ").or_else(|| rest.rsplit_once("`, there are no "))?;
-    Some((found, known.split('`').skip(1).step_by(2).collect()))
-}
+/// Longer examples are not shown.
+const LONGEST_EXAMPLE: usize = 100;
+/// What is said of a value whose form alone is wanted.
+const FORMS: [&str; 5] =
+    ["expected an array", "expected an object", "which names the kind", " values", "fewer are expected"];
 
 fn suggestion(one: &str, many: &str, found: &str, known: &[&str]) -> String {
     let start = format!("unknown {one} {}", quoted(found));
@@ -131,7 +177,7 @@ fn suggestion(one: &str, many: &str, found: &str, known: &[&str]) -> String {
 /// serde's other messages in plain words; what a type says itself is left as it is.
 fn plain(said: &str, text: &str, node: &Node) -> String {
     let word = |prefix: &str| said.strip_prefix(prefix).and_then(|rest| rest.strip_suffix('`'));
-    if let Some(key) = word("missing field `") {
+    if let Some(key) = missing(said) {
         return format!("key \"{key}\" is missing");
     }
     if let Some(key) = word("duplicate field `") {

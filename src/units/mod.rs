@@ -8,6 +8,7 @@
 
 mod any;
 mod parse;
+mod pattern;
 
 pub use any::AnyQuantity;
 
@@ -34,15 +35,12 @@ pub const RYDBERG: f64 = 13605.693122990;
 /// Boltzmann constant in meV/K.
 pub const K_B: f64 = 8.617333262e-2;
 
-/// How quantities look: a number, then a unit.
-const QUANTITY: &str = r"^\s*[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?\s*[^\s0-9.+-].*$";
-
 /// The digits of the elementary charge: 1 meV is E_DIGITS · 1e-22 J.
 const E_DIGITS: f64 = 1.602176634;
 
-/// The schema of a quantity: a number with a unit, in a string.
+/// The schema of a quantity: a number with a unit of its dimension, in a string.
 macro_rules! schema {
-    ($name:ident) => {
+    ($name:ident, $wanted:ident) => {
         impl JsonSchema for $name {
             fn schema_name() -> Cow<'static, str> {
                 stringify!($name).into()
@@ -52,7 +50,8 @@ macro_rules! schema {
                 json_schema!({
                     "type": "string",
                     "description": format!("a number with its unit: {}", $name::UNITS),
-                    "pattern": QUANTITY,
+                    "pattern": pattern::of(&parse::$wanted),
+                    "examples": [parse::$wanted.example],
                 })
             }
         }
@@ -109,7 +108,7 @@ macro_rules! quantity {
             }
         }
 
-        schema!($name);
+        schema!($name, $wanted);
     };
 }
 
@@ -224,7 +223,7 @@ macro_rules! sum {
             }
         }
 
-        schema!($name);
+        schema!($name, $wanted);
     };
 }
 
@@ -289,6 +288,11 @@ impl Magnetisation {
         // 1 A/m nm³ = 1e-27 J/T, and μ_B = MU_B_MEV_PER_T · 1e-22 · E_DIGITS J/T.
         Moment(self.0 * nm3 * 1e-5 / (E_DIGITS * MU_B_MEV_PER_T))
     }
+}
+
+/// A quantity of each kind, as it may be written.
+pub fn examples() -> impl Iterator<Item = &'static str> {
+    parse::WANTED.iter().map(|wanted| wanted.example)
 }
 
 /// Writes a quantity, refusing what could not be read again.

@@ -9,7 +9,7 @@ use crate::words::{nearest, quoted};
 use std::f64::consts::PI;
 
 /// Powers of J, m, A, K, s and rad.
-type Dimension = [i32; 6];
+pub(super) type Dimension = [i32; 6];
 
 const ENERGY_J: Dimension = [1, 0, 0, 0, 0, 0];
 const MOMENT_A_M2: Dimension = [0, 2, 1, 0, 0, 0];
@@ -50,7 +50,7 @@ const EMU: usize = 6;
 /// A unit: 10^ten · Π constants^power in SI.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Unit {
-    dimension: Dimension,
+    pub(super) dimension: Dimension,
     constants: [i32; 7],
     ten: i32,
 }
@@ -62,10 +62,10 @@ const fn unit(dimension: Dimension, constants: [i32; 7], ten: i32) -> Unit {
 const PLAIN: [i32; 7] = [0; 7];
 
 /// A unit's symbol, its other spellings, and the prefixes it takes.
-struct Symbol {
-    names: &'static [&'static str],
-    prefixes: &'static str,
-    unit: Unit,
+pub(super) struct Symbol {
+    pub(super) names: &'static [&'static str],
+    pub(super) prefixes: &'static str,
+    pub(super) unit: Unit,
 }
 
 const fn symbol(names: &'static [&'static str], prefixes: &'static str, unit: Unit) -> Symbol {
@@ -75,7 +75,7 @@ const fn symbol(names: &'static [&'static str], prefixes: &'static str, unit: Un
 /// Prefixes from the likeliest to the least: the order in which a misspelt one is guessed.
 const ALL: &str = "mkunpfMGTaz";
 
-const SYMBOLS: &[Symbol] = &[
+pub(super) const SYMBOLS: &[Symbol] = &[
     symbol(&["eV"], ALL, unit(ENERGY_J, [1, 0, 0, 0, 0, 0, 0], -19)),
     symbol(&["J"], ALL, unit(ENERGY_J, PLAIN, 0)),
     symbol(&["Ry"], ALL, unit(ENERGY_J, [1, 1, 0, 0, 0, 0, 0], -19)),
@@ -216,6 +216,23 @@ pub(super) static BOND_ENERGY: Wanted = Wanted {
     kinds: &[MEV, J_M2],
 };
 
+/// All of them.
+pub(super) static WANTED: [&Wanted; 13] = [
+    &ENERGY,
+    &MOMENT,
+    &FLUX_DENSITY,
+    &EXCHANGE_STIFFNESS,
+    &SURFACE_ENERGY,
+    &ENERGY_DENSITY,
+    &MAGNETISATION,
+    &LENGTH,
+    &TEMPERATURE,
+    &TIME,
+    &ANGLE,
+    &SITE_ENERGY,
+    &BOND_ENERGY,
+];
+
 /// A quantity of whatever kind.
 static ANY: Wanted = Wanted {
     name: "a quantity",
@@ -262,6 +279,12 @@ impl Wanted {
     /// The value in the unit of the kind that fits, and which kind that is.
     pub(super) fn parse(&self, text: &str) -> Result<(f64, usize)> {
         self.try_parse(text).map_err(|message| Error::invalid("", message))
+    }
+
+    /// The dimensions that fit, and whether each is that of a field H, which has no unit with emu.
+    pub(super) fn targets(&self) -> Vec<(Dimension, bool)> {
+        let targets = self.kinds.iter().flat_map(|kind| kind.targets);
+        targets.map(|target| (target.dimension, target.constants[MU_0] != 0)).collect()
     }
 
     /// A message about a number without a unit: how it could be written with one.

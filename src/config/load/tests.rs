@@ -56,7 +56,7 @@ fn an_error_in_the_material_s_file_names_that_file() {
     fs::write(dir.path().join("toy.json"), TOY.replace("exchange", "exchnage")).unwrap();
     let said = load(&path, &[]).unwrap_err().to_string();
     let file = dir.path().join("toy.json").display().to_string();
-    assert!(said.starts_with(&format!("{file}: line 1, column 29: energy[0].exchnage: ")), "{said}");
+    assert!(said.starts_with(&format!("{file}:1:29: energy[0].exchnage: ")), "{said}");
     assert!(said.contains("did you mean \"exchange\"?"), "{said}");
 }
 
@@ -64,6 +64,6 @@ fn an_error_in_the_material_s_file_names_that_file() {
 fn a_missing_material_says_where_it_was_looked_for() {
     let (_dir, path) = folder();
     let said = load(&path, &["material=\"tyo.json\"".into()]).unwrap_err().to_string();
-    assert!(said.contains(": line 2, column 15: material: no material \"tyo.json\": there is no file "), "{said}");
+    assert!(said.starts_with("--set material: no material \"tyo.json\": there is no file "), "{said}");
     assert!(said.contains("(did you mean \"toy.json\"?)"), "{said}");
 }

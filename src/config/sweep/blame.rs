@@ -49,6 +49,7 @@ impl Sweep {
                 Some(k) => self.blame_key(point, k, &place, message),
                 None => self.blame_point(point, &file, &place, &message),
             },
+            Error::Several(errors) => Error::several(errors.into_iter().map(|e| self.blame(point, e)).collect()),
             other => other,
         }
     }

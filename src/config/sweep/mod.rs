@@ -19,8 +19,8 @@ mod names;
 mod range;
 
 use super::json::{Holds, Step, steps};
-use super::load::{Loaded, load_text, read};
-use super::text::{apply_set, at, parse, tree};
+use super::load::{Loaded, load_text, not_a, read};
+use super::text::{Text, apply_set, at, tree};
 use super::{Comment, Name};
 use crate::drive::Problem;
 use crate::error::{Error, Result};
@@ -94,8 +94,9 @@ pub struct Sweep {
 impl Sweep {
     /// Reads a sweep's file and the config that it names.
     pub fn load(path: &Path) -> Result<Sweep> {
-        let (file, text) = (path.display().to_string(), read(path)?);
-        let content: SweepFile = parse(&file, &text)?;
+        let read_text = read(path)?;
+        let content: SweepFile = read_text.parse().map_err(|e| not_a(&read_text, "sweep", e))?;
+        let Text { file, text, .. } = read_text;
         let root = tree(&file, &text)?;
         let here = |place: &[Step], message: String| at(&file, &text, root.descend(place).0.start, place, message);
         let key = |name: &str| Step::Key(name.into());
@@ -134,7 +135,7 @@ impl Sweep {
         names::label(&mut keys);
         let directories = names::directories(&keys, &points).map_err(|message| here(&[key(list)], message))?;
         let config = path.parent().unwrap_or(Path::new("")).join(&content.config);
-        let mut base = read(&config).map_err(|e| match e {
+        let mut base = read(&config).map(|base| base.text).map_err(|e| match e {
             Error::Io { path, source } => {
                 here(&[key("config")], format!("the config {} cannot be read: {source}", path.display()))
             }

@@ -1,0 +1,91 @@
+//! What a run will take, before it runs.
+//!
+//! ```text
+//! gradients = 15 images + 280 saddles        time = gradients × 2.5 (one gradient with its factorised Hessian) + figures
+//! ```
+//! A band converges in about 15 gradients of each image, whatever its length (8 to 26 in the shipped configs), and finding the seat of
+//! a saddle, its proof and the descents to its two minima take about 280. An automatic path is refined once. One saddle is taken for
+//! granted, but a wall narrower than [`PINNED`] sites rests on every site that it passes: there are as many saddles, and four images
+//! to each. The gradient is measured; eigenvalues and proofs are in the factor 2.5, and figures take what the constants say on a usual
+//! machine. With these the shipped configs take what is said within a factor of 3 (`cargo bench --bench estimate`); paths through many
+//! minima, and ends that are far from their minima, take longer.
+
+use super::{Loaded, expected_images};
+use crate::drive::{Images, Problem, Scales};
+use crate::energy::{TangentBasis, assemble_shifted};
+use crate::linalg::Banded;
+use crate::path::guess::moving_sites;
+use std::time::Instant;
+
+/// Gradients of each image until the band has converged.
+const A_IMAGE: usize = 15;
+/// Gradients for a saddle.
+const A_SADDLE: usize = 280;
+/// A wall of less than this many sites has a saddle between any two sites: its energy varies as exp(−π²δ) from one to the next.
+const PINNED: f64 = 2.0;
+/// Images to each of them.
+const IMAGES_A_SADDLE: usize = 4;
+/// What a gradient of a run takes beside itself, as a factor.
+const PROOFS: f64 = 2.5;
+/// Figures as pixels and as vectors, and what each image adds to either (s).
+const PIXELS_S: f64 = 0.2;
+const VECTORS_S: f64 = 0.03;
+const AN_IMAGE_S: f64 = 5e-4;
+/// A gradient is measured for so long (s), and at most so often.
+const MEASURED_S: f64 = 0.05;
+const MOST: usize = 20;
+
+/// What a run will take, roughly.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// Images of the path in the end.
+    pub images: usize,
+    /// Saddles on the way.
+    pub saddles: usize,
+    /// Gradients of one image, everything counted.
+    pub evaluations: usize,
+}
+
+impl Estimate {
+    /// Of a problem.
+    pub fn of(problem: &Problem, scales: &Scales) -> Estimate {
+        let start = expected_images(problem, scales);
+        let moving = moving_sites(&problem.initial, &problem.final_state);
+        let saddles = if scales.wall_width_sites < PINNED { moving.max(1) } else { 1 };
+        let images = match problem.images {
+            Images::Count(n) => n,
+            Images::Auto => (2 * start - 1).max(IMAGES_A_SADDLE * saddles),
+        };
+        let saddles = saddles.min(images / 2);
+        Estimate { images, saddles, evaluations: A_IMAGE * images + A_SADDLE * saddles }
+    }
+
+    /// Time of one processor (s); the threads share all of it but the figures.
+    pub fn processor_seconds(&self, loaded: &Loaded, problem: &Problem, scales: &Scales) -> f64 {
+        let plots = &loaded.config.output.plots;
+        let images = AN_IMAGE_S * self.images as f64;
+        let figures = |name: &str, own: f64| if plots.iter().any(|plot| plot == name) { own + images } else { 0.0 };
+        let drawn = figures("png", PIXELS_S) + figures("svg", VECTORS_S);
+        drawn + PROOFS * self.evaluations as f64 * gradient_seconds(problem, scales)
+    }
+}
+
+/// Time of a gradient with its factorised Hessian (s): the shortest of several, since other programs only make it longer.
+fn gradient_seconds(problem: &Problem, scales: &Scales) -> f64 {
+    let (h, m) = (&problem.hamiltonian, problem.initial.as_slice());
+    let mut g = vec![0.0; m.len()];
+    let basis = TangentBasis::at(m);
+    let mut matrix = Banded::default();
+    let (begin, mut shortest) = (Instant::now(), f64::INFINITY);
+    for _ in 0..MOST {
+        let start = Instant::now();
+        let _ = h.energy_gradient(m, &mut g);
+        assemble_shifted(h, m, &g, &basis, scales.stiffness_mev, &mut matrix);
+        matrix = std::mem::take(&mut matrix).factor().into_memory();
+        shortest = shortest.min(start.elapsed().as_secs_f64());
+        if begin.elapsed().as_secs_f64() > MEASURED_S {
+            break;
+        }
+    }
+    shortest
+}
