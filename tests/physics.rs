@@ -11,6 +11,7 @@ use spinneb::energy::{Anisotropy, Dmi, Exchange, Hamiltonian, Medium, TangentBas
 use spinneb::geometry::Direction;
 use spinneb::lattice::Chain;
 use spinneb::linalg::eigenvalues_symmetric;
+use spinneb::path::guess::{Edge, GuessSpec, Sweep};
 use spinneb::spins::Spins;
 use spinneb::units::{Length, Magnetisation, Moment};
 
@@ -110,12 +111,16 @@ fn a_wall_hops_in_the_peierls_regime_by_one_and_by_several_sites() {
 
 #[test]
 fn states_joined_by_a_flat_valley_have_a_certified_barrier_of_zero_and_the_reason_is_said() {
-    // an easy plane: turning within it costs nothing
-    let outcome =
-        solve(&Build::open(8).hard(0.1).problem(Spins::uniform(8, Direction::Z), Spins::uniform(8, Direction::Y)));
-    assert_eq!(outcome.stop_code, StopCode::FlatValley, "{} {:?}", outcome.stop_reason, outcome.warnings);
-    assert!(outcome.certified && outcome.converged && outcome.stop_reason.contains("no barrier"));
-    assert!(forward(&outcome) == 0.0 && outcome.saddles.is_empty());
+    // an easy plane: turning within it costs nothing, whatever the first path
+    for guess in [None, Some(GuessSpec::Sweep(Sweep { from: Edge::Left, width: None, axis: None }))] {
+        let plane = Build::open(8).hard(0.1);
+        let mut problem = plane.problem(Spins::uniform(8, Direction::Z), Spins::uniform(8, Direction::Y));
+        problem.guess = guess;
+        let outcome = solve(&problem);
+        assert_eq!(outcome.stop_code, StopCode::FlatValley, "{} {:?}", outcome.stop_reason, outcome.warnings);
+        assert!(outcome.certified && outcome.converged && outcome.stop_reason.contains("no barrier"));
+        assert!(forward(&outcome) == 0.0 && outcome.saddles.is_empty());
+    }
 }
 
 #[test]

@@ -395,7 +395,7 @@ impl<'a, 'o> Run<'a, 'o> {
     /// Ends that are one minimum turned about a symmetry axis: the rigid turn between them costs nothing.
     fn turned_minimum(&mut self) -> Result<Option<Outcome>> {
         let h = &self.problem.hamiltonian;
-        if self.axes.is_empty() || self.problem.guess.is_some() {
+        if self.axes.is_empty() || !self.problem.relax_ends {
             return Ok(None);
         }
         let ends = Minimum::examine_both(h, self.ends.each_ref().map(|end| &end.spins));
