@@ -126,7 +126,7 @@ fn chain(sites: usize) -> Chain {
 
 fn bar_of(sites: usize, terms: &[&str]) -> Result<Hamiltonian> {
     let chain = chain(sites);
-    let medium = Medium { chain: &chain, moment: None, saturation: Some(Magnetisation(8e5).into()) };
+    let medium = Medium::new(&chain, None, Some(Magnetisation(8e5).into()));
     let build = |text: &&str| -> Result<Box<dyn EnergyTerm>> {
         let spec: TermSpec = serde_json::from_str(text)?;
         Ok(spec.member().build(&medium)?)

@@ -4,11 +4,13 @@ use crate::error::{Error, Result};
 use crate::geometry::Direction;
 use crate::profile::Profile;
 use crate::units::{Length, Magnetisation, Moment};
+use crate::words::{nearest, quoted};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use serde_json::json;
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 
 /// The most sites a chain may have; a longer one is refused before anything is allocated.
 pub const MAX_SITES: usize = 100_000_000;
@@ -52,6 +54,9 @@ pub struct Chain {
     /// Sites whose moment is not the material's.
     #[serde(default)]
     pub moments: Vec<SiteMoment>,
+    /// Sites with a name, to be chosen by it, and to be made of another material.
+    #[serde(default)]
+    pub regions: BTreeMap<String, Selection>,
 }
 
 /// Sites with a moment of their own.
@@ -157,6 +162,7 @@ impl Chain {
             frozen: Vec::new(),
             vacant: None,
             moments: Vec::new(),
+            regions: BTreeMap::new(),
         }
     }
 
@@ -210,6 +216,50 @@ impl Chain {
         Ok(vacant)
     }
 
+    /// The sites of a region.
+    pub fn region(&self, name: &str) -> Result<&Selection> {
+        self.regions.get(name).ok_or_else(|| {
+            let known = self.regions.keys().map(String::as_str);
+            let way_out = match nearest(name, known) {
+                Some(near) => format!("did you mean {}?", quoted(near)),
+                None if self.regions.is_empty() => {
+                    format!("give the chain \"regions\": {{{}: {{\"from\": 3, \"to\": 9}}}}", quoted(name))
+                }
+                None => {
+                    let names: Vec<String> = self.regions.keys().map(|name| quoted(name)).collect();
+                    format!("there are {}", names.join(", "))
+                }
+            };
+            Error::invalid("", format!("no region {} in the lattice: {way_out}", quoted(name)))
+        })
+    }
+
+    /// Puts the sites of regions in place of their names, wherever the chain names one.
+    pub fn resolve_regions(&mut self) -> Result<()> {
+        let mut resolved = self.clone();
+        let put = |selection: &mut Selection, place: String| match selection {
+            Selection::Region(name) => {
+                *selection = self.region(name).map_err(|e| e.within(&place))?.clone();
+                Ok(())
+            }
+            _ => Ok(()),
+        };
+        for (k, section) in resolved.sections.iter_mut().enumerate() {
+            put(&mut section.sites, format!("sections[{k}].sites"))?;
+        }
+        for (k, frozen) in resolved.frozen.iter_mut().enumerate() {
+            put(&mut frozen.sites, format!("frozen[{k}].sites"))?;
+        }
+        for (k, moment) in resolved.moments.iter_mut().enumerate() {
+            put(&mut moment.sites, format!("moments[{k}].sites"))?;
+        }
+        if let Some(vacant) = &mut resolved.vacant {
+            put(vacant, "vacant".into())?;
+        }
+        *self = resolved;
+        Ok(())
+    }
+
     /// The same chain with its vacant sites frozen, their idle spins along `direction`.
     pub fn with_vacancies_frozen(mut self, direction: Direction) -> Chain {
         if let Some(sites) = self.vacant.clone() {
@@ -231,6 +281,13 @@ impl Chain {
         }
         if let Some(a) = self.spacing {
             positive(a, "spacing")?;
+        }
+        for (name, sites) in &self.regions {
+            let place = format!("regions.{name}");
+            if name == "default" {
+                return Err(Error::invalid(place, "\"default\" is what is in no region: give this one another name"));
+            }
+            sites.indices(self.sites, "site").map_err(|e| e.within(&place))?;
         }
         for (k, edge) in self.cross_section.iter().flatten().enumerate() {
             lengths(edge, self.sites).map_err(|e| e.within(&format!("cross_section[{k}]")))?;
@@ -297,6 +354,8 @@ pub enum Selection {
         /// From one to the next; 1 if not given.
         step: usize,
     },
+    /// `"top"`: the sites of one of the lattice's regions.
+    Region(String),
 }
 
 impl Selection {
@@ -309,6 +368,7 @@ impl Selection {
                 let chosen = (*from..=*to).contains(&index) && (index - from).is_multiple_of(step);
                 chosen.then(|| ((index - from) / step, (to - from) / step + 1))
             }
+            Selection::Region(_) => None,
         }
     }
 
@@ -341,6 +401,13 @@ impl Selection {
                     ));
                 }
                 Ok((*from..=*to).step_by(*step).collect())
+            }
+            Selection::Region(name) => {
+                let name = quoted(name);
+                Err(Error::invalid(
+                    "",
+                    format!("found {name}, but {what}s are chosen here by number, [3, 4], not by a region"),
+                ))
             }
         }
     }
@@ -375,6 +442,7 @@ impl JsonSchema for Selection {
                     "required": ["from", "to"],
                     "additionalProperties": false,
                 },
+                {"type": "string", "description": "the name of one of the lattice's regions"},
             ],
         })
     }
@@ -386,7 +454,12 @@ impl<'de> Deserialize<'de> for Selection {
         impl<'de> Visitor<'de> for Seen {
             type Value = Selection;
             fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-                f.write_str("a list of indices like [3, 4] or a range like {\"from\": 3, \"to\": 9}")
+                f.write_str(
+                    "a list of indices like [3, 4], a range like {\"from\": 3, \"to\": 9} or the name of a region",
+                )
+            }
+            fn visit_str<E: serde::de::Error>(self, name: &str) -> std::result::Result<Selection, E> {
+                Ok(Selection::Region(name.into()))
             }
             fn visit_seq<A: SeqAccess<'de>>(self, mut s: A) -> std::result::Result<Selection, A::Error> {
                 let mut list = Vec::new();

@@ -17,7 +17,7 @@ fn chain(sites: usize, periodic: bool) -> Chain {
 
 fn build(text: &str, chain: &Chain) -> Box<dyn EnergyTerm> {
     let spec: TermSpec = serde_json::from_str(text).expect(text);
-    spec.member().build(&Medium { chain, moment: Some(Moment(2.0).into()), saturation: None }).expect(text)
+    spec.member().build(&Medium::new(chain, Some(Moment(2.0).into()), None)).expect(text)
 }
 
 fn random_spins(sites: usize, seed: u64) -> Vec<f64> {

@@ -140,6 +140,10 @@ fn every_guess_keeps_the_ends_the_count_and_the_unit_length() {
     ];
     for text in made_from_nothing(GuessSpec::ENTRIES).map(|e| e.example).chain(more) {
         for (a, b) in &ends {
+            // walls at sites that a chain of one site does not have
+            if a.sites() == 1 && text.contains("domain_wall") {
+                continue;
+            }
             for images in [2, 3, 4, 9, 16] {
                 let p = path(text, a, b, images);
                 check_contract(text, &p, a, b, images);
@@ -386,7 +390,10 @@ fn a_path_by_waypoints_meets_them_and_is_equally_spaced() {
     let none = path(r#"{"waypoints": {"states": []}}"#, &a, &b, 9);
     assert_eq!(none, path(r#"{"geodesic": {}}"#, &a, &b, 9));
     let error = try_path(r#"{"waypoints": {"states": [{"vectors": [[0, 0, 1]]}]}}"#, &a, &b, 5, &Chain::open(12));
-    assert!(error.clone().is_err_and(|e| e.starts_with("states[0]: found 1 vectors for 12 sites")), "{error:?}");
+    assert!(
+        error.clone().is_err_and(|e| e.starts_with("states[0].vectors: found 1 vectors for 12 sites")),
+        "{error:?}"
+    );
 }
 
 #[test]

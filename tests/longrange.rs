@@ -21,7 +21,7 @@ const ZETA_3: f64 = 1.2020569031595942;
 fn dipoles(sites: usize, periodic: bool) -> (Chain, Hamiltonian) {
     let chain = Chain { periodic, spacing: Some(Length(0.5)), ..Chain::open(sites) };
     let spec: TermSpec = serde_json::from_str(r#"{"dipolar": {}}"#).unwrap();
-    let medium = Medium { chain: &chain, moment: Some(Moment(3.0).into()), saturation: None };
+    let medium = Medium::new(&chain, Some(Moment(3.0).into()), None);
     let term = spec.member().build(&medium).unwrap();
     let h = Hamiltonian::new(&chain, vec![term]).unwrap();
     (chain, h)
@@ -126,7 +126,7 @@ fn two_cells_without_exchange_or_magnetostatics_turn_one_after_the_other() {
 fn two_cells_that_turn_at_once_cost_twice_that_and_are_never_certified() {
     let chain =
         Chain { spacing: Some(Length(3.0)), cross_section: Some([Length(3.0); 2].map(Into::into)), ..Chain::open(2) };
-    let medium = Medium { chain: &chain, moment: None, saturation: Some(Magnetisation(1e6).into()) };
+    let medium = Medium::new(&chain, None, Some(Magnetisation(1e6).into()));
     let easy = r#"{"anisotropy": {"K": "100 kJ/m^3", "axis": [0, 0, 1]}}"#;
     let build = || vec![serde_json::from_str::<TermSpec>(easy).unwrap().member().build(&medium).unwrap()];
     let h = Hamiltonian::new(&chain, build()).unwrap();
@@ -164,7 +164,7 @@ fn uneven(sites: usize, periodic: bool, square: bool) -> (Chain, Hamiltonian) {
         cross_section: Some([Profile::List(widths), Profile::List(thickness)]),
         ..Chain::open(sites)
     };
-    let medium = Medium { chain: &chain, moment: None, saturation: Some(Magnetisation(8e5).into()) };
+    let medium = Medium::new(&chain, None, Some(Magnetisation(8e5).into()));
     let terms = [r#"{"exchange": {"A": "13 pJ/m"}}"#, r#"{"demag": {}}"#];
     let build = |text: &&str| serde_json::from_str::<TermSpec>(text).unwrap().member().build(&medium).unwrap();
     let h = Hamiltonian::new(&chain, terms.iter().map(build).collect()).unwrap();
@@ -214,7 +214,7 @@ fn a_wire_that_tapers_by_nothing_is_a_straight_one() {
     let mut chain = straight.chain.clone();
     let barely = |i: usize| Length(20.0 * (1.0 + 1e-13 * i as f64));
     chain.cross_section = Some([Profile::List((0..30).map(barely).collect()), Length(5.0).into()]);
-    let medium = Medium { chain: &chain, moment: None, saturation: Some(Magnetisation(8e5).into()) };
+    let medium = Medium::new(&chain, None, Some(Magnetisation(8e5).into()));
     let terms = [r#"{"exchange": {"A": "13 pJ/m"}}"#, r#"{"demag": {}}"#];
     let build = |text: &&str| serde_json::from_str::<TermSpec>(text).unwrap().member().build(&medium).unwrap();
     let tapered = Hamiltonian::new(&chain, terms.iter().map(build).collect()).unwrap();
@@ -243,7 +243,7 @@ fn wire(sites: usize) -> Problem {
         cross_section: Some([Length(20.0), Length(5.0)].map(Into::into)),
         ..Chain::open(sites)
     };
-    let medium = Medium { chain: &chain, moment: None, saturation: Some(Magnetisation(8e5).into()) };
+    let medium = Medium::new(&chain, None, Some(Magnetisation(8e5).into()));
     let terms = [r#"{"exchange": {"A": "13 pJ/m"}}"#, r#"{"demag": {}}"#];
     let build = |text: &&str| serde_json::from_str::<TermSpec>(text).unwrap().member().build(&medium).unwrap();
     let h = Hamiltonian::new(&chain, terms.iter().map(build).collect()).unwrap();
@@ -271,7 +271,7 @@ fn the_index_counted_by_exponentials_is_that_of_all_eigenvalues() {
     let sites = 130;
     let (chain, _) = dipoles(sites, false);
     let spec: TermSpec = serde_json::from_str(r#"{"dipolar": {}}"#).unwrap();
-    let medium = Medium { chain: &chain, moment: Some(Moment(3.0).into()), saturation: None };
+    let medium = Medium::new(&chain, Some(Moment(3.0).into()), None);
     for (exchange, k) in [(-0.02, 0), (0.0, 1), (0.02, 2)] {
         let terms = vec![spec.member().build(&medium).unwrap(), Box::new(Exchange::uniform(&chain, &[exchange]))];
         let h = Hamiltonian::new(&chain, terms).unwrap();
@@ -336,8 +336,7 @@ fn random(r: &mut ChaCha8Rng, sites: usize) -> (Problem, String) {
         cross_section: Some([edge(r), edge(r)].map(Into::into)),
         ..Chain::open(sites)
     };
-    let medium =
-        Medium { chain: &chain, moment: None, saturation: Some(Magnetisation(r.random_range(3e5..1.2e6)).into()) };
+    let medium = Medium::new(&chain, None, Some(Magnetisation(r.random_range(3e5..1.2e6)).into()));
     let far = if r.random_range(0..3) == 0 { "dipolar" } else { "demag" };
     let axis = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.2, 1.0]][r.random_range(0..3)];
     let texts = [

@@ -67,9 +67,9 @@ fn the_same_chain_told_in_continuum_terms_has_the_same_barrier() {
         let up = Spins::uniform(40, Direction::Z);
         forward(&solve(&Problem::new(chain.clone(), h, up, Spins::uniform(40, Direction::Z.reversed()))))
     };
-    let si = barrier(&micro, Medium { chain: &chain, moment: None, saturation: Some(Magnetisation(1e6).into()) });
+    let si = barrier(&micro, Medium::new(&chain, None, Some(Magnetisation(1e6).into())));
     let texts: Vec<&str> = atomic.iter().map(String::as_str).collect();
-    let atomistic = barrier(&texts, Medium { chain: &chain, moment: Some(moment.into()), saturation: None });
+    let atomistic = barrier(&texts, Medium::new(&chain, Some(moment.into()), None));
     assert!((si - atomistic).abs() < 1e-12 * si, "{si} {atomistic}");
 }
 

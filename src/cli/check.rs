@@ -4,7 +4,7 @@ use super::{Check, USAGE, report, worse};
 use anyhow::Result;
 use spinneb::config::estimate::Estimate;
 use spinneb::config::physics::Physics;
-use spinneb::config::{Loaded, expected_images, load, memory, needed_bytes};
+use spinneb::config::{Loaded, PartMaterial, expected_images, load, memory, needed_bytes};
 use spinneb::drive::{Images, Problem, Scales};
 use spinneb::rates::RateSettings;
 use std::io::{self, Write};
@@ -75,11 +75,12 @@ fn asked_for(rates: &RateSettings) -> String {
 }
 
 fn material(loaded: &Loaded) -> String {
-    let name = &loaded.material.name;
-    match &loaded.material_text {
-        Some(text) => format!("{name} ({})", text.file),
-        None => name.clone(),
-    }
+    let one = |part: &PartMaterial| {
+        let file = part.text.as_ref().map_or(String::new(), |text| format!(" ({})", text.file));
+        let region = part.region.as_ref().map_or(String::new(), |name| format!("{name}: "));
+        format!("{region}{}{file}", part.material.name)
+    };
+    loaded.parts.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
 fn lattice(loaded: &Loaded) -> String {

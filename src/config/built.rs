@@ -1,8 +1,8 @@
 //! From a config to the problem that the drive is given, with every check on the way.
 
-use super::{Loaded, memory};
+use super::{Loaded, Text, memory};
 use crate::drive::{FEWEST_IMAGES, Images, Outcome, Problem, Scales};
-use crate::energy::{EnergyTerm, Hamiltonian, Medium, TermSpec, symmetry_axes};
+use crate::energy::{EnergyTerm, Hamiltonian, Medium, Part, TermSpec, symmetry_axes};
 use crate::error::{Error, Result, both};
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, Vector, angle};
@@ -100,14 +100,13 @@ impl Loaded {
         self.look()?;
         chain.validate().map_err(|e| here(e.within("lattice.chain")))?;
         not_both(chain).map_err(|e| here(e.within("lattice.chain")))?;
-        self.material.fits(chain.sites).map_err(|e| match &self.material_text {
-            Some(own) => own.locate(e),
-            None => here(e.within("material")),
-        })?;
-        self.affordable(memory::hamiltonian_bytes(chain.sites, 1, self.specs().count()), None)?;
-        let terms = self.terms(chain)?;
+        let specs = self.specs();
+        self.affordable(memory::hamiltonian_bytes(chain.sites, 1, specs.len()), None)?;
+        let part = self.part_of_sites(chain)?;
+        let chain = self.with_moments(chain, &part)?;
+        let terms = self.terms(&chain, self.divided(&chain, &part)?, specs)?;
         let idle = idle_direction(&terms, chain.sites);
-        let chain = chain.clone().with_vacancies_frozen(idle);
+        let chain = chain.with_vacancies_frozen(idle);
         let hamiltonian = Hamiltonian::new(&chain, terms).map_err(here)?;
         let scales = Scales::of_terms(&hamiltonian);
         let free = scales.states(&chain, &hamiltonian);
@@ -143,30 +142,47 @@ impl Loaded {
 
     /// Moments of all sites (μ_B), where the material has any.
     pub(super) fn moments_mub(&self, chain: &Chain) -> Option<Vec<f64>> {
-        self.medium(chain).moments_mub().ok()
+        let chain = self.with_moments(chain, &self.part_of_sites(chain).ok()?).ok()?;
+        self.medium(&chain).moments_mub().ok()
     }
 
+    /// What a chain is made of; where there are several materials, the chain itself has their moments.
     fn medium<'a>(&self, chain: &'a Chain) -> Medium<'a> {
-        Medium { chain, moment: self.material.moment.clone(), saturation: self.material.Ms.clone() }
+        match &self.parts[..] {
+            [one] => Medium::new(chain, one.material.moment.clone(), one.material.Ms.clone()),
+            _ => Medium::new(chain, None, None),
+        }
     }
 
-    /// All term specs: the material's, then the config's, each with the place where it stands.
-    fn specs(&self) -> impl Iterator<Item = (&TermSpec, bool, String)> {
-        let own = self.material_text.is_some();
-        let material = if own { "energy" } else { "material.energy" };
-        let place = |list: &str, k: usize, spec: &TermSpec| format!("{list}[{k}].{}", spec.name());
-        let first = self.material.energy.iter().enumerate().map(move |(k, t)| (t, own, place(material, k, t)));
-        first.chain(self.config.energy.iter().enumerate().map(move |(k, t)| (t, false, place("energy", k, t))))
+    /// All term specs: those of the materials, then the config's. The field of the moments is that of all, so it is taken once.
+    fn specs(&self) -> Vec<Written<'_>> {
+        let mut all: Vec<Written> = Vec::new();
+        for (part, own) in self.parts.iter().enumerate() {
+            let list = if own.text.is_some() { "energy".into() } else { format!("{}.energy", own.key) };
+            for (k, spec) in own.material.energy.iter().enumerate() {
+                let of_all = matches!(spec, TermSpec::Demag(_) | TermSpec::Dipolar(_));
+                if part > 0 && of_all && all.iter().any(|w| w.spec == spec && w.part != Some(part)) {
+                    continue;
+                }
+                let (text, part) = (own.text.as_ref().unwrap_or(&self.text), Some(part));
+                all.push(Written { spec, part, text, place: format!("{list}[{k}].{}", spec.name()) });
+            }
+        }
+        for (k, spec) in self.config.energy.iter().enumerate() {
+            all.push(Written { spec, part: None, text: &self.text, place: format!("energy[{k}].{}", spec.name()) });
+        }
+        all
     }
 
-    /// The material's terms and the config's, with numbers a site.
-    fn terms(&self, chain: &Chain) -> Result<Vec<Box<dyn EnergyTerm>>> {
-        let medium = self.medium(chain);
+    /// The materials' terms and the config's, with numbers a site.
+    fn terms(&self, chain: &Chain, parts: Vec<Part>, specs: Vec<Written>) -> Result<Vec<Box<dyn EnergyTerm>>> {
+        let whole = self.medium(chain);
+        let media: Vec<Medium> = parts.into_iter().map(|part| Medium { part: Some(part), ..whole.clone() }).collect();
         let (mut terms, mut wrong) = (Vec::new(), Vec::new());
         let mut largest = 0.0f64;
-        for (spec, own, place) in self.specs() {
-            let text = self.material_text.as_ref().filter(|_| own).unwrap_or(&self.text);
-            let built = shells_fit(spec, chain).and_then(|()| spec.member().build(&medium)).and_then(|term| {
+        for Written { spec, part, text, place } in specs {
+            let medium = part.and_then(|k| media.get(k)).unwrap_or(&whole);
+            let built = shells_fit(spec, chain).and_then(|()| spec.member().build(medium)).and_then(|term| {
                 largest = largest.max(torque(term.as_ref(), chain.sites)?);
                 Ok(term)
             });
@@ -207,6 +223,14 @@ impl Loaded {
         let message = format!("{what} need about {size} of memory, more than {whose}{way_out}");
         Err(self.text.locate(Error::invalid(place, message)))
     }
+}
+
+/// A term's spec, with the material that it is of and the place where it stands.
+struct Written<'a> {
+    spec: &'a TermSpec,
+    part: Option<usize>,
+    text: &'a Text,
+    place: String,
 }
 
 /// Images that the path of a problem will have, or start with where their number is found on the way.

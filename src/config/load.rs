@@ -2,11 +2,13 @@
 
 use super::inputs::Inputs;
 use super::library;
-use super::material::{Material, MaterialChoice};
+use super::material::{DEFAULT, MaterialChoice};
+use super::parts::PartMaterial;
 use super::text::{Text, apply_set, decode, nearest};
 use super::{Config, Name};
 use crate::error::{Error, Result, both};
 use crate::files::open_file;
+use crate::lattice::Lattice;
 use crate::output;
 use crate::words::quoted;
 use serde_json::Value;
@@ -27,10 +29,8 @@ pub struct Loaded {
     pub config: Config,
     /// Name of the run.
     pub name: String,
-    /// Its material.
-    pub material: Material,
-    /// The material's own file, if it has one.
-    pub material_text: Option<Text>,
+    /// Its material, or one for each region, that of all other sites first.
+    pub parts: Vec<PartMaterial>,
     /// The config as run: with `--set` carried out, the material and the name written out, keys in order. It runs by itself.
     pub as_run: String,
     /// SHA-256 of [`as_run`](Self::as_run) in hexadecimal.
@@ -88,17 +88,21 @@ pub fn load_text(path: &Path, text: String) -> Result<Loaded> {
 fn load_from(path: &Path, text: Text, source: Option<PathBuf>) -> Result<Loaded> {
     let mut config: Config = text.parse().map_err(|e| not_a(&text, "config", e))?;
     let name = name(path, &config).map_err(|e| text.locate(e));
-    let material = material(path, &config, &text);
+    let Lattice::Chain(chain) = &mut config.lattice;
+    let regions = chain.resolve_regions().map_err(|e| text.locate(e.within("lattice.chain")));
+    let parts = materials(path, &config, &text);
     let inputs = Inputs::read(&mut config, path.parent().unwrap_or(Path::new(""))).map_err(|e| text.locate(e));
-    let ((name, (material, material_text)), inputs) = both(both(name, material), inputs)?;
-    let as_run = as_run(&text, material_text.as_ref(), &name, &inputs)?;
+    let ((name, parts), (inputs, ())) = both(both(name, parts), both(inputs, regions))?;
+    let as_run = as_run(&text, &parts, &name, &inputs)?;
     let sha256 = Sha256::digest(as_run.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect();
-    let own = material_text.iter().map(|text| Path::new(&text.file)).chain(inputs.read.iter().map(PathBuf::as_path));
+    let own = parts
+        .iter()
+        .filter_map(|part| part.text.as_ref())
+        .map(|text| Path::new(&text.file))
+        .chain(inputs.read.iter().map(PathBuf::as_path));
     let made_from = source.iter().cloned().chain(own.filter_map(known_file)).collect();
     let Inputs { files: inputs, warnings, .. } = inputs;
-    let loaded =
-        Loaded { text, config, name, material, material_text, as_run, sha256, inputs, warnings, source, made_from };
-    Ok(loaded)
+    Ok(Loaded { text, config, name, parts, as_run, sha256, inputs, warnings, source, made_from })
 }
 
 /// The error, unless the text is another kind of file than the wanted one: then what that is and what takes it.
@@ -120,20 +124,45 @@ pub(super) fn not_a(text: &Text, wanted: &str, error: Error) -> Error {
     if kind == format!("a {wanted}") { error } else { text.locate(Error::invalid("", message)) }
 }
 
-/// The material of a config, and its own text where it has one.
-fn material(path: &Path, config: &Config, text: &Text) -> Result<(Material, Option<Text>)> {
-    let (material, own) = match &config.material {
+/// The materials of a config, that of sites in no region first.
+fn materials(path: &Path, config: &Config, text: &Text) -> Result<Vec<PartMaterial>> {
+    let MaterialChoice::Regions(regions) = &config.material else {
+        return Ok(vec![material(path, &config.material, None, "material".into(), text)?]);
+    };
+    let (default, others): (Vec<_>, Vec<_>) = regions.iter().partition(|(name, _)| *name == DEFAULT);
+    let one = |(name, choice): (&String, &MaterialChoice)| {
+        let region = Some(name.clone()).filter(|name| name != DEFAULT);
+        material(path, choice, region, format!("material.{name}"), text)
+    };
+    let (mut all, mut wrong) = (Vec::new(), Vec::new());
+    default.into_iter().chain(others).map(one).for_each(|part| match part {
+        Ok(part) => all.push(part),
+        Err(e) => wrong.push(e),
+    });
+    if wrong.is_empty() { Ok(all) } else { Err(Error::several(wrong)) }
+}
+
+/// A material, with its own text where it has one.
+fn material(
+    path: &Path,
+    choice: &MaterialChoice,
+    region: Option<String>,
+    key: String,
+    text: &Text,
+) -> Result<PartMaterial> {
+    let (material, own) = match choice {
         MaterialChoice::Inline(material) => ((**material).clone(), None),
         MaterialChoice::Named(named) => {
-            let from = material_file(path, named).map_err(|e| text.locate(e))?;
+            let from = material_file(path, named).map_err(|e| text.locate(e.within(&key)))?;
             (from.parse().map_err(|e| not_a(&from, "material", e))?, Some(from))
         }
+        MaterialChoice::Regions(_) => {
+            return Err(text.locate(Error::invalid(key, "a region has no regions of its own")));
+        }
     };
-    material.validate().map_err(|e| match &own {
-        Some(own) => own.locate(e),
-        None => text.locate(e.within("material")),
-    })?;
-    Ok((material, own))
+    let part = PartMaterial { region, material, text: own, key };
+    part.material.validate().map_err(|e| part.locate(text, e))?;
+    Ok(part)
 }
 
 /// The text of a file, for messages named as it was given.
@@ -183,7 +212,7 @@ fn material_file(config: &Path, named: &str) -> Result<Text> {
             return Ok(Text::new(library::file_name(found.key), found.text.into()));
         }
         if !path.exists() && !named.contains(['.', '/', '\\']) {
-            return Err(Error::invalid("material", unknown(named)?));
+            return Err(Error::invalid("", unknown(named)?));
         }
     }
     match bytes(&path) {
@@ -197,7 +226,7 @@ fn material_file(config: &Path, named: &str) -> Result<Text> {
                 ),
                 _ => format!("the material's file {file} cannot be read: {said}"),
             };
-            Err(Error::invalid("material", message))
+            Err(Error::invalid("", message))
         }
     }
 }
@@ -233,16 +262,19 @@ fn neighbours(path: &Path) -> String {
 }
 
 /// The config as run, in one form: keys in order, two spaces deep, the material written out.
-fn as_run(text: &Text, material: Option<&Text>, name: &str, inputs: &Inputs) -> Result<String> {
+fn as_run(text: &Text, parts: &[PartMaterial], name: &str, inputs: &Inputs) -> Result<String> {
     let mut value: Value = text.parse()?;
-    if let Some(config) = value.as_object_mut() {
-        if let Some(own) = material {
-            let mut material: Value = own.parse()?;
-            if let Some(keys) = material.as_object_mut() {
-                keys.remove("$schema");
-            }
-            config.insert("material".into(), material);
+    for part in parts {
+        let Some(own) = &part.text else { continue };
+        let mut material: Value = own.parse()?;
+        if let Some(keys) = material.as_object_mut() {
+            keys.remove("$schema");
         }
+        if let Some(place) = value.pointer_mut(&format!("/{}", part.key.replace('.', "/"))) {
+            *place = material;
+        }
+    }
+    if let Some(config) = value.as_object_mut() {
         config.insert("name".into(), name.into());
         config.remove("$schema");
     }

@@ -6,7 +6,7 @@ use crate::profile::Profile;
 use crate::units::{Magnetisation, Moment};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::MapAccessDeserializer;
-use serde::de::{self, MapAccess, Visitor};
+use serde::de::{self, DeserializeSeed, IntoDeserializer, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use serde_json::json;
 use std::borrow::Cow;
@@ -91,14 +91,19 @@ impl Material {
     }
 }
 
-/// A config's `material`: a file, a library material or the material itself.
+/// A config's `material`: a file, a library material, the material itself, or one of these for each region.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MaterialChoice {
     /// A path relative to the config, or the name of a library material.
     Named(String),
     /// The material.
     Inline(Box<Material>),
+    /// One for each of the lattice's regions, and as `default` for all other sites. No map of regions is in it.
+    Regions(BTreeMap<String, MaterialChoice>),
 }
+
+/// The key of the material of sites in no region.
+pub(super) const DEFAULT: &str = "default";
 
 impl JsonSchema for MaterialChoice {
     fn schema_name() -> Cow<'static, str> {
@@ -108,7 +113,16 @@ impl JsonSchema for MaterialChoice {
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let named =
             json!({"type": "string", "description": "a file, looked for beside the config, or a name of the library"});
-        json_schema!({"oneOf": [named, generator.subschema_for::<Material>()]})
+        let own = generator.subschema_for::<Material>();
+        let one = json!({"oneOf": [named, own]});
+        let regions = json!({
+            "type": "object",
+            "description": "a material for each of the lattice's regions, and one for all other sites",
+            "properties": {DEFAULT: one},
+            "required": [DEFAULT],
+            "additionalProperties": one,
+        });
+        json_schema!({"oneOf": [named, own, regions]})
     }
 }
 
@@ -118,15 +132,56 @@ impl<'de> Deserialize<'de> for MaterialChoice {
         impl<'de> Visitor<'de> for Seen {
             type Value = MaterialChoice;
             fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                f.write_str("a material: its name in the library (\"permalloy\"), its file, such as \"materials/toy.json\", or an object with its energy terms")
+                f.write_str("a material: its name in the library (\"permalloy\"), its file, such as \"materials/toy.json\", an object with its energy terms, or one for each region, {\"default\": \"permalloy\", \"top\": \"fept\"}")
             }
             fn visit_str<E: de::Error>(self, name: &str) -> std::result::Result<MaterialChoice, E> {
                 Ok(MaterialChoice::Named(name.into()))
             }
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> std::result::Result<MaterialChoice, A::Error> {
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> std::result::Result<MaterialChoice, A::Error> {
+                let first: Option<String> = map.next_key()?;
+                if first.as_deref() == Some(DEFAULT) {
+                    return regions(map).map(MaterialChoice::Regions);
+                }
+                let map = Again { first, map };
                 Material::deserialize(MapAccessDeserializer::new(map)).map(|m| MaterialChoice::Inline(Box::new(m)))
             }
         }
         d.deserialize_any(Seen)
+    }
+}
+
+/// The materials of regions, from the value of `default` on.
+fn regions<'de, A: MapAccess<'de>>(mut map: A) -> std::result::Result<BTreeMap<String, MaterialChoice>, A::Error> {
+    let mut all = BTreeMap::new();
+    let mut next = Some(DEFAULT.to_string());
+    while let Some(key) = next {
+        let choice: MaterialChoice = map.next_value()?;
+        if matches!(choice, MaterialChoice::Regions(_)) {
+            return Err(de::Error::custom("a region is made of one material: it has no regions of its own"));
+        }
+        all.insert(key, choice);
+        next = map.next_key()?;
+    }
+    Ok(all)
+}
+
+/// A map whose first key, already read, comes again.
+struct Again<A> {
+    first: Option<String>,
+    map: A,
+}
+
+impl<'de, A: MapAccess<'de>> MapAccess<'de> for Again<A> {
+    type Error = A::Error;
+
+    fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> std::result::Result<Option<K::Value>, A::Error> {
+        match self.first.take() {
+            Some(key) => seed.deserialize(IntoDeserializer::<A::Error>::into_deserializer(key)).map(Some),
+            None => self.map.next_key_seed(seed),
+        }
+    }
+
+    fn next_value_seed<V: DeserializeSeed<'de>>(&mut self, seed: V) -> std::result::Result<V::Value, A::Error> {
+        self.map.next_value_seed(seed)
     }
 }

@@ -90,8 +90,9 @@ fn is_continuum(loaded: &Loaded) -> bool {
         TermSpec::Exchange(exchange) => exchange.A.is_some(),
         _ => false,
     };
-    let terms = loaded.material.energy.iter().chain(&loaded.config.energy);
-    loaded.material.Ms.is_some() || terms.into_iter().any(density)
+    let materials = || loaded.parts.iter().map(|part| &part.material);
+    let terms = materials().flat_map(|material| &material.energy).chain(&loaded.config.energy);
+    materials().any(|material| material.Ms.is_some()) || terms.into_iter().any(density)
 }
 
 /// Width of a wall, where there is an easy axis and exchange above rounding.

@@ -31,7 +31,7 @@ const KEYS: &str = r#"{
   "moment": "2 mu_B", "Ms": "800 kA/m",
   "lattice": {"chain": {"sites": 50}},
   "spacing": "0.25 nm", "periodic": true, "cross_section": ["20 nm", "5 nm"], "width": "12 nm", "thickness": "2 nm", "direction": [0, 0, 1],
-  "sections": [{"sites": [3, 4], "width": "12 nm"}], "frozen": [{"sites": [0]}], "moments": [{"sites": [7], "moment": "3 mu_B"}], "vacant": [7],
+  "sections": [{"sites": [3, 4], "width": "12 nm"}], "frozen": [{"sites": [0]}], "moments": [{"sites": [7], "moment": "3 mu_B"}], "vacant": [7], "regions": {"top": {"from": 3, "to": 9}},
   "from": 3, "to": 9, "step": 2,
   "energy": [{"exchange": {"J": ["10 meV"]}}],
   "initial": {"uniform": {"direction": [0, 0, 1]}}, "final": {"uniform": {"direction": [0, 0, -1]}},

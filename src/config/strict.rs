@@ -28,7 +28,12 @@ impl<'de> Deserializer<'de> for Strict<'de> {
                     _ => Err(Error::invalid_length(values.len(), &"fewer elements in array")),
                 }
             }
-            Value::Object(members) => visitor.visit_map(Members { rest: members.iter(), value: None }),
+            Value::Object(members) => {
+                // the key that says what kind of object it is comes first, wherever it stands
+                let mut all: Vec<_> = members.iter().collect();
+                all.sort_by_key(|(key, _)| key.as_str() != "default");
+                visitor.visit_map(Members { rest: all.into_iter(), value: None })
+            }
             single => single.deserialize_any(visitor),
         }
     }
@@ -95,7 +100,7 @@ impl<'de> SeqAccess<'de> for Values<'de, '_> {
 }
 
 struct Members<'a> {
-    rest: serde_json::map::Iter<'a>,
+    rest: std::vec::IntoIter<(&'a String, &'a Value)>,
     value: Option<&'a Value>,
 }
 

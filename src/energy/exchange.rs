@@ -49,10 +49,11 @@ impl Described for ExchangeSpec {
     const EXAMPLE: &'static str = r#"{"exchange": {"J": ["10 meV", "-1 meV"]}}"#;
 }
 
-impl TermBuilder for ExchangeSpec {
-    fn build(&self, medium: &Medium) -> Result<Box<dyn EnergyTerm>> {
+impl ExchangeSpec {
+    /// Energies (meV) by shell and bond.
+    pub fn shells(&self, medium: &Medium) -> Result<Vec<Vec<f64>>> {
         let bonds = self.bonds.as_ref();
-        let shells = match (&self.J, &self.A, &self.J_area) {
+        Ok(match (&self.J, &self.A, &self.J_area) {
             (Some(j), None, None) if !j.is_empty() => {
                 let shell = |(k, j): (usize, &Profile<Energy>)| {
                     medium.on_bonds(j, k + 1, bonds, &format!("J[{k}]"), |e, _| Ok(e.0))
@@ -80,8 +81,13 @@ impl TermBuilder for ExchangeSpec {
                 let message = "\"J\", \"A\" and \"J_area\" are ways to say the same: keep one, and give other bonds a term of their own";
                 return Err(Error::invalid("J_area", message));
             }
-        };
-        Ok(Box::new(Exchange { shells }))
+        })
+    }
+}
+
+impl TermBuilder for ExchangeSpec {
+    fn build(&self, medium: &Medium) -> Result<Box<dyn EnergyTerm>> {
+        Ok(Box::new(Exchange { shells: self.shells(medium)? }))
     }
 }
 
@@ -224,7 +230,7 @@ mod tests {
             r#"{"sites": 3, "spacing": "1 nm", "cross_section": [["10 nm", "10 nm", "30 nm"], "4 nm"]}"#,
         )
         .unwrap();
-        let medium = Medium { chain: &chain, moment: None, saturation: None };
+        let medium = Medium::new(&chain, None, None);
         let coupling = |bond: usize| {
             let spec = read(&format!(r#"{{"J_area": "-5 mJ/m^2", "bonds": [{bond}]}}"#));
             -spec.build(&medium).unwrap().reference_mev()
@@ -234,7 +240,7 @@ mod tests {
         assert!((coupling(0) - 40.0 * density).abs() < 1e-9, "{}", coupling(0));
         assert!((coupling(1) - 60.0 * density).abs() < 1e-9, "{}", coupling(1));
         let bare = Chain { cross_section: None, ..chain.clone() };
-        let medium = Medium { chain: &bare, moment: None, saturation: None };
+        let medium = Medium::new(&bare, None, None);
         let said = read(r#"{"J_area": "5 mJ/m^2"}"#).build(&medium).unwrap_err().to_string();
         assert!(said.starts_with("J_area") && said.contains("cross_section"), "{said}");
     }

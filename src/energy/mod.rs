@@ -31,7 +31,7 @@ pub use exchange::{Exchange, ExchangeSpec};
 pub use hamiltonian::Hamiltonian;
 pub use hessian::{Assembly, BasisTile, TangentBasis, assemble, assemble_into, assemble_shifted};
 pub use magnetostatics::Magnetostatics;
-pub use spec::{Medium, TermBuilder, TermSpec};
+pub use spec::{Medium, Part, TermBuilder, TermSpec};
 pub use symmetry::symmetry_axes;
 pub use zeeman::{Zeeman, ZeemanSpec};
 

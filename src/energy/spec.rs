@@ -42,9 +42,36 @@ pub struct Medium<'a> {
     pub moment: Option<Profile<Moment>>,
     /// Saturation magnetisation, where the material has one.
     pub saturation: Option<Profile<Magnetisation>>,
+    /// The part of the chain that terms act on, where it is not the whole.
+    pub part: Option<Part>,
 }
 
-impl Medium<'_> {
+/// A part of a chain that has a material of its own. A site is in just one part; a bond between two of them is a bond of both, each of
+/// which gives it a share.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// Whether each site is in it.
+    pub inside: Vec<bool>,
+    /// By shell and bond, which share of its own value the part gives; all of it where there is no number.
+    pub shares: Vec<Vec<f64>>,
+}
+
+impl Part {
+    fn share(&self, shell: usize, bond: usize) -> f64 {
+        self.shares.get(shell - 1).and_then(|shares| shares.get(bond)).copied().unwrap_or(1.0)
+    }
+}
+
+impl<'a> Medium<'a> {
+    /// All of a chain.
+    pub fn new(
+        chain: &'a Chain,
+        moment: Option<Profile<Moment>>,
+        saturation: Option<Profile<Magnetisation>>,
+    ) -> Medium<'a> {
+        Medium { chain, moment, saturation, part: None }
+    }
+
     /// Moment of every site (μ_B): the material's, as given or Ms × cell volume, or the site's own.
     pub fn moments_mub(&self) -> Result<Vec<f64>> {
         let n = self.chain.sites;
@@ -75,7 +102,7 @@ impl Medium<'_> {
         Ok(own.into_iter().zip(common).map(|(own, common)| own.unwrap_or(common)).collect())
     }
 
-    fn cell_moment(&self, ms: Magnetisation, i: usize) -> Result<f64> {
+    pub(crate) fn cell_moment(&self, ms: Magnetisation, i: usize) -> Result<f64> {
         Ok(ms.in_volume(self.volume_nm3(i)?).0)
     }
 
@@ -147,7 +174,7 @@ impl Medium<'_> {
         let (vacant, sites) = (self.chain.is_vacant()?, self.chain.sites);
         let mut list = vec![0.0; sites];
         for (i, value) in chosen.into_iter().zip(values).filter(|(i, _)| !vacant[*i] && !vacant[(i + shell) % sites]) {
-            list[i] = value;
+            list[i] = value * self.part.as_ref().map_or(1.0, |part| part.share(shell, i));
         }
         Ok(list)
     }
@@ -160,10 +187,19 @@ impl Medium<'_> {
     }
 
     fn chosen(&self, selection: Option<&Selection>) -> Result<Vec<usize>> {
-        match selection {
-            None => Ok((0..self.chain.sites).collect()),
-            Some(s) => s.indices(self.chain.sites, "site").map_err(|e| e.within("sites")),
+        let count = self.chain.sites;
+        let mut sites = match selection {
+            None => (0..count).collect(),
+            Some(Selection::Region(name)) => {
+                let region = self.chain.region(name).map_err(|e| e.within("sites"))?;
+                region.indices(count, "site")?
+            }
+            Some(s) => s.indices(count, "site").map_err(|e| e.within("sites"))?,
+        };
+        if let Some(part) = &self.part {
+            sites.retain(|i| part.inside[*i]);
         }
+        Ok(sites)
     }
 
     /// The chosen bonds of shell `shell`; all if there is no choice. `place` names the shell's value in errors.
@@ -176,10 +212,14 @@ impl Medium<'_> {
                 format!("shell {shell} wraps onto itself in a ring of {n} sites: at most {most} shells fit"),
             ));
         }
-        match selection {
-            None => Ok((0..count).collect()),
-            Some(s) => s.indices(count, "bond").map_err(|e| e.within("bonds")),
+        let mut bonds = match selection {
+            None => (0..count).collect(),
+            Some(s) => s.indices(count, "bond").map_err(|e| e.within("bonds"))?,
+        };
+        if let Some(part) = &self.part {
+            bonds.retain(|i| part.inside[*i] || part.inside[(i + shell) % n]);
         }
+        Ok(bonds)
     }
 
     /// Width and thickness of every cell.

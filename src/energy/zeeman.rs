@@ -120,7 +120,7 @@ mod tests {
         let mut chain = Chain::open(3);
         chain.moments =
             vec![SiteMoment { sites: Selection::List(vec![1]), moment: Some(Moment(4.0).into()), Ms: None }];
-        let medium = Medium { chain: &chain, moment: Some(Moment(2.0).into()), saturation: None };
+        let medium = Medium::new(&chain, Some(Moment(2.0).into()), None);
         assert_eq!(medium.moments_mub().unwrap(), [2.0, 4.0, 2.0]);
         let spec: ZeemanSpec = serde_json::from_str(r#"{"B": ["0 T", "0 T", "1 T"]}"#).unwrap();
         let term = spec.build(&medium).unwrap();

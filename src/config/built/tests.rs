@@ -177,3 +177,161 @@ fn a_soliton_that_nothing_holds_together_asks_for_a_width() {
     config["initial"]["soliton"]["width"] = json!(5);
     assert!((winding(&problem(&config).initial) + 1.0).abs() < 1e-12);
 }
+
+/// A soft chain with a hard end of eight sites, as two materials.
+fn two_materials() -> Value {
+    let wall = |center: f64| json!({"domain_wall": {"center": center}});
+    json!({
+        "material": {
+            "default": {"name": "soft", "moment": "2 mu_B", "energy": [
+                {"exchange": {"J": ["10 meV", "1 meV"]}},
+                {"anisotropy": {"K": "0.5 meV", "axis": [0, 0, 1]}},
+                {"dmi": {"D": "1 meV", "direction": [0, 1, 0]}},
+            ]},
+            "top": {"name": "hard", "moment": "3 mu_B", "energy": [
+                {"exchange": {"J": ["30 meV"]}},
+                {"anisotropy": {"K": "2 meV", "axis": [0, 0, 1]}},
+            ]},
+        },
+        "lattice": {"chain": {"sites": 20, "regions": {"top": {"from": 12, "to": 19}}}},
+        "energy": [{"zeeman": {"B": ["0 T", "0 T", "1 T"]}}],
+        "initial": wall(4.5),
+        "final": wall(14.5),
+    })
+}
+
+fn refusal(config: &Value) -> String {
+    let loaded = load_text(Path::new("two.json"), config.to_string());
+    loaded.and_then(|loaded| loaded.problem()).unwrap_err().to_string()
+}
+
+/// The energies of some states.
+fn energies(problem: &Problem) -> Vec<f64> {
+    let state = |seed: u64| -> Spins {
+        let spec: StateSpec = serde_json::from_value(json!({"random": {"seed": seed}})).unwrap();
+        spec.build(&StateContext::new(&problem.chain, 1.0)).unwrap()
+    };
+    (0..5).map(|seed| problem.hamiltonian.energy_mev(state(seed).as_slice())).collect()
+}
+
+fn same_energies(a: &Value, b: &Value) {
+    let (a, b) = (energies(&problem(a)), energies(&problem(b)));
+    assert!(a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 1e-10), "{a:?} {b:?}");
+}
+
+#[test]
+fn each_region_has_the_terms_of_its_material_and_a_bond_between_two_their_means() {
+    let mut by_hand = two_materials();
+    let list = |inside: f64, between: f64, beyond: f64, count: usize, mixed: std::ops::Range<usize>| -> Vec<String> {
+        let value = |i: usize| {
+            if i < mixed.start {
+                inside
+            } else if mixed.contains(&i) {
+                between
+            } else {
+                beyond
+            }
+        };
+        (0..count).map(|i| format!("{:?} meV", value(i))).collect()
+    };
+    // 2 × 10 × 30/40; the second shell of the soft part has no partner in the hard one; D × 30/40
+    by_hand["material"] = json!({"name": "both", "moment": "2 mu_B", "energy": [
+        {"exchange": {"J": [list(10.0, 15.0, 30.0, 19, 11..12), list(1.0, 0.0, 0.0, 18, 10..12)]}},
+        {"anisotropy": {"K": list(0.5, 0.5, 2.0, 20, 12..12), "axis": [0, 0, 1]}},
+        {"dmi": {"D": list(1.0, 0.75, 0.0, 19, 11..12), "direction": [0, 1, 0]}},
+    ]});
+    by_hand["lattice"] =
+        json!({"chain": {"sites": 20, "moments": [{"sites": {"from": 12, "to": 19}, "moment": "3 mu_B"}]}});
+    same_energies(&two_materials(), &by_hand);
+    // a site's own moment is its own, whatever it is made of
+    let mut own = two_materials();
+    own["lattice"]["chain"]["moments"] =
+        json!([{"sites": [3], "moment": "7 mu_B"}, {"sites": [15], "moment": "1 mu_B"}]);
+    by_hand["lattice"]["chain"]["moments"] = json!([
+        {"sites": [3], "moment": "7 mu_B"}, {"sites": [15], "moment": "1 mu_B"},
+        {"sites": [12, 13, 14, 16, 17, 18, 19], "moment": "3 mu_B"},
+    ]);
+    same_energies(&own, &by_hand);
+}
+
+#[test]
+fn library_materials_share_a_chain_and_its_magnetostatics_and_the_config_as_run_runs_by_itself() {
+    let mut config = two_materials();
+    config["material"] = json!({"default": "permalloy", "top": "fept"});
+    config["lattice"]["chain"]["spacing"] = "1 nm".into();
+    config["lattice"]["chain"]["cross_section"] = json!(["20 nm", "5 nm"]);
+    config["energy"] = json!([{"demag": {}}]);
+    let loaded = load_text(Path::new("two.json"), config.to_string()).unwrap();
+    let moments = loaded.moments_mub(loaded.chain()).unwrap();
+    let ratio = moments[12] / moments[11];
+    let ms = |key: &str| crate::config::library::find(key).unwrap().unwrap().material.Ms.unwrap().written()[0].0;
+    assert!((ratio - ms("fept") / ms("permalloy")).abs() < 1e-12, "{ratio}");
+    let again = load_text(Path::new("config.json"), loaded.as_run.clone()).unwrap();
+    assert_eq!((&again.as_run, &again.sha256), (&loaded.as_run, &loaded.sha256));
+    assert_eq!(energies(&again.problem().unwrap()), energies(&loaded.problem().unwrap()));
+    // magnetostatics that both materials bring along count once
+    let mut each = serde_json::from_str::<Value>(&loaded.as_run).unwrap();
+    each["energy"] = json!([]);
+    for part in ["default", "top"] {
+        each["material"][part]["energy"].as_array_mut().unwrap().push(json!({"demag": {}}));
+    }
+    same_energies(&config, &each);
+}
+
+#[test]
+fn materials_whose_exchange_has_no_mean_need_a_term_between_them() {
+    let mut config = two_materials();
+    config["material"]["top"]["energy"][0]["exchange"]["J"][0] = "-30 meV".into();
+    let said = refusal(&config);
+    assert!(said.contains("material: sites 11 and 12 are of the regions \"default\" and \"top\""), "{said}");
+    assert!(said.contains("\"bonds\": [11]"), "{said}");
+    config["energy"].as_array_mut().unwrap().push(json!({"exchange": {"J": ["-2 meV"], "bonds": [11]}}));
+    let built = problem(&config);
+    let blocks = built.hamiltonian.constant_blocks();
+    assert!((blocks.bond[0].mean(11) - 2.0).abs() < 1e-12 && (blocks.bond[0].mean(10) + 10.0).abs() < 1e-12);
+}
+
+#[test]
+fn regions_that_overlap_or_are_not_there_are_refused() {
+    let mut config = two_materials();
+    config["lattice"]["chain"]["regions"]["base"] = json!([0, 12]);
+    config["material"]["base"] = config["material"]["top"].clone();
+    let said = refusal(&config);
+    assert!(said.contains("lattice.chain.regions.top: site 12 is in the region \"base\" too"), "{said}");
+    let mut config = two_materials();
+    let top = config["material"].as_object_mut().unwrap().remove("top").unwrap();
+    config["material"]["tpo"] = top;
+    let said = refusal(&config);
+    assert!(said.contains("material.tpo: no region \"tpo\" in the lattice: did you mean \"top\"?"), "{said}");
+    let mut config = two_materials();
+    config["material"]["top"] = "feptt".into();
+    assert!(refusal(&config).contains("material.top: no library material \"feptt\": did you mean \"fept\"?"));
+    let mut config = two_materials();
+    config["lattice"]["chain"]["regions"]["default"] = json!([0]);
+    assert!(refusal(&config).contains("lattice.chain.regions.default: \"default\" is what is in no region"));
+    let mut config = two_materials();
+    config["material"]["top"]["energy"][1]["anisotropy"]["axis"] = json!([0, 0, 0]);
+    assert!(refusal(&config).contains("material.top.energy[1].anisotropy.axis"), "{}", refusal(&config));
+}
+
+#[test]
+fn the_name_of_a_region_chooses_its_sites() {
+    let mut named = two_materials();
+    named["energy"] = json!([{"anisotropy": {"K": "-0.1 meV", "axis": [1, 0, 0], "sites": "top"}}]);
+    named["lattice"]["chain"]["frozen"] = json!([{"sites": "top", "direction": [0, 0, -1]}]);
+    named["initial"] = json!({"domain_wall": {"center": 2.5}});
+    named["final"] = json!({"domain_wall": {"center": 6.5}});
+    let mut listed = named.clone();
+    let range = json!({"from": 12, "to": 19});
+    listed["energy"][0]["anisotropy"]["sites"] = range.clone();
+    listed["lattice"]["chain"]["frozen"][0]["sites"] = range;
+    same_energies(&named, &listed);
+    let frozen = problem(&named);
+    assert!((0..20).all(|i| frozen.hamiltonian.is_frozen(i) == (i >= 12)));
+    let mut wrong = named.clone();
+    wrong["energy"][0]["anisotropy"]["sites"] = "tip".into();
+    assert!(refusal(&wrong).contains("energy[0].anisotropy.sites: no region \"tip\""), "{}", refusal(&wrong));
+    let mut wrong = named.clone();
+    wrong["energy"] = json!([{"exchange": {"J": ["1 meV"], "bonds": "top"}}]);
+    assert!(refusal(&wrong).contains("bonds are chosen here by number"), "{}", refusal(&wrong));
+}

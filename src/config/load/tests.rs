@@ -30,7 +30,7 @@ fn a_config_as_run_runs_by_itself_and_is_its_own_form() {
     let second = load(&copy, &[]).unwrap();
     assert_eq!(second.as_run, first.as_run);
     assert_eq!(second.sha256, first.sha256);
-    assert_eq!(second.material, first.material);
+    assert_eq!(second.parts[0].material, first.parts[0].material);
     assert_eq!(second.name, "wall");
 }
 
