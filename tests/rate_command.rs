@@ -269,7 +269,7 @@ fn a_barrier_below_kt_leaves_the_entry_with_nulls_and_a_reason() {
     let hot = &summary["rates"][0]["temperatures"][1];
     let keys = ["htst_rate_per_s", "langer_rate_per_s", "lifetime_s", "log10_lifetime_s", "known_within_factor"];
     assert!(keys.iter().all(|key| hot[key].is_null()) && hot["temperature_K"] == 20.0, "{hot}");
-    assert!(hot["reason"].as_str().unwrap().starts_with("ΔE = 0.87 k_BT"), "{hot}");
+    assert!(hot["reason"].as_str().unwrap().contains("below 1 k_BT"), "{hot}");
     assert!(summary["rates"][0]["langer_prefactor_Hz"].as_f64().unwrap() > 0.0);
     let whole = &summary["transition_rates"][0]["temperatures"][1];
     assert!(

@@ -109,8 +109,7 @@ impl Row {
         if self.barrier_over_kt >= LEAST_BARRIER {
             return self;
         }
-        let reason =
-            format!("ΔE = {:.2} k_BT: below {LEAST_BARRIER} k_BT nothing holds the state back", self.barrier_over_kt);
+        let reason = format!("ΔE is below {LEAST_BARRIER} k_BT");
         let (temperature_k, barrier_over_kt) = (self.temperature_k, self.barrier_over_kt);
         Row { temperature_k, barrier_over_kt, reason: Some(reason), ..Row::default() }
     }
