@@ -77,7 +77,7 @@ def vtk_reads(result, spins):
         images.append(vtk_to_numpy(data.GetPointData().GetVectors()))
         positions = vtk_to_numpy(data.GetPoints().GetData())
     same("vtk, spins", images, spins)
-    same("vtk, positions (nm)", positions[:, 0], 0.5 * np.arange(SITES))
+    same("vtk, positions (nm)", positions[:, 0], 0.5 * (np.arange(SITES) + 0.5))
 
 
 def discretisedfield_reads(df, result, spins):
