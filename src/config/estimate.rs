@@ -5,7 +5,7 @@
 //! ```
 //! A band converges in about 15 gradients of each image, whatever its length (8 to 26 in the shipped configs), and finding the seat of
 //! a saddle, its proof and the descents to its two minima take about 280. An automatic path is refined once. One saddle is taken for
-//! granted, but a wall narrower than [`PINNED`] sites rests on every site that it passes: there are as many saddles, and four images
+//! granted, but a wall narrower than `PINNED` sites rests on every site that it passes: there are as many saddles, and four images
 //! to each. The gradient is measured; eigenvalues and proofs are in the factor 2.5, and figures take what the constants say on a usual
 //! machine. With these the shipped configs take what is said within a factor of 3 (`cargo bench --bench estimate`); paths through many
 //! minima, and ends that are far from their minima, take longer.
