@@ -212,7 +212,7 @@ fn what_is_wrong_with_any_point_is_said_once_and_nothing_runs() {
     assert!(!folder.path().join("results").exists());
     for (arguments, words) in [
         (["collect", "."], "is not the folder of a sweep's results: there is no points.json"),
-        (["sweep", "chain.json"], "unknown key"),
+        (["sweep", "chain.json"], "chain.json:1:1: .: this is a config, not a sweep: "),
     ] {
         let (code, _, said) = spinneb(folder.path(), &arguments);
         assert_eq!(code, Some(2), "{said}");
@@ -276,15 +276,17 @@ fn a_nucleus_that_slides_over_the_lattice_at_hardly_any_cost_is_certified_where_
     }
 }
 
-/// The processes that work at a point of the sweep in this folder.
+/// The processes that work at a point of the sweep in this folder and have had so many hundredths of a second of a processor.
 #[cfg(target_os = "linux")]
-fn at_work(folder: &Path) -> usize {
+fn at_work(folder: &Path, at_least: u64) -> usize {
     let of = |entry: fs::DirEntry| {
         let line = fs::read(entry.path().join("cmdline")).ok()?;
         let here = fs::read_link(entry.path().join("cwd")).ok()?;
         let point = line.split(|b| *b == 0).any(|word| word == b"--index");
+        let stat = fs::read_to_string(entry.path().join("stat")).ok()?;
+        let had: u64 = stat.rsplit(')').next()?.split_whitespace().nth(11)?.parse().ok()?;
         // who has ended and was not asked for its code has no working directory
-        (point && here == folder.canonicalize().ok()?).then_some(())
+        (point && here == folder.canonicalize().ok()? && had >= at_least).then_some(())
     };
     fs::read_dir("/proc").unwrap().flatten().filter_map(of).count()
 }
@@ -294,29 +296,25 @@ fn at_work(folder: &Path) -> usize {
 fn a_killed_sweep_leaves_no_points_at_work_and_they_go_on_afterwards() {
     use std::time::{Duration, Instant};
     let folder = folder(
-        r#"{"config": "chain.json", "grid": {"lattice.chain.sites": [40, 41]},
+        r#"{"config": "chain.json", "grid": {"lattice.chain.sites": [2000, 2001]},
             "set": {"neb": {"optimiser": {"velocity_projection": {}}, "tolerance": 1e-300, "max_evaluations": 2000000}}}"#,
     );
     let mut sweep = Command::new(env!("CARGO_BIN_EXE_spinneb"));
     sweep.current_dir(folder.path()).args(["sweep", "many.json", "--jobs", "2"]).stderr(std::process::Stdio::null());
     let mut sweep = sweep.spawn().unwrap();
-    let wait = |count: usize| {
+    let wait = |what: &str, is_so: &dyn Fn() -> bool| {
         let started = Instant::now();
-        while at_work(folder.path()) != count {
-            assert!(
-                started.elapsed() < Duration::from_secs(60),
-                "{} points at work, not {count}",
-                at_work(folder.path())
-            );
+        while !is_so() {
+            assert!(started.elapsed() < Duration::from_secs(60), "waited for {what}");
             std::thread::sleep(Duration::from_millis(20));
         }
     };
-    wait(2);
-    std::thread::sleep(Duration::from_millis(300));
+    // by then a point is long past its beginning, however busy the machine
+    wait("two points at work", &|| at_work(folder.path(), 30) == 2);
     sweep.kill().unwrap();
     sweep.wait().unwrap();
-    wait(0);
-    for sites in ["40", "41"] {
+    wait("none at work", &|| at_work(folder.path(), 0) == 0);
+    for sites in ["2000", "2001"] {
         let point = folder.path().join("results/many").join(format!("sites_{sites}"));
         assert!(point.join("partial.json").is_file() && point.join("checkpoint/journal").is_file(), "{sites}");
     }
