@@ -38,10 +38,10 @@ fn measure(sites: usize) {
         (along[sites + i], along[2 * sites + i]) = (s * t, s * s);
     }
     let start = Instant::now();
-    let saddle = refine(&h, &m, &along, 2.0 * k);
-    let spectrum = Spectrum::of(&h, &saddle.state, 6);
+    let saddle = refine((&h).into(), &m, &along, 2.0 * k);
+    let spectrum = Spectrum::of((&h).into(), &saddle.state, 6);
     let minima = [Direction::Z, Direction::Z.reversed()].map(|d| Spins::uniform(sites, d));
-    let spectra = [0, 1].map(|side| Minimum::examine(&h, &minima[side]).spectrum);
+    let spectra = [0, 1].map(|side| Minimum::examine((&h).into(), &minima[side]).spectrum);
     let before = start.elapsed().as_secs_f64();
     let settings = RateSettings {
         temperatures_k: (1..=100).map(|t| 3.0 * f64::from(t)).collect(),
@@ -59,7 +59,7 @@ fn measure(sites: usize) {
         doubt: None,
     };
     let start = Instant::now();
-    let [forward, _] = saddle_rates(&h, 0, &crossing, &settings);
+    let [forward, _] = saddle_rates((&h).into(), 0, &crossing, &settings);
     let seconds = start.elapsed().as_secs_f64();
     let hz = |p: Option<spinneb::rates::Prefactor>| p.map_or(f64::NAN, |p| p.hz_at(3.0));
     println!("{sites:>8} {before:>12.3} {seconds:>12.3} {:>16.6e} {:>16.6e}", hz(forward.htst), hz(forward.langer));

@@ -98,7 +98,7 @@ impl Grain {
         let (mut b, mut halved) = (0.0, 0);
         while halved < 10 {
             let h = self.in_field(b + step)?;
-            let relaxed = relax_to_minimum(&h, &state, 1e-10 * h.stiffness_mev())?;
+            let relaxed = relax_to_minimum((&h).into(), &state, 1e-10 * h.stiffness_mev())?;
             // where a mode is just going soft, the last digits of the torque are not to be had
             let torque = relaxed.max_torque_mev / h.stiffness_mev();
             ensure!(torque < 1e-7, "a torque of {torque:e} of the stiffness is left at {} T", b + step);

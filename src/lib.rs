@@ -19,6 +19,7 @@
 
 pub mod band;
 pub mod config;
+pub mod control;
 pub mod drive;
 pub mod energy;
 pub mod error;

@@ -418,11 +418,11 @@ fn a_saddle_of_higher_index_has_no_rate() {
     problem.guess = Some(serde_json::from_str(r#"{"geodesic": {"axis": [1, 0, 0]}}"#).expect("a guess"));
     let state = |v: [f64; 3]| Spins::from_vectors(&vec![v; 20]).expect("unit vectors");
     let h = &problem.hamiltonian;
-    let top = spinneb::saddle::State::at(h, state([0.0, 1.0, 0.0]).as_slice().to_vec());
-    let spectrum = spinneb::saddle::Spectrum::of(h, &top, 6);
+    let top = spinneb::saddle::State::at(h.into(), state([0.0, 1.0, 0.0]).as_slice().to_vec());
+    let spectrum = spinneb::saddle::Spectrum::of(h.into(), &top, 6);
     assert!(spectrum.negative > 1);
     let minima = [state([0.0, 0.0, 1.0]), state([0.0, 0.0, -1.0])];
-    let spectra = minima.clone().map(|m| spinneb::drive::Minimum::examine(h, &m).spectrum);
+    let spectra = minima.clone().map(|m| spinneb::drive::Minimum::examine(h.into(), &m).spectrum);
     let valley: Vec<f64> = (0..60).map(|k| if k / 20 == 2 { 1.0 } else { 0.0 }).collect();
     let crossing = spinneb::rates::Crossing {
         saddle: &top,
@@ -432,7 +432,8 @@ fn a_saddle_of_higher_index_has_no_rate() {
         minima_spectra: [&spectra[0], &spectra[1]],
         doubt: None,
     };
-    let [forward, backward] = spinneb::rates::saddle_rates(h, 0, &crossing, problem.rates.as_ref().expect("rates"));
+    let [forward, backward] =
+        spinneb::rates::saddle_rates(h.into(), 0, &crossing, problem.rates.as_ref().expect("rates"));
     for r in [forward, backward] {
         assert!(r.htst.is_none() && r.langer.is_none());
         assert!(
@@ -505,7 +506,7 @@ fn the_determinant_of_a_hundred_thousand_spins_is_the_product_of_its_spin_waves(
     let n = 100_000;
     let (easy, hard) = (0.05, 0.02);
     let problem = Build::open(n).easy(easy).hard(hard).reversal();
-    let state = spinneb::saddle::State::at(&problem.hamiltonian, problem.initial.as_slice().to_vec());
+    let state = spinneb::saddle::State::at((&problem.hamiltonian).into(), problem.initial.as_slice().to_vec());
     let found = spinneb::rates::log_determinant(&state.hessian, &[], 1.0);
     // free ends: 2K + 2J (1 − cos(πk/N)), and the same with the hard axis on top
     let wave = |k: usize| 4.0 * (PI * k as f64 / (2 * n) as f64).sin().powi(2) + 2.0 * easy;
@@ -629,11 +630,11 @@ fn a_state_beside_a_saddle_that_is_no_minimum_has_no_rate() {
     let problem = with(Build::open(1).easy(1.0).hard(0.5).reversal(), settings(1, 2.0, 0.3, 1.0));
     let h = &problem.hamiltonian;
     let state = |v: [f64; 3]| Spins::from_vectors(&[v]).expect("a unit vector");
-    let top = spinneb::saddle::State::at(h, state([0.0, 1.0, 0.0]).as_slice().to_vec());
-    let spectrum = spinneb::saddle::Spectrum::of(h, &top, 2);
+    let top = spinneb::saddle::State::at(h.into(), state([0.0, 1.0, 0.0]).as_slice().to_vec());
+    let spectrum = spinneb::saddle::Spectrum::of(h.into(), &top, 2);
     let refused = |before: [f64; 3]| {
         let minima = [state(before), state([0.0, 0.0, -1.0])];
-        let spectra = minima.clone().map(|m| spinneb::drive::Minimum::examine(h, &m).spectrum);
+        let spectra = minima.clone().map(|m| spinneb::drive::Minimum::examine(h.into(), &m).spectrum);
         let crossing = spinneb::rates::Crossing {
             saddle: &top,
             valley: &[0.0, 0.0, 1.0],
@@ -642,7 +643,7 @@ fn a_state_beside_a_saddle_that_is_no_minimum_has_no_rate() {
             minima_spectra: [&spectra[0], &spectra[1]],
             doubt: None,
         };
-        let [forward, _] = spinneb::rates::saddle_rates(h, 0, &crossing, problem.rates.as_ref().expect("rates"));
+        let [forward, _] = spinneb::rates::saddle_rates(h.into(), 0, &crossing, problem.rates.as_ref().expect("rates"));
         assert_eq!(forward.refused.is_empty(), forward.rows[0].ln_lifetime_s().is_some());
         forward.refused.first().map(|(_, why)| why.clone())
     };
@@ -664,7 +665,7 @@ fn stored_states_give_the_rates_of_the_run_and_must_prove_themselves() {
     minima.push(outcome.path.spins(last));
     let (h, settings) = (&problem.hamiltonian, problem.rates.as_ref().expect("settings"));
     let again = |saddles: &[spinneb::drive::SaddlePoint], minima: &[Spins]| {
-        spinneb::drive::stored_rates(h, saddles, minima, settings)
+        spinneb::drive::stored_rates(h.into(), saddles, minima, settings)
     };
     let (found, run) = (again(&outcome.saddles, &minima).expect("rates"), outcome.rates.as_ref().expect("rates"));
     assert!(outcome.saddles.len() > 2 && found.saddles.len() == run.saddles.len(), "{}", outcome.saddles.len());

@@ -68,7 +68,7 @@ struct Sitting {
 fn sit(make: &dyn Fn() -> Problem, stored: &Arc<Mutex<Stored>>, until: usize) -> Sitting {
     let mut problem = make();
     let (switch, chances) = (Arc::new(AtomicBool::new(false)), Arc::new(Mutex::new(0)));
-    problem.hamiltonian.obey(Arc::clone(&switch));
+    problem.control.obey(Arc::clone(&switch));
     let keep = Memory { stored: Arc::clone(stored), left: until, switch, chances: Arc::clone(&chances) };
     let mut recorder = Recorder::new(Box::new(keep));
     let outcome = match run_recorded(&problem, &mut Silent, &mut recorder) {
@@ -184,10 +184,10 @@ fn a_stopped_run_says_so_and_shows_its_band() {
 #[test]
 fn a_library_user_can_stop_a_run_without_any_record() {
     let problem = Build::open(20).easy(0.2).reversal();
-    problem.hamiltonian.switch().store(true, Ordering::Relaxed);
+    problem.control.switch().store(true, Ordering::Relaxed);
     assert!(matches!(run(&problem, &mut Silent), Err(Error::Stopped)));
     let problem = Build::open(20_000).easy(0.2).reversal();
-    let switch = Arc::clone(problem.hamiltonian.switch());
+    let switch = Arc::clone(problem.control.switch());
     let stopped = std::thread::scope(|scope| {
         let run = scope.spawn(|| run(&problem, &mut Silent));
         std::thread::sleep(std::time::Duration::from_millis(20));
@@ -225,7 +225,7 @@ fn a_record_of_another_problem_or_a_damaged_one_changes_nothing() {
 fn panics(make: &dyn Fn() -> Problem, stored: Stored) -> bool {
     let mut problem = make();
     let switch = Arc::new(AtomicBool::new(false));
-    problem.hamiltonian.obey(Arc::clone(&switch));
+    problem.control.obey(Arc::clone(&switch));
     let stored = Arc::new(Mutex::new(stored));
     let keep = Memory { stored, left: usize::MAX, switch: Arc::clone(&switch), chances: Arc::default() };
     let mut recorder = Recorder::new(Box::new(keep));

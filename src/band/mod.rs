@@ -24,7 +24,7 @@ pub use laplacian::Laplacian;
 pub use profile::{Extremum, Profile};
 pub use sweep::{Sweep, SweepStep};
 
-use crate::energy::Hamiltonian;
+use crate::energy::{Evaluator, Hamiltonian};
 use crate::path::Path;
 use crate::threads::{MADE, READ, apiece};
 use rayon::prelude::*;
@@ -33,7 +33,7 @@ use split::Split;
 /// A path with the energies, forces and tangents of its images. The two ends never move.
 #[derive(Debug)]
 pub struct Band<'h> {
-    hamiltonian: &'h Hamiltonian,
+    hamiltonian: Evaluator<'h>,
     path: Path,
     energy: Vec<f64>,
     gradient: Vec<f64>,
@@ -50,7 +50,8 @@ pub struct Band<'h> {
 
 impl<'h> Band<'h> {
     /// The band of a path; the two ends are evaluated, the images between them not yet.
-    pub fn new(hamiltonian: &'h Hamiltonian, path: Path) -> Band<'h> {
+    pub fn new(hamiltonian: impl Into<Evaluator<'h>>, path: Path) -> Band<'h> {
+        let hamiltonian = hamiltonian.into();
         let (images, slab) = (path.images(), 3 * path.sites());
         let mut band = Band {
             hamiltonian,
@@ -75,7 +76,7 @@ impl<'h> Band<'h> {
     }
 
     /// The band of a path that continues a relaxation of `evaluations` evaluations.
-    pub fn continued(hamiltonian: &'h Hamiltonian, path: Path, evaluations: usize) -> Band<'h> {
+    pub fn continued(hamiltonian: impl Into<Evaluator<'h>>, path: Path, evaluations: usize) -> Band<'h> {
         Band { evaluations, ..Band::new(hamiltonian, path) }
     }
 
@@ -109,7 +110,7 @@ impl<'h> Band<'h> {
             .map(|(k, (t, f))| {
                 let k = k + 1;
                 let gradient = &gradient[k * slab..(k + 1) * slab];
-                split::image(h, [k - 1, k, k + 1].map(|k| path.image(k)), tangent::weights(energy, k), gradient, t, f)
+                split::image(&h, [k - 1, k, k + 1].map(|k| path.image(k)), tangent::weights(energy, k), gradient, t, f)
             })
             .collect();
         self.spacing[0] = crate::path::distance(path.image(0), path.image(1));
@@ -126,6 +127,11 @@ impl<'h> Band<'h> {
 
     /// What the energies come from.
     pub fn hamiltonian(&self) -> &'h Hamiltonian {
+        self.hamiltonian.hamiltonian()
+    }
+
+    /// The energy, as counted and stopped.
+    pub fn evaluator(&self) -> Evaluator<'h> {
         self.hamiltonian
     }
 

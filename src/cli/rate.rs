@@ -73,7 +73,7 @@ fn from_files(loaded: &Loaded, problem: &Problem, directory: &Path) -> Result<st
     let Some(settings) = problem.rates.as_ref().filter(|_| outcome.certified && problem.relax_ends) else {
         return Ok(Err("only those of a certified result between relaxed ends are taken from its files".into()));
     };
-    let rates = match stored_rates(&problem.hamiltonian, &outcome.saddles, &minima, settings) {
+    let rates = match stored_rates(problem.evaluator(), &outcome.saddles, &minima, settings) {
         Ok(rates) => rates,
         Err(why) => return Ok(Err(format!("the states in its files do not prove themselves: {why}"))),
     };

@@ -91,12 +91,12 @@ fn relax_one(arguments: &Relax, config: &Path) -> Result<u8> {
     let mut relaxed = Vec::new();
     for (which, spins) in given {
         say(&format!("{name}: relaxing the {which} state"));
-        let state = relaxed_state(h, spins, arguments.modes, which)?;
+        let state = relaxed_state(h.into(), spins, arguments.modes, which)?;
         state.warnings.iter().for_each(|warning| say(&format!("{name}: warning: {warning}")));
         relaxed.push((which, state));
     }
     let same_minimum = match &relaxed[..] {
-        [(_, a), (_, b)] => Some(a.minimum.is_same(h, &b.minimum)),
+        [(_, a), (_, b)] => Some(a.minimum.is_same(h.into(), &b.minimum)),
         _ => None,
     };
     let found = RelaxReport {

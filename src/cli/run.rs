@@ -122,7 +122,7 @@ pub(super) fn run_one(arguments: &Run, signals: &Signals, loaded: &Loaded, direc
         }
     };
     let mut problem = loaded.problem()?;
-    problem.hamiltonian.obey(signals.switch());
+    problem.control.obey(signals.switch());
     let (name, place) = (&loaded.name, directory.display());
     let Some(lock) = reserve(arguments, loaded, directory)? else {
         say(&format!("{name}: {place} holds the finished result of this config already; --force runs it again"));

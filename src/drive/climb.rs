@@ -4,7 +4,7 @@ use super::minimum::{turned, turns};
 use super::recorder::Recorder;
 use super::top::Top;
 use crate::band::Band;
-use crate::energy::Hamiltonian;
+use crate::energy::Evaluator;
 use crate::error::Result;
 use crate::field::project;
 use crate::linalg::{Banded, lowest_modes, slab};
@@ -34,7 +34,7 @@ pub struct Found {
 impl Found {
     /// Refines a top. A saddle that is also a maximum of a shallow mode (a wall halfway between two sites) is left along that
     /// mode by `hop` (rad), for the one beside it.
-    pub fn at(h: &Hamiltonian, top: Top, c: f64, hop: f64) -> Found {
+    pub fn at(h: Evaluator, top: Top, c: f64, hop: f64) -> Found {
         let mut found = Found::near(h, top, c, hop);
         found.sharpen(h, c);
         if found.refined.index > 1 {
@@ -45,7 +45,7 @@ impl Found {
     }
 
     /// Follows the modes of a saddle that the valley's search left where sliding over the lattice still has a torque.
-    fn sharpen(&mut self, h: &Hamiltonian, c: f64) {
+    fn sharpen(&mut self, h: Evaluator, c: f64) {
         let rest = |r: &Refined| r.state.max_torque_mev() / (1e-12 * r.state.hessian.norm1());
         if !self.is_stationary(c) || rest(&self.refined) <= 1.0 {
             return;
@@ -61,7 +61,7 @@ impl Found {
         }
     }
 
-    fn near(h: &Hamiltonian, top: Top, c: f64, hop: f64) -> Found {
+    fn near(h: Evaluator, top: Top, c: f64, hop: f64) -> Found {
         let refined = refine(h, &top.m, &top.tau, c);
         let mut found = Found { top, refined };
         if !found.is_stationary(c) {
@@ -81,13 +81,13 @@ impl Found {
     }
 
     /// The same, as far as it is not on record.
-    pub fn recorded(h: &Hamiltonian, top: Top, c: f64, hop: f64, recorder: &mut Recorder) -> Result<Found> {
+    pub fn recorded(h: Evaluator, top: Top, c: f64, hop: f64, recorder: &mut Recorder) -> Result<Found> {
         let [m, tau] = [&top.m, &top.tau].map(Vec::clone);
         recorder.call(h, &[&m, &tau], || Ok(Found::at(h, top, c, hop)))
     }
 
     /// The saddle of index one a little along the second-lowest mode.
-    fn beside(&self, h: &Hamiltonian, c: f64, far: f64) -> Option<Found> {
+    fn beside(&self, h: Evaluator, c: f64, far: f64) -> Option<Found> {
         let state = &self.refined.state;
         let along = state.basis.coordinates(&self.refined.valley);
         let modes = lowest_modes(&state.hessian, 2, &state.zeros);
@@ -114,7 +114,7 @@ impl Found {
     }
 
     /// Whether `other` ended in this saddle too, symmetry turns apart.
-    pub fn is_same(&self, h: &Hamiltonian, other: &Found) -> bool {
+    pub fn is_same(&self, h: Evaluator, other: &Found) -> bool {
         let (a, b) = (&self.refined.state, &other.refined.state);
         if (a.energy_mev - b.energy_mev).abs() > 1e-9 * h.stiffness_mev() {
             return false;

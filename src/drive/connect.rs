@@ -11,7 +11,7 @@ use super::minimum::{Link, Minimum, turned, turns};
 use super::relaxation::{Goal, Relaxation};
 use super::top::{Top, direction, highest, tops};
 use crate::band::Band;
-use crate::energy::Hamiltonian;
+use crate::energy::Evaluator;
 use crate::error::Result;
 use crate::linalg::{Mode, slab, soft_modes};
 use crate::path::guess::{Edge, FirstGuess, GuessContext, Sweep};
@@ -74,7 +74,7 @@ impl<'p> Stretch<'p> {
     }
 
     /// The geodesic between its ends, the second turned about the symmetry axes to lie near the first.
-    fn straightened(&self, h: &Hamiltonian) -> Stretch<'p> {
+    fn straightened(&self, h: Evaluator) -> Stretch<'p> {
         let (a, mut b) = (self.a.clone(), self.b.clone());
         b.spins = turned(&b.spins, &turns(h, &b.spins, &a.spins));
         let path = Path::new(&[a.spins.clone(), b.spins.clone()]).resampled(FEWEST);
@@ -91,7 +91,7 @@ pub fn follow(
     saddle: Found,
     context: &GuessContext,
 ) -> Result<Sequence> {
-    let h = band.hamiltonian();
+    let h = band.evaluator();
     let c = relaxation.scales.stiffness_mev;
     let mut sequence = Sequence::default();
     // the part of the path that comes first is on top
@@ -167,7 +167,7 @@ pub fn follow(
 }
 
 /// Saddles that waited for the stretch before them, which is now followed to `reached`.
-fn close(sequence: &mut Sequence, open: &mut Vec<(Minimum, Link)>, reached: &Minimum, h: &Hamiltonian) {
+fn close(sequence: &mut Sequence, open: &mut Vec<(Minimum, Link)>, reached: &Minimum, h: Evaluator) {
     let mut reached = reached.clone();
     while let Some((wanted, _)) = open.last() {
         if !wanted.is_same(h, &reached) {
@@ -181,7 +181,7 @@ fn close(sequence: &mut Sequence, open: &mut Vec<(Minimum, Link)>, reached: &Min
 }
 
 /// Whether two minima are joined by a valley that is flat as far as double precision tells: a soliton on a ring, moved along it.
-fn is_flat(relaxation: &mut Relaxation, h: &Hamiltonian, stretch: &Stretch) -> Result<bool> {
+fn is_flat(relaxation: &mut Relaxation, h: Evaluator, stretch: &Stretch) -> Result<bool> {
     let flat = FLAT * h.stiffness_mev();
     if h.difference_mev(stretch.a.spins.as_slice(), stretch.b.spins.as_slice()).abs() > flat {
         return Ok(false);
@@ -196,7 +196,7 @@ fn is_flat(relaxation: &mut Relaxation, h: &Hamiltonian, stretch: &Stretch) -> R
 /// A saddle on a stretch, which is made straight if only then it shows one that is not known; and whether it is a known one.
 fn search(
     relaxation: &mut Relaxation,
-    h: &Hamiltonian,
+    h: Evaluator,
     stretch: &mut Stretch,
     known: &[&Found],
     c: f64,
@@ -219,7 +219,7 @@ fn search(
 /// A saddle on a stretch after a loose relaxation: one that is none of the known ones, if there is any.
 fn new_saddle(
     relaxation: &mut Relaxation,
-    h: &Hamiltonian,
+    h: Evaluator,
     stretch: &Stretch,
     known: &[&Found],
     c: f64,
@@ -266,7 +266,7 @@ fn new_saddle(
 }
 
 /// Saddles above the minimum at one end of a band, along its soft modes towards the next image.
-fn uphill(h: &Hamiltonian, band: &Band, end: usize, next: usize, c: f64) -> Vec<Found> {
+fn uphill(h: Evaluator, band: &Band, end: usize, next: usize, c: f64) -> Vec<Found> {
     let state = State::at(h, band.path().image(end).to_vec());
     let towards = state.basis.coordinates(&direction(&state.m, band.path().image(next), 1.0));
     let modes = soft_modes(&state.hessian, SOFT_MODES, &state.zeros, SOFT * c);

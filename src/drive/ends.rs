@@ -1,7 +1,7 @@
 //! Relaxing a state to its minimum: Newton's method with a shift that keeps the Hessian positive, and descent checked.
 
 use super::outcome::MOVED_FAR_RAD;
-use crate::energy::Hamiltonian;
+use crate::energy::Evaluator;
 use crate::error::{Error, Result};
 use crate::field::Components;
 use crate::geometry::{Vector, vector};
@@ -51,7 +51,7 @@ pub struct WayDown {
 
 /// The minimum that `start` relaxes to, with every force component below `tolerance_mev`. Stationary states on the way that are
 /// no minima are left, however many, as long as the energy falls.
-pub fn relax_to_minimum(h: &Hamiltonian, start: &Spins, tolerance_mev: f64) -> Result<Relaxed> {
+pub fn relax_to_minimum(h: Evaluator, start: &Spins, tolerance_mev: f64) -> Result<Relaxed> {
     let mut p = Point::at(h, start.as_slice().to_vec());
     let mut left = None;
     let mut steps = 0;
@@ -78,13 +78,7 @@ pub fn relax_to_minimum(h: &Hamiltonian, start: &Spins, tolerance_mev: f64) -> R
 
 /// Newton's method down to a stationary state, minimum or not. Beside a saddle that the forces do not lead away from, its steps
 /// along soft modes are short, and it ends before.
-fn stationary(
-    h: &Hamiltonian,
-    mut p: Point,
-    tolerance_mev: f64,
-    steps: &mut usize,
-    memory: &mut Banded,
-) -> Result<Point> {
+fn stationary(h: Evaluator, mut p: Point, tolerance_mev: f64, steps: &mut usize, memory: &mut Banded) -> Result<Point> {
     let mut shift = 0.0;
     let mut stalled = 0;
     let most = *steps + STEPS;
@@ -117,7 +111,7 @@ fn stationary(
 /// One accepted step: (H + shift) v = F, capped, with a larger shift as long as the energy would rise. The shift to go on with
 /// comes down while H stays indefinite, to the size of its lowest eigenvalue: near a saddle the falling mode then grows from step
 /// to step by a part that does not depend on how soft it is.
-fn newton_step(h: &Hamiltonian, p: &Point, shift: &mut f64, memory: &mut Banded) -> Option<Point> {
+fn newton_step(h: Evaluator, p: &Point, shift: &mut f64, memory: &mut Banded) -> Option<Point> {
     let scale = h.stiffness_mev();
     let slack = 1e-13 * (p.energy_mev.abs() + scale);
     let [first, least, small] = SHIFTS.map(|part| part * scale);
@@ -152,7 +146,7 @@ fn newton_step(h: &Hamiltonian, p: &Point, shift: &mut f64, memory: &mut Banded)
 }
 
 /// From a state with a negative direction, stationary or nearly so: the minimum below it; nothing if there is no such direction.
-fn way_down(h: &Hamiltonian, p: &Point, memory: &mut Banded) -> Option<(Point, WayDown)> {
+fn way_down(h: Evaluator, p: &Point, memory: &mut Banded) -> Option<(Point, WayDown)> {
     if Spectrum::negatives(h, p, memory) == 0 {
         return None;
     }
@@ -167,7 +161,7 @@ fn way_down(h: &Hamiltonian, p: &Point, memory: &mut Banded) -> Option<(Point, W
 }
 
 /// An end that stays as given.
-pub fn kept(h: &Hamiltonian, spins: &Spins) -> Relaxed {
+pub fn kept(h: Evaluator, spins: &Spins) -> Relaxed {
     Relaxed {
         spins: spins.clone(),
         max_torque_mev: Point::at(h, spins.as_slice().to_vec()).max_torque_mev(),

@@ -151,7 +151,7 @@ pub fn turning_axis(problem: &Problem, a: &Spins, b: &Spins, context: &GuessCont
 /// an end holds a wall (which moves as it is if its spins turn in one sense, and is turned over in the other), the one on whose
 /// way the highest energy is lowest. The cost is asked for with a number of images.
 fn best_axis(problem: &Problem, ways: &Ways, cost: impl Fn(Direction, usize) -> f64 + Sync) -> Direction {
-    let h = &problem.hamiltonian;
+    let h = problem.evaluator();
     if !ways.have_a_choice() {
         return Direction::X;
     }

@@ -8,7 +8,7 @@ use super::minimum::{Link, turned, turns};
 use super::relaxation::{Goal, Relaxation};
 use super::{Images, NebSettings, Recorder, Scales, Silent};
 use crate::band::{Band, Laplacian};
-use crate::energy::Hamiltonian;
+use crate::energy::Evaluator;
 use crate::error::Result;
 use crate::geometry::Vector;
 use crate::optimise::Follows;
@@ -40,7 +40,7 @@ pub struct Tools<'a> {
 /// The path from `a` to `b` over the links. None where they do not meet state for state (minima that are flat), or where there
 /// are fewer images than stretches.
 pub fn joined(
-    h: &Hamiltonian,
+    h: Evaluator,
     links: &[Link],
     [a, b]: [&Spins; 2],
     images: Images,
@@ -65,7 +65,7 @@ pub fn joined(
 }
 
 /// The descents from the saddles, end to end from `a` to `b`: minimum to saddle, saddle to minimum, …
-fn stretches(h: &Hamiltonian, links: &[Link], a: &Spins, b: &Spins) -> Option<Vec<Path>> {
+fn stretches(h: Evaluator, links: &[Link], a: &Spins, b: &Spins) -> Option<Vec<Path>> {
     let mut pieces = Vec::new();
     let mut here = a.clone();
     for (k, link) in links.iter().enumerate() {
@@ -129,7 +129,7 @@ fn shared(lengths: &[f64], total: usize) -> Option<Vec<usize>> {
 }
 
 /// A stretch between its two stationary ends, relaxed.
-fn relaxed(h: &Hamiltonian, path: Path, tools: &Tools) -> Result<Path> {
+fn relaxed(h: Evaluator, path: Path, tools: &Tools) -> Result<Path> {
     if path.images() < 3 {
         return Ok(path);
     }

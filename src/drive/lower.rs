@@ -9,7 +9,7 @@ use super::climb::Found;
 use super::minimum::Link;
 use super::recorder::Recorder;
 use super::top::Top;
-use crate::energy::Hamiltonian;
+use crate::energy::Evaluator;
 use crate::error::Result;
 use crate::field::Components;
 use crate::geometry::{Direction, Vector, vector};
@@ -31,7 +31,7 @@ const MOST_WALLS: usize = 8;
 
 /// The links with their highest saddle exchanged for a lower one between the same two minima; none if there is none in sight.
 /// c is the stiffness scale (meV).
-pub fn lowered(h: &Hamiltonian, links: &[Link], c: f64, recorder: &mut Recorder) -> Result<Option<Vec<Link>>> {
+pub fn lowered(h: Evaluator, links: &[Link], c: f64, recorder: &mut Recorder) -> Result<Option<Vec<Link>>> {
     let mut better: Option<Vec<Link>> = None;
     for _ in 0..ROUNDS {
         let now = better.as_deref().unwrap_or(links);
@@ -44,7 +44,7 @@ pub fn lowered(h: &Hamiltonian, links: &[Link], c: f64, recorder: &mut Recorder)
 }
 
 /// A lower saddle between the minima of a link, with one of its walls turned.
-fn beside(h: &Hamiltonian, link: &Link, c: f64, recorder: &mut Recorder) -> Result<Option<Link>> {
+fn beside(h: Evaluator, link: &Link, c: f64, recorder: &mut Recorder) -> Result<Option<Link>> {
     let saddle = &link.found.refined.state;
     for start in turned_walls(h, &saddle.m, APART * c) {
         let found = recorder.call(h, &[&start], || Ok(saddle_at(h, &start, c)))?;
@@ -63,7 +63,7 @@ fn beside(h: &Hamiltonian, link: &Link, c: f64, recorder: &mut Recorder) -> Resu
 }
 
 /// The saddle near a state, if there is one.
-fn saddle_at(h: &Hamiltonian, m: &[f64], c: f64) -> Vec<Found> {
+fn saddle_at(h: Evaluator, m: &[f64], c: f64) -> Vec<Found> {
     let found = follow_modes(h, m, c).map(|refined| Found {
         top: Top {
             m: m.to_vec(),
@@ -78,7 +78,7 @@ fn saddle_at(h: &Hamiltonian, m: &[f64], c: f64) -> Vec<Found> {
 }
 
 /// The state with one wall turned by half a turn, for every wall for which that costs less than `most` (meV).
-fn turned_walls(h: &Hamiltonian, m: &[f64], most: f64) -> Vec<Vec<f64>> {
+fn turned_walls(h: Evaluator, m: &[f64], most: f64) -> Vec<Vec<f64>> {
     let mut all = Vec::new();
     for axis in h.symmetry_axes_at(m) {
         let Ok(direction) = Direction::new(axis) else { continue };

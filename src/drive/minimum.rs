@@ -3,7 +3,7 @@
 use super::climb::Found;
 use super::ends::relax_to_minimum;
 use super::recorder::Recorder;
-use crate::energy::Hamiltonian;
+use crate::energy::Evaluator;
 use crate::error::Result;
 use crate::geometry::Direction;
 use crate::linalg::slab;
@@ -38,18 +38,18 @@ pub struct Minimum {
 
 impl Minimum {
     /// A relaxed state, examined.
-    pub fn examine(h: &Hamiltonian, spins: &Spins) -> Minimum {
+    pub fn examine(h: Evaluator, spins: &Spins) -> Minimum {
         Minimum::with_modes(h, spins, 0)
     }
 
     /// Two of them.
-    pub fn examine_both(h: &Hamiltonian, spins: [&Spins; 2]) -> [Minimum; 2] {
+    pub fn examine_both(h: Evaluator, spins: [&Spins; 2]) -> [Minimum; 2] {
         let [a, b] = spins;
         both(3 * h.sites(), || Minimum::examine(h, a), || Minimum::examine(h, b)).into()
     }
 
     /// The same with so many of its lowest eigenvalues.
-    pub fn with_modes(h: &Hamiltonian, spins: &Spins, count: usize) -> Minimum {
+    pub fn with_modes(h: Evaluator, spins: &Spins, count: usize) -> Minimum {
         let state = State::at(h, spins.as_slice().to_vec());
         Minimum {
             energy_mev: h.energy_mev(&state.m),
@@ -65,7 +65,7 @@ impl Minimum {
     }
 
     /// Whether `other` is this minimum, or one along a valley that is flat as far as double precision tells: the same energy.
-    pub fn is_same(&self, h: &Hamiltonian, other: &Minimum) -> bool {
+    pub fn is_same(&self, h: Evaluator, other: &Minimum) -> bool {
         if self.is_identical(h, other) {
             return true;
         }
@@ -75,12 +75,12 @@ impl Minimum {
     }
 
     /// Whether `other` has the same spins, perhaps after a rotation about the symmetry axes.
-    pub fn is_identical(&self, h: &Hamiltonian, other: &Minimum) -> bool {
+    pub fn is_identical(&self, h: Evaluator, other: &Minimum) -> bool {
         largest_angle(self.spins.as_slice(), other.spins.as_slice()) < SAME || self.is_turned(h, other)
     }
 
     /// Whether a rotation about the symmetry axes makes `other` of this minimum.
-    pub fn is_turned(&self, h: &Hamiltonian, other: &Minimum) -> bool {
+    pub fn is_turned(&self, h: Evaluator, other: &Minimum) -> bool {
         let a = self.spins.as_slice();
         let turn = turns(h, &other.spins, &self.spins);
         !turn.is_empty() && largest_angle(a, turned(&other.spins, &turn).as_slice()) < SAME
@@ -88,7 +88,7 @@ impl Minimum {
 }
 
 /// Turns about the symmetry axes, one after the other, that bring a state nearest to another. None without symmetry axes.
-pub fn turns(h: &Hamiltonian, from: &Spins, to: &Spins) -> Vec<(Direction, f64)> {
+pub fn turns(h: Evaluator, from: &Spins, to: &Spins) -> Vec<(Direction, f64)> {
     let axes = h.symmetry_axes_at(to.as_slice());
     let axes: Vec<Direction> = axes.iter().filter_map(|axis| Direction::new(*axis).ok()).collect();
     let mut now = from.clone();
@@ -154,7 +154,7 @@ pub struct Link {
 
 impl Link {
     /// Descends from a saddle on both sides.
-    pub fn of(h: &Hamiltonian, found: Found, c: f64) -> Result<Link> {
+    pub fn of(h: Evaluator, found: Found, c: f64) -> Result<Link> {
         let state = &found.refined.state;
         let falls = falling(&found);
         let sign = if slab::dot(&falls, &found.top.tau) < 0.0 { -1.0 } else { 1.0 };
@@ -175,7 +175,7 @@ impl Link {
 
     /// A saddle whose spectrum alone tells that it is one, between ends that are kept as they are, minima or not. Nothing if its
     /// descending direction is too flat for that.
-    pub fn between(h: &Hamiltonian, found: Found, [before, after]: [Minimum; 2]) -> Option<Link> {
+    pub fn between(h: Evaluator, found: Found, [before, after]: [Minimum; 2]) -> Option<Link> {
         let state = &found.refined.state;
         let spectrum = Spectrum::of(h, state, REPORTED);
         if spectrum.negative == 0 {
@@ -186,7 +186,7 @@ impl Link {
     }
 
     /// The same, as far as it is not on record.
-    pub fn recorded(h: &Hamiltonian, found: Found, c: f64, recorder: &mut Recorder) -> Result<Link> {
+    pub fn recorded(h: Evaluator, found: Found, c: f64, recorder: &mut Recorder) -> Result<Link> {
         let Found { top, refined } = &found;
         let [m, valley, tau] = [&refined.state.m, &refined.valley, &top.tau].map(Vec::clone);
         recorder.call(h, &[&m, &valley, &tau], || Link::of(h, found, c))
@@ -200,7 +200,7 @@ impl Link {
     }
 
     /// Why this is not a proven saddle of index one between two proven minima; nothing if it is.
-    pub fn doubt(&self, h: &Hamiltonian) -> Option<String> {
+    pub fn doubt(&self, h: Evaluator) -> Option<String> {
         let state = &self.found.refined.state;
         let s = &self.spectrum;
         if !s.is_stationary(state.max_torque_mev()) {

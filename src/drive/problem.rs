@@ -1,7 +1,8 @@
 //! What a run is given.
 
 use super::Scales;
-use crate::energy::Hamiltonian;
+use crate::control::Control;
+use crate::energy::{Evaluator, Hamiltonian};
 use crate::lattice::Chain;
 use crate::optimise::{Implicit, OptimiserSpec};
 use crate::path::guess::{GuessSpec, NoiseSpec};
@@ -16,6 +17,8 @@ pub struct Problem {
     pub chain: Chain,
     /// Its energy.
     pub hamiltonian: Hamiltonian,
+    /// What counts and stops its evaluations.
+    pub control: Control,
     /// Where the path starts.
     pub initial: Spins,
     /// Where it ends.
@@ -49,6 +52,7 @@ impl Problem {
         Problem {
             chain,
             hamiltonian,
+            control: Control::default(),
             initial,
             final_state,
             sense: None,
@@ -66,6 +70,11 @@ impl Problem {
 }
 
 impl Problem {
+    /// The energy, as counted and stopped.
+    pub fn evaluator(&self) -> Evaluator<'_> {
+        Evaluator::new(&self.hamiltonian, &self.control)
+    }
+
     /// What states on the way need to know.
     pub fn states(&self, scales: &Scales) -> StateContext<'_> {
         StateContext { sense: self.sense, ..scales.states(&self.chain, &self.hamiltonian) }

@@ -4,7 +4,7 @@ use super::climb::Found;
 use super::minimum::{Link, Minimum};
 use super::outcome::SaddlePoint;
 use super::top::Top;
-use crate::energy::Hamiltonian;
+use crate::energy::Evaluator;
 use crate::linalg::slab;
 use crate::rates::{
     Crossing, Equivalents, Orbits, RateSettings, Rates, SaddleRate, ZeroKind, equivalent_saddles, refused,
@@ -18,7 +18,7 @@ const AGREE: f64 = 1e-9;
 
 /// What is known of a path.
 pub struct Known<'a> {
-    pub h: &'a Hamiltonian,
+    pub h: Evaluator<'a>,
     /// Saddles with the minima beside them, in path order; none where nothing was proven.
     pub links: &'a [Link],
     /// The saddles as reported.
@@ -62,7 +62,7 @@ fn orbits(known: &Known, rates: &[SaddleRate], settings: &RateSettings) -> Orbit
     }
     let ends = [first.before.spins.as_slice(), last.after.spins.as_slice()];
     let slides = |k: usize| rates[2 * k].saddle_zeros.iter().any(|z| z.0 == ZeroKind::Translation);
-    let like = |m: &[f64], slides: bool| equivalent_saddles(h, m, ends, &settings.moments_mub, slides);
+    let like = |m: &[f64], slides: bool| equivalent_saddles(&h, m, ends, &settings.moments_mub, slides);
     let between: Vec<Equivalents> =
         links[..links.len() - 1].iter().map(|l| like(l.after.spins.as_slice(), false)).collect();
     let saddles = links.iter().enumerate().map(|(k, l)| like(&l.found.refined.state.m, slides(k)).count).collect();
@@ -104,7 +104,7 @@ fn unproven(known: &Known, number: usize, saddle: &SaddlePoint, settings: &RateS
 /// The rates over saddles and minima (both ends among them) that were found earlier, in path order; the reason if they do not
 /// prove themselves to be what they were said to be.
 pub fn stored_rates(
-    h: &Hamiltonian,
+    h: Evaluator,
     saddles: &[SaddlePoint],
     minima: &[Spins],
     settings: &RateSettings,
@@ -136,7 +136,7 @@ pub fn stored_rates(
 }
 
 /// A stored saddle between two minima, its descending mode found anew.
-fn stored_link(h: &Hamiltonian, saddle: &SaddlePoint, beside: &[Minimum]) -> Link {
+fn stored_link(h: Evaluator, saddle: &SaddlePoint, beside: &[Minimum]) -> Link {
     let state = State::at(h, saddle.spins.as_slice().to_vec());
     let (before, after) = (beside[0].clone(), beside[1].clone());
     let towards = |end: &Minimum| h.difference_mev(&state.m, end.spins.as_slice());

@@ -12,7 +12,7 @@ use super::bytes::{Fingerprint, Reader, Writer};
 use super::outcome::HistoryRow;
 use super::stored::Stored;
 use crate::band::Band;
-use crate::energy::Hamiltonian;
+use crate::energy::Evaluator;
 use crate::error::{Error, Result};
 use crate::path::Path;
 
@@ -77,8 +77,7 @@ impl Recorder {
         if self.keep.is_none() {
             return;
         }
-        let h = &problem.hamiltonian;
-        let before = h.evaluations();
+        let h = problem.evaluator();
         let mut print = Fingerprint::default().real(h.reference_mev()).real(h.stiffness_mev());
         for spins in [&problem.initial, &problem.final_state] {
             let mut gradient = vec![0.0; 3 * h.sites()];
@@ -88,7 +87,6 @@ impl Recorder {
         let Problem { relax_ends, images, guess, noise, smooth, refine, certify, neb, .. } = problem;
         let settings = format!("{relax_ends} {images:?} {guess:?} {noise:?} {smooth:?} {refine} {certify} {neb:?}");
         self.problem = print.text(&settings).value();
-        h.set_evaluations(before);
     }
 
     /// How many calls were answered from the record.
@@ -118,7 +116,7 @@ impl Recorder {
     /// The result of `compute`, or what the interrupted run had as its result for this input.
     pub(super) fn call<T: Stored>(
         &mut self,
-        h: &Hamiltonian,
+        h: Evaluator,
         input: &[&[f64]],
         compute: impl FnOnce() -> Result<T>,
     ) -> Result<T> {
@@ -136,7 +134,7 @@ impl Recorder {
     }
 
     /// What identifies the next call, by its input.
-    pub(super) fn ticket(&self, h: &Hamiltonian, input: impl FnOnce(Fingerprint) -> Fingerprint) -> Ticket {
+    pub(super) fn ticket(&self, h: Evaluator, input: impl FnOnce(Fingerprint) -> Fingerprint) -> Ticket {
         let print = match self.keep {
             Some(_) => input(Fingerprint::default().whole(self.problem)).value(),
             None => 0,
@@ -147,7 +145,7 @@ impl Recorder {
     /// The result of the next call, if it is recorded.
     pub(super) fn answer<T>(
         &mut self,
-        h: &Hamiltonian,
+        h: Evaluator,
         ticket: &Ticket,
         read: impl FnOnce(&mut Reader) -> Option<T>,
     ) -> Option<T> {
@@ -162,7 +160,7 @@ impl Recorder {
     /// Where the next call stood, if it was saved on the way; counts its evaluations so far.
     pub(super) fn resume<T>(
         &mut self,
-        h: &Hamiltonian,
+        h: Evaluator,
         ticket: &Ticket,
         read: impl FnOnce(&mut Reader) -> Option<T>,
     ) -> Option<T> {
@@ -182,7 +180,7 @@ impl Recorder {
     }
 
     /// Ends the run if it is to stop, with everything saved; `state` is where the call in progress stands.
-    pub(super) fn obey(&mut self, h: &Hamiltonian, state: impl FnOnce() -> Option<Vec<u8>>) -> Result<()> {
+    pub(super) fn obey(&mut self, h: Evaluator, state: impl FnOnce() -> Option<Vec<u8>>) -> Result<()> {
         if !h.is_stopped() {
             return Ok(());
         }
@@ -193,7 +191,7 @@ impl Recorder {
     }
 
     /// Records the result of a call.
-    pub(super) fn finish(&mut self, h: &Hamiltonian, ticket: &Ticket, write: impl FnOnce(&mut Writer)) {
+    pub(super) fn finish(&mut self, h: Evaluator, ticket: &Ticket, write: impl FnOnce(&mut Writer)) {
         if let Some(keep) = &mut self.keep {
             keep.add(self.done, ticket.sealed(h, write));
             self.done += 1;
@@ -213,7 +211,7 @@ pub struct Ticket {
 
 impl Ticket {
     /// A record: the fingerprint of the input, the evaluations of the call so far, and what is written.
-    pub fn sealed(&self, h: &Hamiltonian, write: impl FnOnce(&mut Writer)) -> Vec<u8> {
+    pub fn sealed(&self, h: Evaluator, write: impl FnOnce(&mut Writer)) -> Vec<u8> {
         let mut w = Writer::default();
         w.whole(self.print);
         w.whole(h.evaluations() - self.before);

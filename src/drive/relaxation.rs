@@ -5,7 +5,7 @@ use super::outcome::HistoryRow;
 use super::stored::{Stored, are_unit, read_history, write_history};
 use super::{NebSettings, Observer, Recorder, Scales, Stop};
 use crate::band::{Band, Laplacian, Sweep, align_rotations};
-use crate::energy::Hamiltonian;
+use crate::energy::Evaluator;
 use crate::error::Result;
 use crate::geometry::Vector;
 use crate::linalg::slab;
@@ -89,7 +89,7 @@ struct Iterate {
 impl Relaxation<'_> {
     /// Relaxes the band of `path` with at most `limit` evaluations. An error where the run was stopped on the way.
     pub fn run<'h>(&mut self, band: &mut Band<'h>, goal: Goal, limit: usize) -> Result<Stop> {
-        let h = band.hamiltonian();
+        let h = band.evaluator();
         let first = self.history.len();
         let ticket = self.recorder.ticket(h, |print| fingerprint(print, band, goal, limit));
         if let Some((stop, rows)) = self.recorder.answer(h, &ticket, |r| read_end(r, band)) {
@@ -114,7 +114,7 @@ impl Relaxation<'_> {
         Ok(stop)
     }
 
-    fn start(&self, h: &Hamiltonian) -> Iterate {
+    fn start(&self, h: Evaluator) -> Iterate {
         let method = self.settings.optimiser.member();
         Iterate {
             optimiser: method.start(h.stiffness_mev()),
@@ -275,7 +275,7 @@ fn read_images(r: &mut Reader, band: &Band) -> Option<Vec<f64>> {
 fn read_end(r: &mut Reader, band: &mut Band) -> Option<(Stop, Vec<HistoryRow>)> {
     let images = read_images(r, band)?;
     let evaluations = r.count()?;
-    let stop = Stop::read(r, band.hamiltonian())?;
+    let stop = Stop::read(r, band.evaluator())?;
     let rows = read_history(r)?;
     band.restore(&images, evaluations.checked_sub(1)?);
     band.evaluate();

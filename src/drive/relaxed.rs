@@ -3,7 +3,7 @@
 use super::ends::{Relaxed, judge_end, kept, relax_to_minimum};
 use super::minimum::Minimum;
 use super::run::END_TOLERANCE;
-use crate::energy::Hamiltonian;
+use crate::energy::Evaluator;
 use crate::error::Result;
 use crate::spins::Spins;
 
@@ -30,7 +30,7 @@ impl RelaxedState {
 }
 
 /// Relaxes a state as a run relaxes its ends; `modes` of its eigenvalues are computed, and `which` names it in warnings.
-pub fn relaxed_state(h: &Hamiltonian, spins: &Spins, modes: usize, which: &str) -> Result<RelaxedState> {
+pub fn relaxed_state(h: Evaluator, spins: &Spins, modes: usize, which: &str) -> Result<RelaxedState> {
     let relaxed = relax_to_minimum(h, spins, END_TOLERANCE * h.stiffness_mev())?;
     let minimum = Minimum::with_modes(h, &relaxed.spins, modes);
     let mut warnings = judge_end(&relaxed, which);

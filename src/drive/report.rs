@@ -9,7 +9,7 @@ use super::rates::{self, Known};
 use super::relaxation::{height, prominent_maxima};
 use super::{Partial, Problem, StopCode};
 use crate::band::{Band, Extremum, Profile};
-use crate::energy::Hamiltonian;
+use crate::energy::Evaluator;
 use crate::linalg::slab;
 use crate::path::Path;
 use crate::spins::Spins;
@@ -42,7 +42,7 @@ impl Summary<'_> {
     fn work(&self, iterations: usize) -> Work {
         Work {
             iterations,
-            force_evaluations: self.problem.hamiltonian.evaluations(),
+            force_evaluations: self.problem.control.evaluations(),
             seconds: self.started.elapsed().as_secs_f64(),
             threads: rayon::current_num_threads(),
         }
@@ -63,7 +63,7 @@ pub fn outcome(
     proof: Proof,
     rejected_paths: Vec<RejectedPath>,
 ) -> Outcome {
-    let h = &run.problem.hamiltonian;
+    let h = run.problem.evaluator();
     let band = &c.band;
     let above_final = h.difference_mev(band.path().image(band.images() - 1), band.path().image(0));
     let saddles = if !proof.links.is_empty() {
@@ -243,7 +243,7 @@ fn highest_climb(
 
 /// Both ends relaxed to one minimum: a result without a path.
 pub fn same_minimum(run: Summary) -> Outcome {
-    let h = &run.problem.hamiltonian;
+    let h = run.problem.evaluator();
     let path = Path::new(&[run.ends[0].spins.clone(), run.ends[1].spins.clone()]);
     let band = Band::new(h, path.clone());
     let ends = Minimum::examine_both(h, run.ends.each_ref().map(|end| &end.spins));
@@ -278,7 +278,7 @@ pub fn same_minimum(run: Summary) -> Outcome {
 
 /// What is known of a run that was stopped: the band as it stood, without a barrier. `why` says that it is not the end.
 pub fn partial(problem: &Problem, partial: &Partial, why: &str) -> Outcome {
-    let h = &problem.hamiltonian;
+    let h = problem.evaluator();
     let mut band = Band::new(h, partial.path.clone());
     band.evaluate();
     let images = image_table(h, &band);
@@ -361,7 +361,7 @@ fn nearest(band: &Band, m: &[f64]) -> (f64, usize) {
     (s[a] + share * (s[b] - s[a]), k)
 }
 
-fn saddle_of(h: &Hamiltonian, band: &Band, f: &Found) -> SaddlePoint {
+fn saddle_of(h: Evaluator, band: &Band, f: &Found) -> SaddlePoint {
     let first = band.path().image(0);
     let above = h.difference_mev(&f.refined.state.m, first);
     let (s, image) = nearest(band, &f.refined.state.m);
@@ -378,7 +378,7 @@ fn saddle_of(h: &Hamiltonian, band: &Band, f: &Found) -> SaddlePoint {
     }
 }
 
-fn saddle_of_link(h: &Hamiltonian, band: &Band, link: &Link) -> SaddlePoint {
+fn saddle_of_link(h: Evaluator, band: &Band, link: &Link) -> SaddlePoint {
     SaddlePoint {
         negative_modes: Some(link.spectrum.negative),
         zero_modes: Some(link.spectrum.zero_and_flat()),
@@ -389,7 +389,7 @@ fn saddle_of_link(h: &Hamiltonian, band: &Band, link: &Link) -> SaddlePoint {
 
 /// The prominent maxima as the band shows them: the interpolated ones beside the highest images.
 fn band_saddles(problem: &Problem, band: &Band) -> Vec<SaddlePoint> {
-    let h = &problem.hamiltonian;
+    let h = problem.evaluator();
     let first = band.path().image(0);
     let profile = band.profile();
     let peak = |k: usize| {
@@ -434,7 +434,7 @@ fn torque(band: &Band, k: usize) -> f64 {
 }
 
 /// Interior images that are prominent minima of the path.
-fn band_minima(h: &Hamiltonian, band: &Band) -> Vec<IntermediateMinimum> {
+fn band_minima(h: Evaluator, band: &Band) -> Vec<IntermediateMinimum> {
     let upside_down: Vec<f64> = band.energies_mev().iter().map(|e| -e).collect();
     let s = band.path().reaction_coordinate();
     let state = |k: usize| EndPoint {
@@ -455,7 +455,7 @@ fn band_minima(h: &Hamiltonian, band: &Band) -> Vec<IntermediateMinimum> {
         .collect()
 }
 
-fn image_table(h: &Hamiltonian, band: &Band) -> ImageTable {
+fn image_table(h: Evaluator, band: &Band) -> ImageTable {
     let path = band.path();
     let first = h.density(path.image(0));
     let row = |k: usize| {

@@ -14,7 +14,7 @@ use super::report::{self, Proof};
 use super::top::{Top, highest, tops};
 use super::{Images, Observer, Problem, Recorder, Scales, Silent, Stop};
 use crate::band::{Band, Laplacian, align_rotations};
-use crate::energy::Hamiltonian;
+use crate::energy::Evaluator;
 use crate::error::Result;
 use crate::geometry::{Direction, Vector};
 use crate::path::guess::{FirstGuess, GuessContext, GuessSpec, NoiseSpec, Rotation, add_noise, moving_sites, smooth};
@@ -111,7 +111,7 @@ impl<'a, 'o> Run<'a, 'o> {
         recorder: &'o mut Recorder,
     ) -> Result<Run<'a, 'o>> {
         let started = Instant::now();
-        let h = &problem.hamiltonian;
+        let h = problem.evaluator();
         observer.stage("relaxing the ends");
         let mut warnings = Vec::new();
         let given = [&problem.initial, &problem.final_state];
@@ -129,9 +129,9 @@ impl<'a, 'o> Run<'a, 'o> {
             );
         }
         let (a, b) = (ends[0].spins.as_slice(), ends[1].spins.as_slice());
-        let scales = recorder.call(h, &[a, b], || Ok(Scales::of_ends(h, a, b)))?;
+        let scales = recorder.call(h, &[a, b], || Ok(Scales::of_ends(&h, a, b)))?;
         let axes = h.symmetry_axes_at(a);
-        let laplacian = needs_laplacian(&problem.neb.optimiser).then(|| Laplacian::new(h, scales.stiffness_mev));
+        let laplacian = needs_laplacian(&problem.neb.optimiser).then(|| Laplacian::new(&h, scales.stiffness_mev));
         let mut run = Run {
             problem,
             observer,
@@ -240,7 +240,7 @@ impl<'a, 'o> Run<'a, 'o> {
             return Ok(None);
         }
         let scale = self.scales.stiffness_mev;
-        let Some(links) = lowered(&self.problem.hamiltonian, &proof.links, scale, self.recorder)? else {
+        let Some(links) = lowered(self.problem.evaluator(), &proof.links, scale, self.recorder)? else {
             return Ok(None);
         };
         let lower = Proof { ends: proof.ends.clone(), links, doubts: Vec::new() };
@@ -297,7 +297,7 @@ impl<'a, 'o> Run<'a, 'o> {
 
     /// The path from stretch to stretch in the place of the band, if all of it is proven; says whether it took the place.
     fn join(&mut self, c: &mut Candidate<'a>, proof: &Proof) -> Result<bool> {
-        let h = &self.problem.hamiltonian;
+        let h = self.problem.evaluator();
         if !proof.doubts.is_empty() || !self.problem.relax_ends {
             return Ok(false);
         }
@@ -332,7 +332,7 @@ impl<'a, 'o> Run<'a, 'o> {
 
     /// Follows the path from its highest saddle down to both ends, and says what was proven on the way.
     fn prove(&mut self, c: &Candidate<'a>, found: &[Found]) -> Result<Proof> {
-        let h = &self.problem.hamiltonian;
+        let h = self.problem.evaluator();
         let ends = Minimum::examine_both(h, self.ends.each_ref().map(|end| &end.spins));
         let highest = found.iter().max_by(|p, q| p.refined.state.energy_mev.total_cmp(&q.refined.state.energy_mev));
         let Some(highest) = highest.filter(|_| self.problem.certify) else {
@@ -394,7 +394,7 @@ impl<'a, 'o> Run<'a, 'o> {
 
     /// Ends that are one minimum turned about a symmetry axis: the rigid turn between them costs nothing.
     fn turned_minimum(&mut self) -> Result<Option<Outcome>> {
-        let h = &self.problem.hamiltonian;
+        let h = self.problem.evaluator();
         if self.axes.is_empty() || !self.problem.relax_ends {
             return Ok(None);
         }
@@ -459,7 +459,7 @@ impl<'a, 'o> Run<'a, 'o> {
             if !self.problem.seeks_saddles() {
                 break;
             }
-            let h = c.band.hamiltonian();
+            let h = c.band.evaluator();
             c.found = match self.zoom(c)? {
                 Some(top) => Some(Found::recorded(h, top, scale, self.scales.half_site_rad(), self.recorder)?),
                 None => None,
@@ -470,7 +470,7 @@ impl<'a, 'o> Run<'a, 'o> {
             }
             let mut best: Option<Band<'a>> = None;
             for path in escapes(&c.band, found, scale) {
-                let mut band = Band::continued(&self.problem.hamiltonian, path, c.band.evaluations());
+                let mut band = Band::continued(self.problem.evaluator(), path, c.band.evaluations());
                 align_rotations(band.path_mut(), &self.axes);
                 band.evaluate();
                 let top = |b: &Band| b.energies_mev()[b.highest()];
@@ -496,7 +496,7 @@ impl<'a, 'o> Run<'a, 'o> {
                 Images::Auto => c.band.images() + 8,
             };
             let Some(path) = zoomed(&c.band, top.as_ref(), images) else { break };
-            c.band = Band::continued(&self.problem.hamiltonian, path, c.band.evaluations());
+            c.band = Band::continued(self.problem.evaluator(), path, c.band.evaluations());
             self.relax(c, Goal::Loose, c.band.evaluations() + 24)?;
             top = highest(&c.band);
         }
@@ -509,7 +509,7 @@ impl<'a, 'o> Run<'a, 'o> {
         if !self.problem.seeks_saddles() {
             return Ok(Vec::new());
         }
-        let h = &self.problem.hamiltonian;
+        let h = self.problem.evaluator();
         let mut found: Vec<Found> = Vec::new();
         for top in tops(&c.band, WINDOW * height(&c.band)) {
             let f = match c.found.as_ref().filter(|f| is_seated(&c.band, top.image, f)) {
@@ -548,7 +548,7 @@ impl<'a, 'o> Run<'a, 'o> {
             Images::Auto => self.scales.images_between(self.problem.chain.sites, moving_sites(a, b)) + 2,
             Images::Count(n) => image_levels(n, |n| make(n).is_ok_and(|p| p.largest_rotation() <= COARSEST))[0],
         };
-        let band = Band::new(&self.problem.hamiltonian, make(coarsest)?);
+        let band = Band::new(self.problem.evaluator(), make(coarsest)?);
         let mut c = Candidate::new(name, band, Stop::NotFinite);
         self.relax(&mut c, Goal::Loose, limit)?;
         Ok(c)
@@ -575,7 +575,7 @@ impl<'a, 'o> Run<'a, 'o> {
             };
             self.observer.stage(&format!("{next} images"));
             let evaluations = c.band.evaluations();
-            c.band = Band::continued(&self.problem.hamiltonian, refined(c.band.path(), next), evaluations);
+            c.band = Band::continued(self.problem.evaluator(), refined(c.band.path(), next), evaluations);
             self.relax(c, Goal::Loose, evaluations + 40)?;
         }
     }
@@ -592,7 +592,7 @@ impl<'a, 'o> Run<'a, 'o> {
 }
 
 /// The minima that two states relax to.
-fn relaxed_ends(h: &Hamiltonian, given: [&Spins; 2]) -> Result<[Relaxed; 2]> {
+fn relaxed_ends(h: Evaluator, given: [&Spins; 2]) -> Result<[Relaxed; 2]> {
     let relax = |spins: &Spins| relax_to_minimum(h, spins, END_TOLERANCE * h.stiffness_mev());
     let (a, b) = both(3 * h.sites(), || relax(given[0]), || relax(given[1]));
     Ok([a?, b?])

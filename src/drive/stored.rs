@@ -9,7 +9,7 @@ use super::minimum::{Link, Minimum};
 use super::outcome::HistoryRow;
 use super::top::Top;
 use super::{Scales, Stop};
-use crate::energy::Hamiltonian;
+use crate::energy::Evaluator;
 use crate::path::Path;
 use crate::saddle::{Refined, Spectrum, State, Verdict};
 use crate::spins::Spins;
@@ -21,16 +21,16 @@ pub trait Stored: Sized {
 
     fn write(&self, w: &mut Writer);
 
-    fn read(r: &mut Reader, h: &Hamiltonian) -> Option<Self>;
+    fn read(r: &mut Reader, h: Evaluator) -> Option<Self>;
 }
 
 /// Spins of a chain of the Hamiltonian's length.
-fn row_of(r: &mut Reader, h: &Hamiltonian) -> Option<Vec<f64>> {
+fn row_of(r: &mut Reader, h: Evaluator) -> Option<Vec<f64>> {
     r.row().filter(|row| row.len() == 3 * h.sites() && are_unit(row))
 }
 
 /// A unit tangent vector (3N) of such a chain.
-fn tangent(r: &mut Reader, h: &Hamiltonian) -> Option<Vec<f64>> {
+fn tangent(r: &mut Reader, h: Evaluator) -> Option<Vec<f64>> {
     r.finite_row().filter(|row| row.len() == 3 * h.sites() && row.iter().all(|x| x.abs() < 2.0))
 }
 
@@ -40,7 +40,7 @@ pub fn are_unit(slab: &[f64]) -> bool {
     (0..n).all(|i| ((0..3).map(|c| slab[c * n + i].powi(2)).sum::<f64>() - 1.0).abs() < 1e-9)
 }
 
-fn spins(r: &mut Reader, h: &Hamiltonian) -> Option<Spins> {
+fn spins(r: &mut Reader, h: Evaluator) -> Option<Spins> {
     row_of(r, h).map(|row| Spins::from_unit_components(&row))
 }
 
@@ -67,7 +67,7 @@ impl Stored for [Relaxed; 2] {
         }
     }
 
-    fn read(r: &mut Reader, h: &Hamiltonian) -> Option<[Relaxed; 2]> {
+    fn read(r: &mut Reader, h: Evaluator) -> Option<[Relaxed; 2]> {
         let mut one = || {
             Some(Relaxed {
                 spins: spins(r, h)?,
@@ -89,7 +89,7 @@ impl Stored for Scales {
         [self.stiffness_mev, self.exchange_mev, self.wall_width_sites].into_iter().for_each(|x| w.real(x));
     }
 
-    fn read(r: &mut Reader, _: &Hamiltonian) -> Option<Scales> {
+    fn read(r: &mut Reader, _: Evaluator) -> Option<Scales> {
         Some(Scales {
             stiffness_mev: r.finite().filter(|c| *c > 0.0)?,
             exchange_mev: r.finite()?,
@@ -120,7 +120,7 @@ impl Stored for Found {
         w.real(refined.rotation_rad);
     }
 
-    fn read(r: &mut Reader, h: &Hamiltonian) -> Option<Found> {
+    fn read(r: &mut Reader, h: Evaluator) -> Option<Found> {
         let top =
             Top { m: row_of(r, h)?, tau: tangent(r, h)?, energy_mev: r.finite()?, s: r.finite()?, image: r.count()? };
         let refined = Refined {
@@ -145,7 +145,7 @@ impl Stored for Vec<Found> {
         self.iter().for_each(|found| found.write(w));
     }
 
-    fn read(r: &mut Reader, h: &Hamiltonian) -> Option<Vec<Found>> {
+    fn read(r: &mut Reader, h: Evaluator) -> Option<Vec<Found>> {
         r.list(|r| Found::read(r, h))
     }
 }
@@ -160,7 +160,7 @@ impl Stored for Spectrum {
         w.row(&self.lowest_mev);
     }
 
-    fn read(r: &mut Reader, _: &Hamiltonian) -> Option<Spectrum> {
+    fn read(r: &mut Reader, _: Evaluator) -> Option<Spectrum> {
         Some(Spectrum {
             negative: r.count()?,
             flat: r.count()?,
@@ -182,7 +182,7 @@ impl Stored for Minimum {
         self.spectrum.write(w);
     }
 
-    fn read(r: &mut Reader, h: &Hamiltonian) -> Option<Minimum> {
+    fn read(r: &mut Reader, h: Evaluator) -> Option<Minimum> {
         Some(Minimum {
             spins: spins(r, h)?,
             energy_mev: r.finite()?,
@@ -208,7 +208,7 @@ impl Stored for Link {
         w.whole(usize::from(self.given));
     }
 
-    fn read(r: &mut Reader, h: &Hamiltonian) -> Option<Link> {
+    fn read(r: &mut Reader, h: Evaluator) -> Option<Link> {
         Some(Link {
             found: Found::read(r, h)?,
             spectrum: Spectrum::read(r, h)?,
@@ -232,7 +232,7 @@ impl Stored for Vec<Path> {
         }
     }
 
-    fn read(r: &mut Reader, h: &Hamiltonian) -> Option<Vec<Path>> {
+    fn read(r: &mut Reader, h: Evaluator) -> Option<Vec<Path>> {
         r.list(|r| {
             let images = r.list(|r| spins(r, h))?;
             (images.len() >= 2).then(|| Path::new(&images))
@@ -256,7 +256,7 @@ impl Stored for Stop {
         w.real(numbers.2);
     }
 
-    fn read(r: &mut Reader, _: &Hamiltonian) -> Option<Stop> {
+    fn read(r: &mut Reader, _: Evaluator) -> Option<Stop> {
         let (word, evaluations, rotation, tolerance) = (r.whole()?, r.count()?, r.finite()?, r.finite()?);
         match word {
             0 => Some(Stop::Converged { rotation, tolerance }),

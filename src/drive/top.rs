@@ -63,7 +63,7 @@ fn beside(band: &Band, profile: &Profile, k: usize) -> Top {
     let near = profile.extrema().into_iter().filter(|x| x.is_maximum && (x.interval == k || x.interval + 1 == k));
     let Some(x) = near.max_by(|p, q| p.energy.total_cmp(&q.energy)) else { return image };
     let top = between(band, profile, &x);
-    let h = band.hamiltonian();
+    let h = band.evaluator();
     let (mut g, mut f) = (vec![0.0; top.m.len()], vec![0.0; top.m.len()]);
     let energy = h.energy_gradient(&top.m, &mut g);
     h.force(&top.m, &g, &mut f);

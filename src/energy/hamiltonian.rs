@@ -9,8 +9,6 @@ use crate::linalg::slab;
 use crate::spins::Spins;
 use rayon::prelude::*;
 use std::ops::Range;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// From this many sites on, the tiles of one image are shared among threads.
 pub const LONG: usize = 32 * 1024;
@@ -33,8 +31,6 @@ pub struct Hamiltonian {
     reach: usize,
     stiffness: f64,
     axes: Vec<Vector>,
-    evaluations: AtomicUsize,
-    stop: Arc<AtomicBool>,
 }
 
 impl Hamiltonian {
@@ -65,8 +61,6 @@ impl Hamiltonian {
             reach,
             stiffness: 0.0,
             axes,
-            evaluations: AtomicUsize::new(0),
-            stop: Arc::default(),
         };
         h.blocks = h.blocks_of(|t| t.is_quadratic(), Components::new(&vec![0.0; 3 * h.sites]));
         let diagonal = |b: super::blocks::Block| b[0][0].abs() + b[1][1].abs() + b[2][2].abs();
@@ -76,7 +70,6 @@ impl Hamiltonian {
             h.energy_gradient(Spins::uniform(h.sites, axis).as_slice(), &mut g);
             h.stiffness = h.stiffness.max(slab::max_abs(&g));
         }
-        h.evaluations = AtomicUsize::new(0);
         Ok(h)
     }
 
@@ -157,7 +150,6 @@ impl Hamiltonian {
 
     /// Energy above the reference (meV), and the Euclidean gradient ∂E/∂m (meV) in `g`.
     pub fn energy_gradient(&self, m: &[f64], g: &mut [f64]) -> f64 {
-        self.evaluations.fetch_add(1, Ordering::Relaxed);
         let far = self.add_far(m, g);
         let tile = |(first, g): (usize, ComponentsMut)| -> f64 {
             let mut density = [0.0; TILE];
@@ -178,7 +170,6 @@ impl Hamiltonian {
         rows: impl Iterator<Item = R>,
         each: impl Fn(Range<usize>, Components, R) + Sync,
     ) -> f64 {
-        self.evaluations.fetch_add(1, Ordering::Relaxed);
         let far = self.add_far(m, g);
         let tile = |(((first, mut g), density), row): (((usize, ComponentsMut), &mut [f64]), R)| -> f64 {
             density.fill(0.0);
@@ -225,32 +216,6 @@ impl Hamiltonian {
         for (_, t) in self.terms.iter().enumerate().filter(|(k, _)| self.long != Some(*k)) {
             t.add_gradient(Components::new(m), g.reborrow(), density, range.clone());
         }
-    }
-
-    /// Gradients computed so far.
-    pub fn evaluations(&self) -> usize {
-        self.evaluations.load(Ordering::Relaxed)
-    }
-
-    /// Counts on from `count`: what a resumed run takes over is counted as in the run that computed it.
-    pub(crate) fn set_evaluations(&self, count: usize) {
-        self.evaluations.store(count, Ordering::Relaxed);
-    }
-
-    /// Stops when this switch is set to true, from any thread: whatever takes long evaluates an energy, so it is here that it
-    /// learns of it. A run then finishes its iteration and ends with [`Error::Stopped`]; the switch is never set back.
-    pub fn obey(&mut self, switch: Arc<AtomicBool>) {
-        self.stop = switch;
-    }
-
-    /// The switch that stops what uses this energy.
-    pub fn switch(&self) -> &Arc<AtomicBool> {
-        &self.stop
-    }
-
-    /// Whether what uses this energy is to stop.
-    pub fn is_stopped(&self) -> bool {
-        self.stop.load(Ordering::Relaxed)
     }
 
     /// −∂E/∂m on the tangent planes (meV), zero on frozen sites, from the Euclidean gradient.

@@ -9,7 +9,7 @@ use super::{
     Equivalents, RateSettings, Theory, Unstable, ZeroKind, crossover_temperature, equivalent_saddles, growth_rate,
     unstable_mode, zero_modes,
 };
-use crate::energy::Hamiltonian;
+use crate::energy::Evaluator;
 use crate::saddle::{Spectrum, State};
 use crate::spins::Spins;
 use crate::units::K_B;
@@ -228,7 +228,7 @@ pub fn refused(
 }
 
 /// The rates over a saddle, forward and backward.
-pub fn saddle_rates(h: &Hamiltonian, number: usize, crossing: &Crossing, settings: &RateSettings) -> [SaddleRate; 2] {
+pub fn saddle_rates(h: Evaluator, number: usize, crossing: &Crossing, settings: &RateSettings) -> [SaddleRate; 2] {
     let barriers = crossing.minima.map(|m| h.difference_mev(&crossing.saddle.m, m.as_slice()));
     let mut rates = match computed(h, number, crossing, settings, barriers) {
         Ok(rates) => rates,
@@ -249,14 +249,14 @@ struct Well {
 
 impl Well {
     fn new(
-        h: &Hamiltonian,
+        h: Evaluator,
         state: State,
         settings: &RateSettings,
         spectrum: &Spectrum,
         valley: Option<&[f64]>,
     ) -> Result<Well, String> {
         let thermal_mev = K_B * settings.temperatures_k.iter().copied().fold(f64::INFINITY, f64::min);
-        let zeros = zero_modes(h, &state, &settings.moments_mub, spectrum.flat, spectrum.floor_mev, thermal_mev)?;
+        let zeros = zero_modes(&h, &state, &settings.moments_mub, spectrum.flat, spectrum.floor_mev, thermal_mev)?;
         let directions: Vec<Vec<f64>> = zeros.iter().flat_map(|z| z.modes.clone()).collect();
         let unstable = match valley {
             None => None,
@@ -288,7 +288,7 @@ impl Well {
 }
 
 fn computed(
-    h: &Hamiltonian,
+    h: Evaluator,
     number: usize,
     crossing: &Crossing,
     settings: &RateSettings,
@@ -314,11 +314,11 @@ fn computed(
     };
     let gyration = settings.gyration_per_s_mev();
     let mut refusals = Vec::new();
-    let conserved = conserved_moment(h, &top.state.m, crossing.minima, settings);
+    let conserved = conserved_moment(&h, &top.state.m, crossing.minima, settings);
     let dense = h.long_range().is_some() && h.sites() > MOST_DENSE;
     let growth = match dense {
         true => None,
-        false => growth_rate(h, &top.state, &unstable, &gyration, settings.damping),
+        false => growth_rate(&h, &top.state, &unstable, &gyration, settings.damping),
     };
     let mut frequency = |theory: Theory| -> Option<f64> {
         if !settings.wants(theory) {
@@ -352,8 +352,8 @@ fn computed(
     let frequencies = Theory::ALL.map(&mut frequency);
     let translating = top.zeros.iter().any(|z| z.kind == ZeroKind::Translation);
     let minima = crossing.minima.map(|m| m.as_slice());
-    let equivalents = equivalent_saddles(h, &top.state.m, minima, &settings.moments_mub, translating);
-    let spread_top = Fluctuations::of_saddle(h, &top.state, &top.pinned, &unstable);
+    let equivalents = equivalent_saddles(&h, &top.state.m, minima, &settings.moments_mub, translating);
+    let spread_top = Fluctuations::of_saddle(&h, &top.state, &top.pinned, &unstable);
     let vague = crossing.spectrum.floor_mev / -unstable.eigenvalue_mev;
     let crossover_k = growth.filter(|g| *g > 0.0 && conserved.is_none()).map(crossover_temperature);
     Ok([0, 1].map(|side| {
@@ -367,7 +367,7 @@ fn computed(
             exponent,
         };
         let [htst, langer] = frequencies.map(|f| f.map(prefactor));
-        let spread = Fluctuations::of_minimum(h, &bottom.state, &bottom.pinned, &unstable);
+        let spread = Fluctuations::of_minimum(&h, &bottom.state, &bottom.pinned, &unstable);
         let validity = Validity {
             barrier_mev: barriers[side],
             damping: langer.map(|_| settings.damping),

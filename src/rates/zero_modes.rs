@@ -168,7 +168,7 @@ mod tests {
         let h = Hamiltonian::new(&chain, vec![Box::new(Exchange::uniform(&chain, &[1.0]))]).unwrap();
         let volume = |m: [[f64; 3]; 4]| {
             let flat: Vec<f64> = (0..3).flat_map(|c| m.iter().map(move |v| v[c])).collect();
-            rotation_volume(&h, &State::at(&h, flat))
+            rotation_volume(&h, &State::at((&h).into(), flat))
         };
         let (x, z) = ([1.0, 0.0, 0.0], [0.0, 0.0, 1.0]);
         assert!((volume([z; 4]) - 16.0 * PI).abs() < 1e-12);
@@ -183,7 +183,7 @@ mod tests {
             vec![Box::new(Exchange::uniform(&chain, &[1.0])), Box::new(Anisotropy::uniform(2, 0.1, Direction::Z))];
         let h = Hamiltonian::new(&chain, terms).unwrap();
         let (s, c) = libm::sincos(0.4);
-        let state = State::at(&h, vec![s, 1.0, 0.0, 0.0, c, 0.0]);
+        let state = State::at((&h).into(), vec![s, 1.0, 0.0, 0.0, c, 0.0]);
         assert!((rotation_volume(&h, &state) - 2.0 * PI * (1.0 + s * s).sqrt()).abs() < 1e-12);
     }
 }

@@ -11,7 +11,7 @@ use super::point::Point;
 use super::spectrum::Spectrum;
 use super::state::State;
 use super::trail::Trail;
-use crate::energy::Hamiltonian;
+use crate::energy::Evaluator;
 use crate::field::project;
 use crate::linalg::{Banded, Ldl, slab};
 use crate::sphere::rotation_of;
@@ -65,7 +65,7 @@ pub struct Descent {
 }
 
 /// Descends from a saddle along ± its valley (a unit field of 3N numbers); c is the stiffness scale (meV).
-pub fn descend(h: &Hamiltonian, saddle: &State, valley: &[f64], c: f64) -> Descent {
+pub fn descend(h: Evaluator, saddle: &State, valley: &[f64], c: f64) -> Descent {
     let mut walk = Walk {
         h,
         c,
@@ -82,7 +82,7 @@ pub fn descend(h: &Hamiltonian, saddle: &State, valley: &[f64], c: f64) -> Desce
 
 /// A descent on its way.
 struct Walk<'a> {
-    h: &'a Hamiltonian,
+    h: Evaluator<'a>,
     c: f64,
     here: Point,
     /// Where the step that is being tried leads.

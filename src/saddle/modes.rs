@@ -13,7 +13,7 @@ use super::pinned::Pinned;
 use super::polish::polish;
 use super::state::State;
 use super::valley::{Refined, Verdict};
-use crate::energy::Hamiltonian;
+use crate::energy::Evaluator;
 use crate::linalg::{Mode, lowest_modes, slab, soft_modes};
 use crate::path::largest_angle;
 use crate::sphere::rotation_of;
@@ -38,7 +38,7 @@ const TIGHT: f64 = 1e-13;
 const LAST_STEPS: usize = 12;
 
 /// The saddle of index one that mode following reaches from `m`, if it reaches one nearby; c is the stiffness scale (meV).
-pub fn follow_modes(h: &Hamiltonian, m: &[f64], c: f64) -> Option<Refined> {
+pub fn follow_modes(h: Evaluator, m: &[f64], c: f64) -> Option<Refined> {
     let kappa = (h.stiffness_mev() / 3.0).max(c);
     let mut state = State::at(h, m.to_vec());
     let mut radius = RADIUS / 3.0;
@@ -103,7 +103,7 @@ impl Frame {
     }
 
     /// The next state, with a radius for the step after it; none where no step tells the energy well enough.
-    fn advance(&self, h: &Hamiltonian, state: &State, radius: &mut f64, steps: &mut usize) -> Option<State> {
+    fn advance(&self, h: Evaluator, state: &State, radius: &mut f64, steps: &mut usize) -> Option<State> {
         loop {
             *steps += 1;
             if *steps > STEPS || *radius < 1e-7 || h.is_stopped() {

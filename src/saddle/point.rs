@@ -1,6 +1,6 @@
 //! A configuration with its energy, gradient and tangent basis, in memory that is used again for the next one.
 
-use crate::energy::{Hamiltonian, TangentBasis, assemble_into};
+use crate::energy::{Evaluator, TangentBasis, assemble_into};
 use crate::field::{Components, TILE};
 use crate::linalg::{Banded, slab};
 use crate::saddle::orthonormal;
@@ -27,25 +27,25 @@ pub struct Point {
 
 impl Point {
     /// At the spins `m`.
-    pub fn at(h: &Hamiltonian, m: Vec<f64>) -> Point {
+    pub fn at(h: Evaluator, m: Vec<f64>) -> Point {
         let mut point = Point { m, ..Point::default() };
         point.evaluate(h);
         point
     }
 
     /// Goes where a move of another point's spins along a vector field leads.
-    pub fn go(&mut self, h: &Hamiltonian, from: &Point, v: &[f64]) {
+    pub fn go(&mut self, h: Evaluator, from: &Point, v: &[f64]) {
         self.m.clone_from(&from.m);
         self.move_by(h, v);
     }
 
     /// Goes on along a vector field.
-    pub fn move_by(&mut self, h: &Hamiltonian, v: &[f64]) {
+    pub fn move_by(&mut self, h: Evaluator, v: &[f64]) {
         move_points(&mut self.m, v, v.len(), 1.0);
         self.evaluate(h);
     }
 
-    fn evaluate(&mut self, h: &Hamiltonian) {
+    fn evaluate(&mut self, h: Evaluator) {
         let Point { m, density, gradient, basis, slope, .. } = self;
         let n = m.len() / 3;
         gradient.resize(3 * n, 0.0);
@@ -92,8 +92,8 @@ impl Point {
     }
 
     /// The Riemannian Hessian plus shift·1 in tangent coordinates (meV), in the memory of `matrix`.
-    pub fn write_hessian(&self, h: &Hamiltonian, shift: f64, matrix: &mut Banded) {
-        assemble_into(h, &self.m, &self.gradient, &self.basis, shift, matrix);
+    pub fn write_hessian(&self, h: Evaluator, shift: f64, matrix: &mut Banded) {
+        assemble_into(&h, &self.m, &self.gradient, &self.basis, shift, matrix);
     }
 
     /// Energy above that of another point (meV), summed from differences of densities.

@@ -4,7 +4,7 @@
 
 use super::border::pin;
 use super::state::{State, remove};
-use crate::energy::Hamiltonian;
+use crate::energy::Evaluator;
 use crate::sphere::rotation_of;
 
 /// Most steps.
@@ -14,7 +14,7 @@ const FARTHEST: f64 = 0.05;
 
 /// The stationary point that `state` all but is, the zero modes left as they are. A state from which Newton's method leads far
 /// away, or nowhere, is given back as it came.
-pub fn polish(h: &Hamiltonian, state: State) -> State {
+pub fn polish(h: Evaluator, state: State) -> State {
     let mut best = state.clone();
     let mut state = state;
     for _ in 0..STEPS {
@@ -30,7 +30,7 @@ pub fn polish(h: &Hamiltonian, state: State) -> State {
     best
 }
 
-fn newton(h: &Hamiltonian, state: &State) -> Option<State> {
+fn newton(h: Evaluator, state: &State) -> Option<State> {
     let mut matrix = state.hessian.clone();
     let mut used = Vec::new();
     for z in &state.zeros {

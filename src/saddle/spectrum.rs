@@ -6,7 +6,7 @@
 use super::border::pin;
 use super::point::Point;
 use super::state::State;
-use crate::energy::Hamiltonian;
+use crate::energy::Evaluator;
 use crate::linalg::{Banded, Ldl, lowest_modes};
 use std::mem::take;
 
@@ -29,7 +29,7 @@ pub struct Spectrum {
 
 impl Spectrum {
     /// Of a state, with `count` of its eigenvalues. The counts of signs cost two factorisations; eigenvalues cost far more.
-    pub fn of(h: &Hamiltonian, state: &State, count: usize) -> Spectrum {
+    pub fn of(h: Evaluator, state: &State, count: usize) -> Spectrum {
         let norm_mev = state.hessian.norm1();
         let floor_mev = floor_mev(h, norm_mev);
         let below = |shift: f64| pinned(h, state.hessian.clone(), &state.zeros, shift).negatives();
@@ -43,7 +43,7 @@ impl Spectrum {
     }
 
     /// Negative directions at a point, zero modes apart: one factorisation, in the memory of `matrix`.
-    pub fn negatives(h: &Hamiltonian, point: &Point, matrix: &mut Banded) -> usize {
+    pub fn negatives(h: Evaluator, point: &Point, matrix: &mut Banded) -> usize {
         point.write_hessian(h, 0.0, matrix);
         let floor = floor_mev(h, matrix.norm1());
         let factors = pinned(h, take(matrix), &point.zeros, floor);
@@ -64,7 +64,7 @@ impl Spectrum {
 }
 
 /// The factors of a Hessian + shift·1 whose zero modes are pinned.
-fn pinned(h: &Hamiltonian, mut matrix: Banded, zeros: &[Vec<f64>], shift: f64) -> Ldl {
+fn pinned(h: Evaluator, mut matrix: Banded, zeros: &[Vec<f64>], shift: f64) -> Ldl {
     let mut used = Vec::new();
     for z in zeros {
         pin(&mut matrix, z, &mut used, h.stiffness_mev());
@@ -74,7 +74,7 @@ fn pinned(h: &Hamiltonian, mut matrix: Banded, zeros: &[Vec<f64>], shift: f64) -
 }
 
 /// What an eigenvalue must exceed in size to have a sign (meV): the rounding error, or what a long-ranged Hessian leaves out.
-fn floor_mev(h: &Hamiltonian, norm_mev: f64) -> f64 {
+fn floor_mev(h: Evaluator, norm_mev: f64) -> f64 {
     let left_out = h.long_range().map_or(0.0, |long| long.error_mev(true));
     (8.0 * f64::EPSILON * norm_mev).max(left_out)
 }

@@ -1,7 +1,7 @@
 //! A configuration with its Hessian.
 
 use super::point::Point;
-use crate::energy::Hamiltonian;
+use crate::energy::Evaluator;
 use crate::linalg::{Banded, Mode, lowest_modes, slab};
 use crate::sphere::move_points;
 use std::ops::Deref;
@@ -25,12 +25,12 @@ impl Deref for State {
 
 impl State {
     /// At the spins `m`.
-    pub fn at(h: &Hamiltonian, m: Vec<f64>) -> State {
+    pub fn at(h: Evaluator, m: Vec<f64>) -> State {
         State::of(h, Point::at(h, m))
     }
 
     /// At a point.
-    pub fn of(h: &Hamiltonian, point: Point) -> State {
+    pub fn of(h: Evaluator, point: Point) -> State {
         let mut hessian = Banded::default();
         point.write_hessian(h, 0.0, &mut hessian);
         State { point, hessian }

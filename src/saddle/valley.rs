@@ -12,7 +12,7 @@
 use super::pinned::Pinned;
 use super::polish::polish;
 use super::state::{State, orthonormal, remove};
-use crate::energy::Hamiltonian;
+use crate::energy::Evaluator;
 use crate::linalg::{Mode, lowest_modes, slab};
 use crate::path::{distance, largest_angle};
 use crate::sphere::rotation_of;
@@ -62,7 +62,7 @@ pub struct Refined {
 
 /// The search's memory.
 struct Search<'a> {
-    h: &'a Hamiltonian,
+    h: Evaluator<'a>,
     c: f64,
     kappa: f64,
     start: Vec<f64>,
@@ -91,7 +91,7 @@ enum Next {
 }
 
 /// Refines `m` to the saddle along the path direction `tau` (3N); `c` is the stiffness scale (meV).
-pub fn refine(h: &Hamiltonian, m: &[f64], tau: &[f64], c: f64) -> Refined {
+pub fn refine(h: Evaluator, m: &[f64], tau: &[f64], c: f64) -> Refined {
     let state = State::at(h, m.to_vec());
     let tau = unit_tangent(&state.m, tau);
     let kappa = (h.stiffness_mev() / 3.0).max(c);

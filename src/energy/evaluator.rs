@@ -1,0 +1,82 @@
+//! An energy in use: whoever evaluates it is counted, and learns that it is to stop.
+
+use super::Hamiltonian;
+use crate::control::Control;
+use crate::field::Components;
+use std::ops::{Deref, Range};
+
+/// A [`Hamiltonian`] whose gradients are counted by a [`Control`], if there is one.
+#[derive(Clone, Copy, Debug)]
+pub struct Evaluator<'a> {
+    hamiltonian: &'a Hamiltonian,
+    control: Option<&'a Control>,
+}
+
+impl<'a> Evaluator<'a> {
+    /// Counted and stopped by `control`.
+    pub fn new(hamiltonian: &'a Hamiltonian, control: &'a Control) -> Evaluator<'a> {
+        Evaluator { hamiltonian, control: Some(control) }
+    }
+
+    /// The energy itself.
+    pub fn hamiltonian(&self) -> &'a Hamiltonian {
+        self.hamiltonian
+    }
+
+    /// [`Hamiltonian::energy_gradient`], counted.
+    pub fn energy_gradient(&self, m: &[f64], g: &mut [f64]) -> f64 {
+        self.count();
+        self.hamiltonian.energy_gradient(m, g)
+    }
+
+    /// [`Hamiltonian::density_gradient`], counted.
+    pub fn density_gradient<R: Send>(
+        &self,
+        m: &[f64],
+        g: &mut [f64],
+        density: &mut [f64],
+        rows: impl Iterator<Item = R>,
+        each: impl Fn(Range<usize>, Components, R) + Sync,
+    ) -> f64 {
+        self.count();
+        self.hamiltonian.density_gradient(m, g, density, rows, each)
+    }
+
+    /// Whether what uses this energy is to stop.
+    pub fn is_stopped(&self) -> bool {
+        self.control.is_some_and(Control::is_stopped)
+    }
+
+    /// Gradients of one image counted so far.
+    pub fn evaluations(&self) -> usize {
+        self.control.map_or(0, Control::evaluations)
+    }
+
+    /// See [`Control::set_evaluations`].
+    pub(crate) fn set_evaluations(&self, count: usize) {
+        if let Some(control) = self.control {
+            control.set_evaluations(count);
+        }
+    }
+
+    fn count(&self) {
+        if let Some(control) = self.control {
+            control.count();
+        }
+    }
+}
+
+impl<'a> From<&'a Hamiltonian> for Evaluator<'a> {
+    /// Not counted, never stopped.
+    fn from(hamiltonian: &'a Hamiltonian) -> Evaluator<'a> {
+        Evaluator { hamiltonian, control: None }
+    }
+}
+
+impl Deref for Evaluator<'_> {
+    type Target = Hamiltonian;
+
+    fn deref(&self) -> &Hamiltonian {
+        self.hamiltonian
+    }
+}
