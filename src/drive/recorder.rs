@@ -77,7 +77,7 @@ impl Recorder {
         if self.keep.is_none() {
             return;
         }
-        let h = problem.evaluator();
+        let h = &problem.hamiltonian;
         let mut print = Fingerprint::default().real(h.reference_mev()).real(h.stiffness_mev());
         for spins in [&problem.initial, &problem.final_state] {
             let mut gradient = vec![0.0; 3 * h.sites()];
