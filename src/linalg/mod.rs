@@ -1,5 +1,6 @@
-//! Linear algebra of chains: banded symmetric matrices, with or without a long-ranged tail, and their LDLᵀ, banded ones without
-//! symmetry and their LU, the small dense matrices beside them, the Fourier transform, and numbers of twice the digits.
+//! Linear algebra of chains and lattices: banded symmetric matrices, with or without a long-ranged tail, and their LDLᵀ, banded ones without
+//! symmetry and their LU, sparse symmetric ones of any lattice, the small dense matrices beside them, the Fourier transform, and
+//! numbers of twice the digits.
 
 mod banded;
 mod double_double;
@@ -10,6 +11,7 @@ mod lowest;
 pub mod slab;
 mod slices;
 mod small;
+mod sparse;
 mod tail;
 mod tail_ldl;
 mod tridiagonal;
@@ -22,5 +24,6 @@ pub use general::{General, Lu};
 pub use ldl::Ldl;
 pub use lowest::{Mode, lowest_modes, rayleigh_ritz, soft_modes};
 pub use small::{eigen_symmetric, eigenvalues_symmetric, solve_dense};
+pub use sparse::{Graph, SparseLdl, SparseMatrix, Symbolic, nested_dissection};
 pub use tail::{Decays, Tail};
 pub use tail_ldl::TailLdl;

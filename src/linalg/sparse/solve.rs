@@ -1,0 +1,101 @@
+//! Substitution with sparse factors: up the tree with L, down with Lᵀ.
+
+use super::Symbolic;
+use super::ldl::Memory;
+use super::panels::{self, WIDTH};
+
+/// Solves L D Lᵀ X = B in place for `columns` interleaved right-hand sides, four, two or one in a pass.
+pub(super) fn solve(plan: &Symbolic, factors: &Memory, x: &mut [f64], columns: usize) {
+    let mut first = 0;
+    while first < columns {
+        match columns - first {
+            1 => pass::<1>(plan, factors, x, columns, first),
+            2 | 3 => pass::<2>(plan, factors, x, columns, first),
+            _ => pass::<4>(plan, factors, x, columns, first),
+        }
+        first += [0, 1, 2, 2, 4][(columns - first).min(4)];
+    }
+}
+
+/// C columns, from `first` on.
+fn pass<const C: usize>(plan: &Symbolic, factors: &Memory, x: &mut [f64], columns: usize, first: usize) {
+    let mut y = vec![[[0.0; C]; 2]; plan.place.len()];
+    for (i, place) in plan.place.iter().enumerate() {
+        for u in 0..2 {
+            y[*place as usize][u].copy_from_slice(&x[(2 * i + u) * columns + first..][..C]);
+        }
+    }
+    let mut w = vec![[0.0; C]; plan.most_rows];
+    for front in &plan.fronts {
+        let w = &mut w[..front.rows()];
+        w.fill([0.0; C]);
+        pairs(w, 0).iter_mut().zip(&y[front.own.clone()]).for_each(|(w, y)| *w = *y);
+        forward(&factors.l[front.entries.clone()], front.panels, w);
+        y[front.own.clone()].iter_mut().zip(pairs(w, 0)).for_each(|(y, w)| *y = *w);
+        for (place, w) in plan.others[front.others.clone()].iter().zip(pairs(w, front.own_rows())) {
+            let y = y[*place as usize].as_flattened_mut();
+            y.iter_mut().zip(w.as_flattened()).for_each(|(y, w)| *y += w);
+        }
+    }
+    for front in plan.fronts.iter().rev() {
+        let w = &mut w[..front.rows()];
+        w[..front.own_rows()].fill([0.0; C]);
+        pairs(w, 0).iter_mut().zip(&y[front.own.clone()]).for_each(|(w, y)| *w = *y);
+        let others = &plan.others[front.others.clone()];
+        pairs(w, front.own_rows()).iter_mut().zip(others).for_each(|(w, place)| *w = y[*place as usize]);
+        let d = &factors.d[front.pivot..front.pivot + front.own_rows()];
+        w.iter_mut().zip(d).for_each(|(w, d)| w.iter_mut().for_each(|w| *w /= d));
+        backward(&factors.l[front.entries.clone()], front.panels, w);
+        y[front.own.clone()].iter_mut().zip(pairs(w, 0)).for_each(|(y, w)| *y = *w);
+    }
+    for (i, place) in plan.place.iter().enumerate() {
+        for u in 0..2 {
+            x[(2 * i + u) * columns + first..][..C].copy_from_slice(&y[*place as usize][u]);
+        }
+    }
+}
+
+/// The two rows of every site from `first` on.
+fn pairs<const C: usize>(w: &mut [[f64; C]], first: usize) -> &mut [[[f64; C]; 2]] {
+    w[first..].as_chunks_mut().0
+}
+
+/// w ← L⁻¹ w, where the unknowns that are not the front's own take −L w.
+fn forward<const C: usize>(l: &[f64], panels: usize, w: &mut [[f64; C]]) {
+    let rows = w.len();
+    for p in 0..panels {
+        let (square, below) = l[panels::first(rows, p)..panels::first(rows, p + 1)].split_at(WIDTH * WIDTH);
+        let (own, rest) = w[WIDTH * p..].split_at_mut(WIDTH);
+        for r in 1..WIDTH {
+            for k in 0..r {
+                (0..C).for_each(|c| own[r][c] -= square[WIDTH * r + k] * own[k][c]);
+            }
+        }
+        for (l, w) in below.as_chunks::<WIDTH>().0.iter().zip(rest) {
+            for c in 0..C {
+                w[c] -= (l[0] * own[0][c] + l[1] * own[1][c]) + (l[2] * own[2][c] + l[3] * own[3][c]);
+            }
+        }
+    }
+}
+
+/// w ← L⁻ᵀ w of the front's own unknowns, where the others are known.
+fn backward<const C: usize>(l: &[f64], panels: usize, w: &mut [[f64; C]]) {
+    let rows = w.len();
+    for p in (0..panels).rev() {
+        let (square, below) = l[panels::first(rows, p)..panels::first(rows, p + 1)].split_at(WIDTH * WIDTH);
+        let (own, rest) = w[WIDTH * p..].split_at_mut(WIDTH);
+        let mut sums = [[0.0; C]; WIDTH];
+        for (l, w) in below.as_chunks::<WIDTH>().0.iter().zip(rest) {
+            for k in 0..WIDTH {
+                (0..C).for_each(|c| sums[k][c] += l[k] * w[c]);
+            }
+        }
+        for k in (0..WIDTH).rev() {
+            for r in k + 1..WIDTH {
+                (0..C).for_each(|c| sums[k][c] += square[WIDTH * r + k] * own[r][c]);
+            }
+            (0..C).for_each(|c| own[k][c] -= sums[k][c]);
+        }
+    }
+}

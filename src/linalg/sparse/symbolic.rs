@@ -1,0 +1,219 @@
+//! What of a factorisation follows from the pattern alone: the fronts, where everything stands in them, memory and arithmetic.
+
+use super::panels::{self, SITES, WIDTH};
+use super::supernodes::{self, Group, NONE};
+use super::{Graph, nested_dissection};
+use std::ops::Range;
+
+/// The plan of the LDLᵀ of all matrices of a graph; computed once a lattice.
+#[derive(Clone, Debug, Default)]
+pub struct Symbolic {
+    pub(super) graph: Graph,
+    /// When every site is eliminated.
+    pub(super) place: Vec<u32>,
+    pub(super) fronts: Vec<Front>,
+    /// The places of the other sites of the fronts, ascending in each.
+    pub(super) others: Vec<u32>,
+    /// Where those stand in the front above, in sites.
+    pub(super) slots: Vec<u32>,
+    pub(super) children: Vec<u32>,
+    /// Where the blocks of the matrix stand in the fronts.
+    pub(super) targets: Vec<Target>,
+    /// Entries of L.
+    pub(super) entries: usize,
+    /// Pivots, with those that fill the last panel of a front.
+    pub(super) pivots: usize,
+    /// Rows of the largest front.
+    pub(super) most_rows: usize,
+    /// Most entries that wait in either stack.
+    pub(super) waiting: [usize; 2],
+    flops: f64,
+}
+
+/// Sites that are eliminated together, and those they are coupled to then.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Front {
+    /// Places of its own sites.
+    pub own: Range<usize>,
+    /// Its other sites in `others`.
+    pub others: Range<usize>,
+    /// Panels of own columns.
+    pub panels: usize,
+    /// Its columns of L.
+    pub entries: Range<usize>,
+    /// Its first pivot.
+    pub pivot: usize,
+    pub children: Range<usize>,
+    pub targets: Range<usize>,
+    /// The stack that takes what is left: not that of its children.
+    pub stack: usize,
+}
+
+impl Front {
+    /// Rows of the own sites, whole panels.
+    pub fn own_rows(&self) -> usize {
+        WIDTH * self.panels
+    }
+
+    /// Rows of the other sites.
+    pub fn other_rows(&self) -> usize {
+        2 * self.others.len()
+    }
+
+    pub fn rows(&self) -> usize {
+        self.own_rows() + self.other_rows()
+    }
+
+    /// Entries of what is left for the front above.
+    pub fn left(&self) -> usize {
+        panels::length(self.other_rows(), self.others.len().div_ceil(SITES))
+    }
+}
+
+/// A block of the matrix in the columns of a front: where its first entry stands, and whether the site of its column is
+/// eliminated last, so that it stands there mirrored.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Target {
+    pub block: u32,
+    pub mirrored: bool,
+    /// From the first entry of the front.
+    pub at: usize,
+}
+
+impl Symbolic {
+    /// The plan for sites at these positions: nested dissection.
+    pub fn of(graph: Graph, positions: &[[f64; 3]]) -> Symbolic {
+        let order = nested_dissection(&graph, positions);
+        Symbolic::in_order(graph, &order)
+    }
+
+    /// The plan that eliminates in a given order, but for changes that save time and add nothing to the factors.
+    pub fn in_order(graph: Graph, order: &[u32]) -> Symbolic {
+        let groups = supernodes::groups(&graph, order);
+        let mut place = vec![0; order.len()];
+        let sites = groups.iter().flat_map(|g| &g.own);
+        sites.enumerate().for_each(|(k, i)| place[*i as usize] = k as u32);
+        let mut plan = Symbolic { graph, place, ..Symbolic::default() };
+        plan.set_fronts(&groups);
+        plan.set_slots();
+        plan.set_targets(&groups);
+        plan.set_sizes();
+        plan
+    }
+
+    /// Number of unknowns.
+    pub fn order(&self) -> usize {
+        2 * self.graph.sites()
+    }
+
+    /// The graph of the matrices.
+    pub fn graph(&self) -> &Graph {
+        &self.graph
+    }
+
+    /// Memory of a matrix, its factors and their computation, in bytes.
+    pub fn bytes(&self) -> usize {
+        let numbers = 4 * self.graph.block_count() + self.entries + self.pivots + self.waiting[0] + self.waiting[1];
+        numbers * size_of::<f64>()
+    }
+
+    /// Additions and multiplications of a factorisation.
+    pub fn flops(&self) -> f64 {
+        self.flops
+    }
+
+    /// The sites of every front: own ones, and what those and the fronts below reach.
+    fn set_fronts(&mut self, groups: &[Group]) {
+        let mut seen = vec![NONE; self.place.len()];
+        for (k, group) in groups.iter().enumerate() {
+            let first = self.fronts.last().map_or(0, |f: &Front| f.own.end);
+            let own = first..first + group.own.len();
+            let start = self.others.len();
+            let mut found = |place: u32, others: &mut Vec<u32>| {
+                if place as usize >= own.end && seen[place as usize] != k as u32 {
+                    seen[place as usize] = k as u32;
+                    others.push(place);
+                }
+            };
+            for i in &group.own {
+                let partners = self.graph.partners(*i as usize).iter();
+                partners.for_each(|j| found(self.place[*j as usize], &mut self.others));
+            }
+            for c in &group.children {
+                let below = self.fronts[*c].others.clone();
+                below.for_each(|e| found(self.others[e], &mut self.others));
+            }
+            self.others[start..].sort_unstable();
+            let children = self.children.len()..self.children.len() + group.children.len();
+            self.children.extend(group.children.iter().map(|c| *c as u32));
+            let panels = own.len().div_ceil(SITES);
+            self.fronts.push(Front { own, others: start..self.others.len(), panels, children, ..Front::default() });
+        }
+    }
+
+    /// Where the other sites of every front stand in the one above it.
+    fn set_slots(&mut self) {
+        self.slots = vec![0; self.others.len()];
+        let mut slot = vec![0; self.place.len()];
+        for front in &self.fronts {
+            front.own.clone().enumerate().for_each(|(k, place)| slot[place] = k as u32);
+            let first = SITES * front.panels;
+            let others = &self.others[front.others.clone()];
+            others.iter().enumerate().for_each(|(k, place)| slot[*place as usize] = (first + k) as u32);
+            for c in &self.children[front.children.clone()] {
+                for e in self.fronts[*c as usize].others.clone() {
+                    self.slots[e] = slot[self.others[e] as usize];
+                }
+            }
+        }
+    }
+
+    /// Where the blocks of the matrix stand.
+    fn set_targets(&mut self, groups: &[Group]) {
+        let mut slot = vec![0; self.place.len()];
+        for (front, group) in self.fronts.iter_mut().zip(groups) {
+            front.own.clone().enumerate().for_each(|(k, place)| slot[place] = k);
+            let first = SITES * front.panels;
+            let others = &self.others[front.others.clone()];
+            others.iter().enumerate().for_each(|(k, place)| slot[*place as usize] = first + k);
+            let (start, rows) = (self.targets.len(), front.rows());
+            for (column, i) in group.own.iter().enumerate() {
+                let i = *i as usize;
+                let partners = self.graph.partners(i).iter().map(|j| *j as usize);
+                for j in partners.filter(|j| self.place[*j] > self.place[i]).chain([i]) {
+                    let Some(block) = self.graph.block(i.max(j), i.min(j)) else { continue };
+                    let panel = column / SITES;
+                    let (row, within) = (2 * slot[self.place[j] as usize], 2 * (column % SITES));
+                    let at = panels::first(rows, panel) + WIDTH * (row - WIDTH * panel) + within;
+                    self.targets.push(Target { block: block as u32, mirrored: i > j, at });
+                }
+            }
+            front.targets = start..self.targets.len();
+        }
+    }
+
+    /// Where the fronts stand in the memory of the factors, and which stack takes what they leave.
+    fn set_sizes(&mut self) {
+        for k in (0..self.fronts.len()).rev() {
+            let stack = self.fronts[k].stack;
+            for c in &self.children[self.fronts[k].children.clone()] {
+                self.fronts[*c as usize].stack = 1 - stack;
+            }
+        }
+        let mut waiting = [0; 2];
+        for k in 0..self.fronts.len() {
+            let front = &mut self.fronts[k];
+            let length = panels::length(front.rows(), front.panels);
+            (front.entries, front.pivot) = (self.entries..self.entries + length, self.pivots);
+            self.entries += length;
+            self.pivots += front.own_rows();
+            self.most_rows = self.most_rows.max(front.rows());
+            self.flops += supernodes::flops(front.own.len(), front.others.len());
+            waiting[front.stack] += front.left();
+            self.waiting[front.stack] = self.waiting[front.stack].max(waiting[front.stack]);
+            let front = &self.fronts[k];
+            let children = &self.children[front.children.clone()];
+            waiting[1 - front.stack] -= children.iter().map(|c| self.fronts[*c as usize].left()).sum::<usize>();
+        }
+    }
+}
