@@ -10,7 +10,7 @@ use spinneb::output::canvas::{Look, Style};
 use spinneb::output::disk;
 use spinneb::output::{
     EnergyPath, EnergyPathPlot, Format, HistoryCsv, KINDS, PLOTS, PathCsv, Picture, PlotFile, ProfileCsv, ReportPage,
-    RunReport, Summary, draw_energy_paths, file_names, render_files,
+    RunReport, SummaryJson, draw_energy_paths, file_names, render_files,
 };
 use spinneb::path::Path;
 use spinneb::spins::Spins;
@@ -287,14 +287,14 @@ fn the_summary_is_exactly_so() {
   }
 }
 "#;
-    assert_eq!(text(&Summary, &tiny()), expected);
+    assert_eq!(text(&SummaryJson, &tiny()), expected);
 }
 
 #[test]
 fn a_missing_barrier_is_null() {
     let mut o = tiny();
     (o.barrier, o.highest_climb) = (None, None);
-    let json: serde_json::Value = serde_json::from_str(&text(&Summary, &o)).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&text(&SummaryJson, &o)).unwrap();
     for key in ["barrier_meV", "barrier_J", "barrier_K", "highest_climb_meV"] {
         assert_eq!(json.get(key), Some(&serde_json::Value::Null));
     }
@@ -307,7 +307,7 @@ fn a_number_that_is_not_finite_is_an_error_with_its_place() {
     o.images.energy_mev[2] = f64::INFINITY;
     o.images.above_initial_mev[2] = f64::INFINITY;
     let message = |format: &dyn Format| format.render(&report(&o)).unwrap_err().to_string();
-    assert_eq!(message(&Summary), "summary.json: saddles[0].lowest_eigenvalues_meV[0]: NaN is not a finite number");
+    assert_eq!(message(&SummaryJson), "summary.json: saddles[0].lowest_eigenvalues_meV[0]: NaN is not a finite number");
     assert_eq!(message(&PathCsv), "path.csv: energy_meV, row 3: inf is not a finite number");
     assert!(message(&PlotFile { plot: &EnergyPathPlot, picture: Picture::Svg }).contains("not finite"));
 }

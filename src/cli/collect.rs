@@ -70,7 +70,7 @@ pub fn collect(arguments: &Collect) -> Result<u8> {
         }
     }
     write(&index, &dir, &states, arguments.quiet, false)?;
-    let proven = |state: &PointState| state.found().is_some_and(Found::is_proven);
+    let proven = |state: &PointState| state.found().is_some_and(|f| f.head.is_proven());
     Ok(if states.iter().all(proven) { 0 } else { UNFINISHED })
 }
 
@@ -130,7 +130,7 @@ fn few(points: &[usize]) -> String {
 /// A result in a few words.
 pub(super) fn words(found: &Found) -> String {
     let barrier = found.barrier.map_or("no barrier".into(), |b| format!("barrier {:.6} meV", b.forward_mev));
-    format!("{barrier}, {}certified", if found.is_proven() { "" } else { "not " })
+    format!("{barrier}, {}certified", if found.head.is_proven() { "" } else { "not " })
 }
 
 /// A point as a line of JSON.
@@ -145,8 +145,8 @@ pub(super) fn json_line(index: &SweepIndex, dir: &Path, k: usize, state: &PointS
         "values": values,
         "state": state.word(),
         "barrier_meV": both,
-        "converged": found.map(|f| f.converged),
-        "certified": found.map(|f| f.certified),
+        "converged": found.map(|f| f.head.converged),
+        "certified": found.map(|f| f.head.certified),
         "directory": dir.join(&point.directory).to_string_lossy(),
     })
 }

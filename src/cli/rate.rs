@@ -31,13 +31,13 @@ fn rate_one(arguments: &Rate, directory: &Path) -> Result<u8> {
         return Ok(USAGE);
     };
     let mut loaded = load(&directory.join("config.json"), &[])?;
-    if loaded.sha256 != stored.config_sha256 {
+    if loaded.sha256 != stored.head.config_sha256 {
         note(&format!("error: {place}: config.json is not the config of summary.json: run it anew"));
         return Ok(USAGE);
     }
     let Some(manifest) = stored.manifest else {
         let words = "has no manifest of its files, so none of them is replaced: run its config anew";
-        note(&format!("error: {place}: the result of version {} {words}", stored.version));
+        note(&format!("error: {place}: the result of version {} {words}", stored.head.version));
         return Ok(USAGE);
     };
     folder::are_free(directory, &names(&loaded))?;
@@ -66,7 +66,7 @@ fn rate_one(arguments: &Rate, directory: &Path) -> Result<u8> {
 
 /// The outcome as stored, with the rates over its own saddles and minima; why it cannot be had that way, if so.
 fn from_files(loaded: &Loaded, problem: &Problem, directory: &Path) -> Result<std::result::Result<Outcome, String>> {
-    let StoredOutcome { mut outcome, minima } = match StoredOutcome::read(directory)? {
+    let StoredOutcome { outcome, minima } = match StoredOutcome::read(directory)? {
         Ok(stored) => stored,
         Err(why) => return Ok(Err(why)),
     };
@@ -78,12 +78,10 @@ fn from_files(loaded: &Loaded, problem: &Problem, directory: &Path) -> Result<st
         Err(why) => return Ok(Err(format!("the states in its files do not prove themselves: {why}"))),
     };
     // in the place that a run gives them
-    let own = |w: &String| is_said_of_rates(w) || loaded.warnings.contains(w);
-    outcome.warnings.retain(|w| !own(w));
-    outcome.warnings.extend(rates_warnings(&rates));
-    outcome.warnings.extend(loaded.warnings.iter().cloned());
-    outcome.rates = Some(rates);
-    Ok(Ok(outcome))
+    let own = |w: &&String| is_said_of_rates(w) || loaded.warnings.contains(w);
+    let others = outcome.warnings.iter().filter(|w| !own(w)).cloned();
+    let warnings = others.chain(rates_warnings(&rates)).chain(loaded.warnings.iter().cloned()).collect();
+    Ok(Ok(Outcome { warnings, rates: Some(rates), ..outcome }))
 }
 
 /// The `rates` that the command line stands for.

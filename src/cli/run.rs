@@ -11,7 +11,7 @@ use spinneb::error::Error;
 use spinneb::output::disk::{self, File};
 use spinneb::output::folder::{self, Destination, Intent, NewResult};
 use spinneb::output::{
-    Certainty, Checkpoint, Group, INPUTS, Kind, Lock, StoppedRun, discard_partial, file_names, is_partial_left,
+    Checkpoint, Group, INPUTS, Kind, Lock, StoppedRun, Summary, discard_partial, file_names, is_partial_left,
     partial_files, render_files, write_partial,
 };
 use std::collections::HashMap;
@@ -346,11 +346,8 @@ pub(super) fn write(
 
 /// What is said about the result in a folder: its line on standard output, or one of JSON there; the exit code.
 fn print(arguments: &Run, name: &str, directory: &Path) -> Result<u8> {
-    let path = directory.join(disk::MARK);
-    let wrong = |e: serde_json::Error| Error::Io { path: path.clone(), source: io::Error::other(e) };
-    let summary: Value = serde_json::from_slice(&disk::read(&path)?).map_err(wrong)?;
-    let is = |key: &str| summary[key] == true;
-    let code = if is("converged") && is("certified") { 0 } else { UNFINISHED };
+    let summary = Summary::read(directory)?;
+    let code = if summary.head.is_proven() { 0 } else { UNFINISHED };
     let words = format!("{name}: {}; results in {}", in_words(&summary), directory.display());
     let line = match arguments.json {
         true => json_line(&summary, name, directory, code).to_string(),
@@ -364,38 +361,29 @@ fn print(arguments: &Run, name: &str, directory: &Path) -> Result<u8> {
 }
 
 /// A result in a line: barrier, certificate, why it ended.
-fn in_words(summary: &Value) -> String {
-    let both = |key: &str| {
-        let mev = |way: &str| summary[key][way].as_f64();
-        let both = mev("forward").zip(mev("backward"));
-        both.map(|(forward_mev, backward_mev)| drive::Barrier { forward_mev, backward_mev })
-    };
-    let certainty = Certainty::of_summary(summary);
+fn in_words(summary: &Summary) -> String {
+    let certainty = summary.certainty();
     let digits = |b: drive::Barrier| [b.forward_mev, b.backward_mev].map(|mev| certainty.number(mev, 1.0, 7));
-    let (barrier, climb) = (both("barrier_meV"), both("highest_climb_meV"));
+    let [barrier, climb] = [summary.barrier_meV, summary.highest_climb_meV].map(|b| b.map(drive::Barrier::from));
     let climb = match climb.map(digits) {
         Some([f, b]) if climb.map(digits) != barrier.map(digits) => {
             format!("; highest climb on the way {f} and {b} meV")
         }
         _ => String::new(),
     };
-    let barrier = certainty.barrier_words(barrier);
-    format!("{barrier}{climb}; {}", summary["stop_reason"].as_str().unwrap_or("no reason is given"))
+    format!("{}{climb}; {}", certainty.barrier_words(barrier), summary.stop_reason)
 }
 
-fn json_line(summary: &Value, name: &str, directory: &Path, code: u8) -> Value {
-    let mut line = json!({
+fn json_line(summary: &Summary, name: &str, directory: &Path, code: u8) -> Value {
+    json!({
         "name": name,
-        "barrier_meV": summary["barrier_meV"],
-        "converged": summary["converged"],
-        "certified": summary["certified"],
+        "barrier_meV": summary.barrier_meV,
+        "highest_climb_meV": summary.highest_climb_meV,
+        "converged": summary.head.converged,
+        "certified": summary.head.certified,
+        "stop_code": summary.stop_code,
+        "warnings": summary.warnings,
         "exit_code": code,
         "directory": directory.to_string_lossy(),
-    });
-    for key in ["highest_climb_meV", "stop_code", "warnings"] {
-        if let Some(value) = summary.get(key) {
-            line[key] = value.clone();
-        }
-    }
-    line
+    })
 }

@@ -224,7 +224,7 @@ fn list(arguments: &Arguments, index: &SweepIndex, dir: &Path) -> Result<u8> {
 fn occupied(dir: &Path, index: &SweepIndex, before: &[PointState]) -> bool {
     let other = |state: &PointState| match state {
         PointState::Other | PointState::Damaged => true,
-        PointState::Found(found) => found.version != env!("CARGO_PKG_VERSION"),
+        PointState::Found(found) => found.head.version != env!("CARGO_PKG_VERSION"),
         PointState::Missing => false,
     };
     let taken: Vec<usize> = (0..before.len()).filter(|k| other(&before[*k])).collect();
@@ -294,7 +294,7 @@ fn all(arguments: &Arguments, index: &SweepIndex, dir: &Path, before: &[PointSta
     }
     tell(index, &after, &failed, arguments.quiet);
     let codes = failed.iter().map(|(.., code)| *code);
-    let doubtful = after.iter().any(|state| state.found().is_none_or(|f| !f.is_proven()));
+    let doubtful = after.iter().any(|state| state.found().is_none_or(|f| !f.head.is_proven()));
     Ok(stopped.unwrap_or_else(|| codes.fold(if doubtful { UNFINISHED } else { 0 }, worse)))
 }
 
@@ -305,7 +305,7 @@ fn tell(index: &SweepIndex, after: &[PointState], failed: &[(usize, String, u8)]
         lines.push(format!("error: point {point}, {}: {words}", index.points[*point].directory));
     }
     for (k, state) in after.iter().enumerate().filter(|_| !quiet) {
-        if let Some(found) = state.found().filter(|f| !f.is_proven()) {
+        if let Some(found) = state.found().filter(|f| !f.head.is_proven()) {
             let reason = found.warnings.last().map(|w| w.strip_prefix("not certified: ").unwrap_or(w));
             let reason = reason.map_or(String::new(), |w| format!(": {w}"));
             lines.push(format!("point {k}, {}: not certified{reason}", index.points[k].directory));

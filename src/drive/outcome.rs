@@ -4,6 +4,7 @@ use super::StopCode;
 use crate::path::Path;
 use crate::rates::Rates;
 use crate::spins::Spins;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 
 /// A finished run.
@@ -179,7 +180,7 @@ pub struct HistoryRow {
 }
 
 /// What a run cost.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Work {
     /// Band iterations of the reported path.
     pub iterations: usize,

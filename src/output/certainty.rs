@@ -8,7 +8,6 @@
 
 use super::canvas::significant;
 use crate::drive::{Barrier, MOVED_FAR_RAD, Outcome};
-use serde_json::Value;
 
 /// Most digits of what is not certified.
 const DIGITS: i32 = 3;
@@ -33,13 +32,6 @@ impl Certainty {
     pub fn of(outcome: &Outcome) -> Certainty {
         let moved = [&outcome.initial, &outcome.final_state].map(|end| end.moved_rad);
         Certainty::new((!outcome.certified).then(|| unknown_mev(outcome)), moved)
-    }
-
-    /// As a `summary.json` tells; those of earlier versions do not say how much is unknown.
-    pub fn of_summary(summary: &Value) -> Certainty {
-        let unknown_mev =
-            (summary["certified"] != true).then(|| summary["barrier_uncertainty_meV"].as_f64().unwrap_or(0.0));
-        Certainty::new(unknown_mev, ["initial", "final"].map(|end| summary[end]["moved_rad"].as_f64()))
     }
 
     /// Whether nothing is in doubt.

@@ -14,6 +14,7 @@
 use super::disk::{self, File, Kind, MARK, io_error, refused};
 use super::lock::Lock;
 use super::manifest::{Manifest, Owned, There, hash};
+use super::summary::Head;
 use crate::error::{Error, Result};
 use serde::Deserialize;
 use std::collections::BTreeSet;
@@ -27,13 +28,11 @@ const NOTE: &str = ".spinneb.writing";
 
 /// A finished result, as its `summary.json` tells.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[serde(expecting = "the summary of a result")]
 pub struct StoredResult {
-    /// The version that wrote it.
-    pub version: String,
-    /// The hash of its config.
-    pub config_sha256: String,
-    converged: bool,
-    certified: bool,
+    /// Which it is.
+    #[serde(flatten)]
+    pub head: Head,
     /// Its files; nothing of version 0.1.0.
     pub manifest: Option<Manifest>,
 }
@@ -41,7 +40,7 @@ pub struct StoredResult {
 impl StoredResult {
     /// The exit code of the run that wrote it: 0 converged and certified, 3 otherwise.
     pub fn exit_code(&self) -> u8 {
-        if self.converged && self.certified { 0 } else { 3 }
+        if self.head.is_proven() { 0 } else { 3 }
     }
 
     fn is_from(&self, source: Option<&str>) -> bool {
@@ -98,7 +97,7 @@ pub fn prepare(dir: &Path, intent: &Intent) -> Result<Destination> {
     if !intent.force {
         folder.refuse_damage(|_| true, "; use --force to replace it, or another directory with --out")?;
         match &folder.stored {
-            Some(s) if s.version == intent.version && s.config_sha256 == intent.config_sha256 => {
+            Some(s) if s.head.version == intent.version && s.head.config_sha256 == intent.config_sha256 => {
                 return Ok(Destination::Finished(s.clone()));
             }
             Some(stored) if stored.is_from(intent.source) => folder.earlier()?.spare(intent.made_from, &[], &[])?,
@@ -267,8 +266,8 @@ impl Folder {
     }
 
     fn occupied(&self, stored: &StoredResult, intent: &Intent) -> Error {
-        let what = if stored.config_sha256 == intent.config_sha256 {
-            format!("of this config by version {} (this is {})", stored.version, intent.version)
+        let what = if stored.head.config_sha256 == intent.config_sha256 {
+            format!("of this config by version {} (this is {})", stored.head.version, intent.version)
         } else {
             "of another config".to_string()
         };

@@ -57,7 +57,7 @@ pub use spin_files::{MinimaOvf, OvfImages, PathNpz, PathOvf, SaddleOvf, SpinsCsv
 pub use spins_plot::{SpinsPlot, draw_spins};
 pub use stored_outcome::StoredOutcome;
 pub use stored_run::StoredRun;
-pub use summary::Summary;
+pub use summary::{BothWays, Head, Number, Summary, SummaryJson};
 
 use crate::drive::Outcome;
 use crate::error::Result;
@@ -243,7 +243,7 @@ pub const KINDS: &[Kind] = &[
         name: "summary",
         group: Group::Always,
         summary: "summary.json: barrier, saddles, ends, rates, work and whether they are certified",
-        formats: || vec![Box::new(Summary)],
+        formats: || vec![Box::new(SummaryJson)],
     },
 ];
 

@@ -1,11 +1,12 @@
 //! What figures are drawn from: taken from an outcome, or read back from the files of a result ([`super::StoredRun`]).
 
 use super::csv::column_name;
+use super::rates_summary::{PassageEntry, TransitionEntry, transitions};
 use super::{EnergyPath, RunReport};
 use crate::drive::HistoryRow;
 use crate::lattice::Chain;
 use crate::path::Path;
-use crate::rates::{TransitionRow, Way};
+use crate::rates::Way;
 
 /// The numbers of one result's figures.
 #[derive(Clone, Debug, Default)]
@@ -76,7 +77,7 @@ impl<'a> PlotData<'a> {
     /// Of a run.
     pub fn of(run: &RunReport<'a>) -> PlotData<'a> {
         let outcome = run.outcome;
-        let transitions = outcome.rates.as_ref().map(|r| &r.transitions[..]).unwrap_or_default();
+        let transitions = outcome.rates.as_ref().map(transitions).unwrap_or_default();
         PlotData {
             name: run.name.into(),
             energy: EnergyPath::from_outcome(run.name, outcome),
@@ -86,10 +87,7 @@ impl<'a> PlotData<'a> {
             vacant: run.chain.is_vacant().unwrap_or_default(),
             places: Places::of(run.chain),
             history: outcome.history.clone(),
-            lifetimes: transitions
-                .iter()
-                .map(|t| Lifetimes { way: t.way, rows: t.rows.iter().map(RateRow::of).collect() })
-                .collect(),
+            lifetimes: transitions.iter().map(Lifetimes::of).collect(),
         }
     }
 
@@ -99,17 +97,16 @@ impl<'a> PlotData<'a> {
     }
 }
 
-impl RateRow {
-    fn of(row: &TransitionRow) -> RateRow {
-        let whole = &row.passage;
-        let rate = |ln: Option<f64>| ln.map(libm::exp).filter(|r| r.is_finite());
-        RateRow {
-            temperature_k: whole.temperature_k,
-            barrier_over_kt: whole.barrier_over_kt,
-            htst_per_s: rate(whole.ln_htst_per_s),
-            langer_per_s: rate(whole.ln_langer_per_s),
-            escape_s: rate(row.escape.ln_lifetime_s()),
-        }
+impl Lifetimes {
+    pub(super) fn of(transition: &TransitionEntry) -> Lifetimes {
+        let row = |t: &PassageEntry| RateRow {
+            temperature_k: t.temperature_K.0,
+            barrier_over_kt: t.barrier_over_kT.0,
+            htst_per_s: t.htst_rate_per_s.map(|rate| rate.0),
+            langer_per_s: t.langer_rate_per_s.map(|rate| rate.0),
+            escape_s: t.escape_lifetime_s.map(|time| time.0),
+        };
+        Lifetimes { way: transition.direction, rows: transition.temperatures.iter().map(row).collect() }
     }
 }
 

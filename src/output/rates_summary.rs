@@ -4,18 +4,18 @@
 //! all of them are null, and `reason` says so. `known_within_factor`: a rate or time may be larger or smaller by that.
 
 use super::summary::Number;
-use crate::rates::{Prefactor, Rates, Row, SaddleRate, Theory, TransitionRate, TransitionRow, ZeroKind};
-use serde::Serialize;
+use crate::rates::{Prefactor, Rates, Row, SaddleRate, Theory, TransitionRate, TransitionRow, Way, ZeroKind};
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-#[derive(Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[allow(non_snake_case)]
-pub(super) struct RateEntry<'a> {
-    saddle: usize,
-    direction: &'static str,
+pub(super) struct RateEntry {
+    pub saddle: usize,
+    pub direction: Way,
     barrier_meV: Option<Number>,
-    htst_prefactor_Hz: Option<Number>,
-    langer_prefactor_Hz: Option<Number>,
+    pub htst_prefactor_Hz: Option<Number>,
+    pub langer_prefactor_Hz: Option<Number>,
     prefactor_temperature_K: Option<Number>,
     prefactor_temperature_exponent: Number,
     dynamical_factor_per_s: Option<Number>,
@@ -25,40 +25,40 @@ pub(super) struct RateEntry<'a> {
     minimum_zero_modes: Vec<ZeroEntry>,
     saddle_zero_modes: Vec<ZeroEntry>,
     equivalent_saddles: usize,
-    equivalent_by: &'a str,
+    equivalent_by: String,
     damping: Number,
     g_factor: Number,
     blocking_temperature_1_s_K: Option<Number>,
     blocking_temperature_10_years_K: Option<Number>,
-    refused: BTreeMap<&'static str, &'a str>,
-    warnings: &'a [String],
-    temperatures: Vec<TemperatureEntry<'a>>,
+    refused: BTreeMap<Theory, String>,
+    warnings: Vec<String>,
+    temperatures: Vec<TemperatureEntry>,
 }
 
-#[derive(Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[allow(non_snake_case)]
-pub(super) struct TransitionEntry<'a> {
-    direction: &'static str,
+pub(super) struct TransitionEntry {
+    pub direction: Way,
     saddles: usize,
     equivalent_paths: usize,
-    equivalent_by: &'a str,
+    equivalent_by: String,
     barrier_meV: Number,
     blocking_temperature_1_s_K: Option<Number>,
     blocking_temperature_10_years_K: Option<Number>,
-    refused: Option<&'a str>,
-    temperatures: Vec<PassageEntry>,
+    refused: Option<String>,
+    pub temperatures: Vec<PassageEntry>,
 }
 
-#[derive(Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct ZeroEntry {
-    kind: &'static str,
+    kind: ZeroKind,
     modes: usize,
     volume_rad: Number,
 }
 
-#[derive(Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[allow(non_snake_case)]
-struct TemperatureEntry<'a> {
+struct TemperatureEntry {
     temperature_K: Number,
     barrier_over_kT: Number,
     htst_rate_per_s: Option<Number>,
@@ -66,18 +66,18 @@ struct TemperatureEntry<'a> {
     lifetime_s: Option<Number>,
     log10_lifetime_s: Option<Number>,
     known_within_factor: Option<Number>,
-    reason: Option<&'a str>,
+    reason: Option<String>,
 }
 
 /// The rates are the inverse of the mean first passage.
-#[derive(Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[allow(non_snake_case)]
-struct PassageEntry {
-    temperature_K: Number,
-    barrier_over_kT: Number,
-    htst_rate_per_s: Option<Number>,
-    langer_rate_per_s: Option<Number>,
-    escape_lifetime_s: Option<Number>,
+pub(super) struct PassageEntry {
+    pub temperature_K: Number,
+    pub barrier_over_kT: Number,
+    pub htst_rate_per_s: Option<Number>,
+    pub langer_rate_per_s: Option<Number>,
+    pub escape_lifetime_s: Option<Number>,
     log10_escape_lifetime_s: Option<Number>,
     first_passage_s: Option<Number>,
     log10_first_passage_s: Option<Number>,
@@ -86,16 +86,16 @@ struct PassageEntry {
 }
 
 /// An entry for each saddle and direction.
-pub(super) fn saddles(rates: &Rates) -> Vec<RateEntry<'_>> {
+pub(super) fn saddles(rates: &Rates) -> Vec<RateEntry> {
     rates.saddles.iter().map(|r| saddle(rates, r)).collect()
 }
 
 /// An entry for each direction of the whole path.
-pub(super) fn transitions(rates: &Rates) -> Vec<TransitionEntry<'_>> {
+pub(super) fn transitions(rates: &Rates) -> Vec<TransitionEntry> {
     rates.transitions.iter().map(transition).collect()
 }
 
-fn saddle<'a>(rates: &'a Rates, r: &'a SaddleRate) -> RateEntry<'a> {
+fn saddle(rates: &Rates, r: &SaddleRate) -> RateEntry {
     let settings = &rates.settings;
     let known = r.htst.or(r.langer);
     let first = settings.temperatures_k.first().copied();
@@ -103,7 +103,7 @@ fn saddle<'a>(rates: &'a Rates, r: &'a SaddleRate) -> RateEntry<'a> {
     let frequency = |p: Option<Prefactor>| p.map(|p| Number(p.frequency_per_s));
     RateEntry {
         saddle: r.saddle,
-        direction: r.way.name(),
+        direction: r.way,
         barrier_meV: r.barrier_mev.map(Number),
         htst_prefactor_Hz: prefactor(r.htst),
         langer_prefactor_Hz: prefactor(r.langer),
@@ -116,41 +116,37 @@ fn saddle<'a>(rates: &'a Rates, r: &'a SaddleRate) -> RateEntry<'a> {
         minimum_zero_modes: zeros(&r.minimum_zeros),
         saddle_zero_modes: zeros(&r.saddle_zeros),
         equivalent_saddles: r.equivalents.count,
-        equivalent_by: &r.equivalents.by,
+        equivalent_by: r.equivalents.by.clone(),
         damping: Number(settings.damping),
         g_factor: Number(settings.g_factor),
         blocking_temperature_1_s_K: r.blocking_k[0].map(Number),
         blocking_temperature_10_years_K: r.blocking_k[1].map(Number),
-        refused: r.refused.iter().map(|(theory, reason): &(Theory, String)| (theory.name(), reason.as_str())).collect(),
-        warnings: &r.warnings,
+        refused: r.refused.iter().cloned().collect(),
+        warnings: r.warnings.clone(),
         temperatures: r.rows.iter().map(temperature).collect(),
     }
 }
 
-fn transition(t: &TransitionRate) -> TransitionEntry<'_> {
+fn transition(t: &TransitionRate) -> TransitionEntry {
     TransitionEntry {
-        direction: t.way.name(),
+        direction: t.way,
         saddles: t.saddles,
         equivalent_paths: t.equivalents.count,
-        equivalent_by: &t.equivalents.by,
+        equivalent_by: t.equivalents.by.clone(),
         barrier_meV: Number(t.barrier_mev),
         blocking_temperature_1_s_K: t.blocking_k[0].map(Number),
         blocking_temperature_10_years_K: t.blocking_k[1].map(Number),
-        refused: t.refused.as_deref(),
+        refused: t.refused.clone(),
         temperatures: t.rows.iter().map(passage).collect(),
     }
 }
 
 fn zeros(modes: &[(ZeroKind, usize, f64)]) -> Vec<ZeroEntry> {
-    let entry = |&(kind, modes, volume): &(ZeroKind, usize, f64)| ZeroEntry {
-        kind: kind.name(),
-        modes,
-        volume_rad: Number(volume),
-    };
+    let entry = |&(kind, modes, volume): &(ZeroKind, usize, f64)| ZeroEntry { kind, modes, volume_rad: Number(volume) };
     modes.iter().map(entry).collect()
 }
 
-fn temperature(row: &Row) -> TemperatureEntry<'_> {
+fn temperature(row: &Row) -> TemperatureEntry {
     TemperatureEntry {
         temperature_K: Number(row.temperature_k),
         barrier_over_kT: Number(row.barrier_over_kt),
@@ -159,7 +155,7 @@ fn temperature(row: &Row) -> TemperatureEntry<'_> {
         lifetime_s: exp(row.ln_lifetime_s()),
         log10_lifetime_s: log10(row.ln_lifetime_s()),
         known_within_factor: row.known_within.and_then(held),
-        reason: row.reason.as_deref(),
+        reason: row.reason.clone(),
     }
 }
 

@@ -7,14 +7,13 @@ use super::columns::{Columns, WAY_OUT};
 use super::disk::{self, MARK};
 use super::folder::stored_result;
 use super::plot_data::above_first;
-use super::{Certainty, EnergyPath, Lifetimes, Places, PlotData, RateRow};
+use super::summary::{Saddle, Summary};
+use super::{EnergyPath, Lifetimes, Places, PlotData};
 use crate::drive::{Barrier, HistoryRow};
 use crate::error::{Error, Result};
 use crate::files;
 use crate::path::Path as SpinPath;
-use crate::rates::Way;
 use crate::spins::Spins;
-use serde::Deserialize;
 use std::path::Path;
 
 /// Files of spins, best first.
@@ -39,61 +38,6 @@ pub struct StoredRun {
     profile: Vec<(f64, f64)>,
     history: Vec<HistoryRow>,
     path: Option<SpinPath>,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[allow(non_snake_case)]
-struct Summary {
-    name: String,
-    certified: bool,
-    barrier_meV: Option<BothWays>,
-    barrier_uncertainty_meV: Option<f64>,
-    saddles: Vec<Saddle>,
-    initial: End,
-    r#final: End,
-    path: PathEntry,
-    #[serde(default)]
-    transition_rates: Vec<Transition>,
-}
-
-#[derive(Clone, Copy, Debug, Deserialize)]
-struct BothWays {
-    forward: f64,
-    backward: f64,
-}
-
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[allow(non_snake_case)]
-struct Saddle {
-    energy_above_initial_meV: f64,
-    reaction_coordinate_rad: f64,
-}
-
-#[derive(Clone, Copy, Debug, Deserialize)]
-struct End {
-    moved_rad: Option<f64>,
-}
-
-#[derive(Clone, Copy, Debug, Deserialize)]
-struct PathEntry {
-    images: usize,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-struct Transition {
-    direction: String,
-    temperatures: Vec<Temperature>,
-}
-
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[allow(non_snake_case)]
-struct Temperature {
-    temperature_K: f64,
-    barrier_over_kT: f64,
-    htst_rate_per_s: Option<f64>,
-    langer_rate_per_s: Option<f64>,
-    #[serde(default)]
-    escape_lifetime_s: Option<f64>,
 }
 
 impl StoredRun {
@@ -161,17 +105,9 @@ impl StoredRun {
         self.path.as_ref().map(SpinPath::sites)
     }
 
-    /// How certain its barrier is; results of earlier versions do not say how much of it is unknown.
-    pub fn certainty(&self) -> Certainty {
-        let unknown_mev = self.summary.barrier_uncertainty_meV.unwrap_or(0.0);
-        let moved = [&self.summary.initial, &self.summary.r#final].map(|end| end.moved_rad);
-        Certainty::new((!self.summary.certified).then_some(unknown_mev), moved)
-    }
-
     /// What its figures are drawn from.
     pub fn data(&self) -> PlotData<'_> {
-        let barrier = |b: BothWays| Barrier { forward_mev: b.forward, backward_mev: b.backward };
-        let saddle = |s: &Saddle| (s.reaction_coordinate_rad, s.energy_above_initial_meV);
+        let saddle = |s: &Saddle| (s.reaction_coordinate_rad.0, s.energy_above_initial_meV.0);
         PlotData {
             name: self.summary.name.clone(),
             energy: EnergyPath {
@@ -179,8 +115,8 @@ impl StoredRun {
                 images: self.images.clone(),
                 profile: self.profile.clone(),
                 saddles: self.summary.saddles.iter().map(saddle).collect(),
-                barrier: self.summary.barrier_meV.map(barrier),
-                certainty: self.certainty(),
+                barrier: self.summary.barrier_meV.map(Barrier::from),
+                certainty: self.summary.certainty(),
             },
             terms_mev: self.terms_mev.clone(),
             terms_profile_mev: self.terms_profile_mev.clone(),
@@ -188,7 +124,7 @@ impl StoredRun {
             vacant: self.vacant.clone(),
             places: self.places,
             history: self.history.clone(),
-            lifetimes: self.summary.transition_rates.iter().filter_map(lifetimes).collect(),
+            lifetimes: self.summary.transition_rates.iter().flatten().map(Lifetimes::of).collect(),
         }
     }
 }
@@ -204,12 +140,12 @@ fn summary(dir: &Path) -> Result<Summary> {
     if !dir.is_dir() {
         return Err(Error::invalid(place, "is a file; name the directory of a result, such as results/wall"));
     }
-    let Some(text) = text(dir, MARK)? else {
+    if disk::kind(&dir.join(MARK))? == disk::Kind::Nothing {
         let message =
             format!("holds no finished result: there is no {MARK}. Run its config first: spinneb run CONFIG.json");
         return Err(Error::invalid(place, message));
-    };
-    serde_json::from_str(&text).map_err(|e| Error::invalid(shown(dir, MARK), format!("is damaged: {e}: {WAY_OUT}")))
+    }
+    Summary::read(dir)
 }
 
 /// The table of the images, with the file it is from.
@@ -281,18 +217,6 @@ fn agree(file: &str, found: usize, images: usize) -> Result<()> {
 }
 
 const RERUN: &str = "`spinneb run` with --force on the result's config.json writes them anew";
-
-fn lifetimes(t: &Transition) -> Option<Lifetimes> {
-    let way = [Way::Forward, Way::Backward].into_iter().find(|way| way.name() == t.direction)?;
-    let row = |t: &Temperature| RateRow {
-        temperature_k: t.temperature_K,
-        barrier_over_kt: t.barrier_over_kT,
-        htst_per_s: t.htst_rate_per_s,
-        langer_per_s: t.langer_rate_per_s,
-        escape_s: t.escape_lifetime_s,
-    };
-    Some(Lifetimes { way, rows: t.temperatures.iter().map(row).collect() })
-}
 
 pub(super) fn shown(dir: &Path, name: &str) -> String {
     dir.join(name).display().to_string()

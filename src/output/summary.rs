@@ -1,13 +1,18 @@
-//! `summary.json`: the result in numbers and words.
+//! `summary.json`: the result in numbers and words, as it is written and as it is read back.
 //!
 //! Energies in meV; the barrier also in J (1 meV = 1.602176634e-22 J) and in K (E/k_B), CODATA 2022.
-//! A number that is not finite is an error here, with its place: JSON has no word for it.
+//! A number that is not finite is an error where it would be written, with its place: JSON has no word for it. What an earlier
+//! version did not write is nothing where it is read.
 
+use super::columns::WAY_OUT;
+use super::disk::MARK;
 use super::rates_summary::{self, RateEntry, TransitionEntry};
+use super::stored_run::{shown, text};
 use super::{Certainty, Format, RunReport};
 use crate::drive::{Barrier, EndPoint, IntermediateMinimum, Outcome, RejectedPath, SaddlePoint, StopCode, Work};
 use crate::error::{Error, Result};
-use serde::{Serialize, Serializer, ser::Error as _};
+use serde::{Deserialize, Serialize, Serializer, ser::Error as _};
+use std::path::Path;
 
 /// J in a meV: e/1000, e in C.
 pub(super) const J_PER_MEV: f64 = 1.602176634e-22;
@@ -16,28 +21,28 @@ pub(super) const K_B_MEV: f64 = 8.617333262e-2;
 
 /// `summary.json`.
 #[derive(Clone, Copy, Debug)]
-pub struct Summary;
+pub struct SummaryJson;
 
-impl Format for Summary {
+impl Format for SummaryJson {
     fn file_name(&self) -> String {
-        super::disk::MARK.into()
+        MARK.into()
     }
 
     fn render(&self, run: &RunReport) -> Result<Vec<u8>> {
         let mut bytes = Vec::new();
         let mut json = serde_json::Serializer::pretty(&mut bytes);
         let mut track = serde_path_to_error::Track::new();
-        document(run)
+        Summary::of(run)
             .serialize(serde_path_to_error::Serializer::new(&mut json, &mut track))
-            .map_err(|e| Error::Numerical(format!("summary.json: {}: {e}", track.path())))?;
+            .map_err(|e| Error::Numerical(format!("{MARK}: {}: {e}", track.path())))?;
         bytes.push(b'\n');
         Ok(bytes)
     }
 }
 
 /// A number that JSON can hold.
-#[derive(Clone, Copy)]
-pub(super) struct Number(pub(super) f64);
+#[derive(Clone, Copy, Debug, Deserialize)]
+pub struct Number(pub f64);
 
 impl Serialize for Number {
     fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
@@ -49,138 +54,189 @@ impl Serialize for Number {
     }
 }
 
-#[derive(Serialize)]
+/// What `summary.json` holds.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(expecting = "the summary of a result")]
 #[allow(non_snake_case)]
-struct Document<'a> {
-    name: &'a str,
-    version: &'a str,
-    config_sha256: &'a str,
-    converged: bool,
-    certified: bool,
-    stop_code: StopCode,
-    stop_reason: &'a str,
-    warnings: &'a [String],
-    barrier_meV: Option<BothWays>,
+pub struct Summary {
+    /// Name of the run.
+    pub name: String,
+    /// Which result it is.
+    #[serde(flatten)]
+    pub head: Head,
+    /// Why the run stopped, from a closed list; nothing of version 0.1.0.
+    pub stop_code: Option<StopCode>,
+    /// Why the run stopped, in words.
+    pub stop_reason: String,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+    /// The barrier, where there is one.
+    pub barrier_meV: Option<BothWays>,
     barrier_J: Option<BothWays>,
     barrier_K: Option<BothWays>,
     #[serde(skip_serializing_if = "Option::is_none")]
     barrier_uncertainty_meV: Option<Number>,
-    highest_climb_meV: Option<BothWays>,
-    saddles: Vec<SaddleEntry>,
-    initial: EndEntry,
-    r#final: EndEntry,
-    intermediate_minima: Vec<MinimumEntry>,
-    rejected_paths: Vec<RejectedEntry<'a>>,
+    /// The highest climb from any minimum on the way to a later saddle.
+    pub highest_climb_meV: Option<BothWays>,
+    pub(super) saddles: Vec<Saddle>,
+    pub(super) initial: End,
+    pub(super) r#final: End,
+    pub(super) intermediate_minima: Vec<Minimum>,
+    pub(super) rejected_paths: Vec<Rejected>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    rates: Option<Vec<RateEntry<'a>>>,
+    pub(super) rates: Option<Vec<RateEntry>>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    transition_rates: Option<Vec<TransitionEntry<'a>>>,
-    path: PathEntry,
-    work: WorkEntry,
+    pub(super) transition_rates: Option<Vec<TransitionEntry>>,
+    pub(super) path: Band,
+    pub(super) work: Work,
 }
 
-#[derive(Serialize)]
-struct BothWays {
+/// Which result it is, and what it is worth: what a summary of any version says.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Head {
+    /// The version that wrote it.
+    pub version: String,
+    /// The hash of its config.
+    pub config_sha256: String,
+    /// The band met its tolerance.
+    pub converged: bool,
+    /// Ends and saddles are proven.
+    pub certified: bool,
+}
+
+impl Head {
+    /// Converged and certified.
+    pub fn is_proven(&self) -> bool {
+        self.converged && self.certified
+    }
+}
+
+/// An energy from the initial state and from the final one.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct BothWays {
     forward: Number,
     backward: Number,
 }
 
-#[derive(Serialize)]
-#[allow(non_snake_case)]
-struct SaddleEntry {
-    energy_meV: Number,
-    energy_above_initial_meV: Number,
-    reaction_coordinate_rad: Number,
-    image: usize,
-    max_torque_meV: Option<Number>,
-    negative_modes: Option<usize>,
-    zero_modes: Option<usize>,
-    lowest_eigenvalues_meV: Vec<Number>,
-}
-
-#[derive(Serialize)]
-#[allow(non_snake_case)]
-struct EndEntry {
-    energy_meV: Number,
-    max_torque_meV: Number,
-    negative_modes: Option<usize>,
-    zero_modes: Option<usize>,
-    moved_rad: Option<Number>,
-}
-
-#[derive(Serialize)]
-#[allow(non_snake_case)]
-struct MinimumEntry {
-    image: usize,
-    reaction_coordinate_rad: Number,
-    energy_meV: Number,
-    max_torque_meV: Number,
-    negative_modes: Option<usize>,
-    zero_modes: Option<usize>,
-}
-
-#[derive(Serialize)]
-#[allow(non_snake_case)]
-struct RejectedEntry<'a> {
-    guess: &'a str,
-    barrier_meV: Option<Number>,
-    negative_modes: Option<usize>,
-    reason: &'a str,
-}
-
-#[derive(Serialize)]
-#[allow(non_snake_case)]
-struct PathEntry {
-    images: usize,
-    length_rad: Number,
-    max_perpendicular_torque_meV: Number,
-    largest_predicted_rotation_rad: Number,
-}
-
-#[derive(Serialize)]
-struct WorkEntry {
-    iterations: usize,
-    force_evaluations: usize,
-    seconds: Number,
-    threads: usize,
-}
-
-fn document<'a>(run: &RunReport<'a>) -> Document<'a> {
-    let outcome = run.outcome;
-    let barrier = |convert: fn(f64) -> f64| outcome.barrier.map(|b| both_ways(b, convert));
-    let unknown_mev = outcome.barrier.and_then(|_| Certainty::of(outcome).unknown_mev);
-    Document {
-        name: run.name,
-        version: run.version,
-        config_sha256: run.config_sha256,
-        converged: outcome.converged,
-        certified: outcome.certified,
-        stop_code: outcome.stop_code,
-        stop_reason: &outcome.stop_reason,
-        warnings: &outcome.warnings,
-        barrier_meV: barrier(|mev| mev),
-        barrier_J: barrier(|mev| mev * J_PER_MEV),
-        barrier_K: barrier(|mev| mev / K_B_MEV),
-        barrier_uncertainty_meV: unknown_mev.map(Number),
-        highest_climb_meV: outcome.highest_climb.map(|climb| both_ways(climb, |mev| mev)),
-        saddles: outcome.saddles.iter().map(saddle).collect(),
-        initial: end(&outcome.initial),
-        r#final: end(&outcome.final_state),
-        intermediate_minima: outcome.intermediate_minima.iter().map(minimum).collect(),
-        rejected_paths: outcome.rejected_paths.iter().map(rejected).collect(),
-        rates: outcome.rates.as_ref().map(rates_summary::saddles),
-        transition_rates: outcome.rates.as_ref().map(rates_summary::transitions),
-        path: path(outcome),
-        work: work(&outcome.work),
+impl BothWays {
+    fn of(barrier: Barrier, per_mev: fn(f64) -> f64) -> BothWays {
+        let [forward, backward] = [barrier.forward_mev, barrier.backward_mev].map(|mev| Number(per_mev(mev)));
+        BothWays { forward, backward }
     }
 }
 
-fn both_ways(barrier: Barrier, convert: fn(f64) -> f64) -> BothWays {
-    BothWays { forward: Number(convert(barrier.forward_mev)), backward: Number(convert(barrier.backward_mev)) }
+/// Of energies in meV.
+impl From<BothWays> for Barrier {
+    fn from(b: BothWays) -> Barrier {
+        Barrier { forward_mev: b.forward.0, backward_mev: b.backward.0 }
+    }
 }
 
-fn saddle(s: &SaddlePoint) -> SaddleEntry {
-    SaddleEntry {
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[allow(non_snake_case)]
+pub(super) struct Saddle {
+    pub energy_meV: Number,
+    pub energy_above_initial_meV: Number,
+    pub reaction_coordinate_rad: Number,
+    pub image: usize,
+    pub max_torque_meV: Option<Number>,
+    pub negative_modes: Option<usize>,
+    pub zero_modes: Option<usize>,
+    pub lowest_eigenvalues_meV: Vec<Number>,
+}
+
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[allow(non_snake_case)]
+pub(super) struct State {
+    pub energy_meV: Number,
+    pub max_torque_meV: Number,
+    pub negative_modes: Option<usize>,
+    pub zero_modes: Option<usize>,
+}
+
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(super) struct End {
+    #[serde(flatten)]
+    pub state: State,
+    pub moved_rad: Option<Number>,
+}
+
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(super) struct Minimum {
+    pub image: usize,
+    pub reaction_coordinate_rad: Number,
+    #[serde(flatten)]
+    pub state: State,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[allow(non_snake_case)]
+pub(super) struct Rejected {
+    pub guess: String,
+    pub barrier_meV: Option<Number>,
+    pub negative_modes: Option<usize>,
+    pub reason: String,
+}
+
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[allow(non_snake_case)]
+pub(super) struct Band {
+    pub images: usize,
+    pub length_rad: Number,
+    pub max_perpendicular_torque_meV: Number,
+    pub largest_predicted_rotation_rad: Number,
+}
+
+impl Summary {
+    fn of(run: &RunReport) -> Summary {
+        let outcome = run.outcome;
+        let barrier = |per_mev: fn(f64) -> f64| outcome.barrier.map(|b| BothWays::of(b, per_mev));
+        let unknown_mev = outcome.barrier.and_then(|_| Certainty::of(outcome).unknown_mev);
+        Summary {
+            name: run.name.into(),
+            head: Head {
+                version: run.version.into(),
+                config_sha256: run.config_sha256.into(),
+                converged: outcome.converged,
+                certified: outcome.certified,
+            },
+            stop_code: Some(outcome.stop_code),
+            stop_reason: outcome.stop_reason.clone(),
+            warnings: outcome.warnings.clone(),
+            barrier_meV: barrier(|mev| mev),
+            barrier_J: barrier(|mev| mev * J_PER_MEV),
+            barrier_K: barrier(|mev| mev / K_B_MEV),
+            barrier_uncertainty_meV: unknown_mev.map(Number),
+            highest_climb_meV: outcome.highest_climb.map(|climb| BothWays::of(climb, |mev| mev)),
+            saddles: outcome.saddles.iter().map(saddle).collect(),
+            initial: end(&outcome.initial),
+            r#final: end(&outcome.final_state),
+            intermediate_minima: outcome.intermediate_minima.iter().map(minimum).collect(),
+            rejected_paths: outcome.rejected_paths.iter().map(rejected).collect(),
+            rates: outcome.rates.as_ref().map(rates_summary::saddles),
+            transition_rates: outcome.rates.as_ref().map(rates_summary::transitions),
+            path: band(outcome),
+            work: outcome.work,
+        }
+    }
+
+    /// That of the result in a folder.
+    pub fn read(dir: &Path) -> Result<Summary> {
+        let wrong = |words: String| Error::invalid(shown(dir, MARK), format!("{words}: {WAY_OUT}"));
+        let text = text(dir, MARK)?.ok_or_else(|| wrong("is not there".into()))?;
+        serde_json::from_str(&text).map_err(|e| wrong(format!("is damaged: {e}")))
+    }
+
+    /// How certain its barrier is; results of earlier versions do not say how much of it is unknown.
+    pub fn certainty(&self) -> Certainty {
+        let unknown_mev = self.barrier_uncertainty_meV.map_or(0.0, |mev| mev.0);
+        let moved = [&self.initial, &self.r#final].map(|end| end.moved_rad.map(|angle| angle.0));
+        Certainty::new((!self.head.certified).then_some(unknown_mev), moved)
+    }
+}
+
+fn saddle(s: &SaddlePoint) -> Saddle {
+    Saddle {
         energy_meV: Number(s.energy_mev),
         energy_above_initial_meV: Number(s.above_initial_mev),
         reaction_coordinate_rad: Number(s.reaction_coordinate_rad),
@@ -192,45 +248,38 @@ fn saddle(s: &SaddlePoint) -> SaddleEntry {
     }
 }
 
-fn end(e: &EndPoint) -> EndEntry {
-    EndEntry {
+fn state(e: &EndPoint) -> State {
+    State {
         energy_meV: Number(e.energy_mev),
         max_torque_meV: Number(e.max_torque_mev),
         negative_modes: e.negative_modes,
         zero_modes: e.zero_modes,
-        moved_rad: e.moved_rad.map(Number),
     }
 }
 
-fn minimum(m: &IntermediateMinimum) -> MinimumEntry {
-    let EndEntry { energy_meV, max_torque_meV, negative_modes, zero_modes, .. } = end(&m.state);
-    let reaction_coordinate_rad = Number(m.reaction_coordinate_rad);
-    MinimumEntry { image: m.image, reaction_coordinate_rad, energy_meV, max_torque_meV, negative_modes, zero_modes }
+fn end(e: &EndPoint) -> End {
+    End { state: state(e), moved_rad: e.moved_rad.map(Number) }
 }
 
-fn rejected(r: &RejectedPath) -> RejectedEntry<'_> {
-    RejectedEntry {
-        guess: &r.guess,
+fn minimum(m: &IntermediateMinimum) -> Minimum {
+    let reaction_coordinate_rad = Number(m.reaction_coordinate_rad);
+    Minimum { image: m.image, reaction_coordinate_rad, state: state(&m.state) }
+}
+
+fn rejected(r: &RejectedPath) -> Rejected {
+    Rejected {
+        guess: r.guess.clone(),
         barrier_meV: r.barrier_mev.map(Number),
         negative_modes: r.negative_modes,
-        reason: &r.reason,
+        reason: r.reason.clone(),
     }
 }
 
-fn path(outcome: &Outcome) -> PathEntry {
-    PathEntry {
+fn band(outcome: &Outcome) -> Band {
+    Band {
         images: outcome.path.images(),
         length_rad: Number(outcome.images.reaction_coordinate_rad.last().copied().unwrap_or(0.0)),
         max_perpendicular_torque_meV: Number(outcome.max_perpendicular_torque_mev),
         largest_predicted_rotation_rad: Number(outcome.largest_predicted_rotation_rad),
-    }
-}
-
-fn work(w: &Work) -> WorkEntry {
-    WorkEntry {
-        iterations: w.iterations,
-        force_evaluations: w.force_evaluations,
-        seconds: Number(w.seconds),
-        threads: w.threads,
     }
 }

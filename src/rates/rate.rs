@@ -13,6 +13,7 @@ use crate::energy::Evaluator;
 use crate::saddle::{Spectrum, State};
 use crate::spins::Spins;
 use crate::units::K_B;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// Below so many k_BT a barrier holds nothing back, and there is no rate over it.
@@ -39,7 +40,8 @@ pub struct Crossing<'a> {
 }
 
 /// A direction along the path.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Way {
     /// From the initial to the final state.
     Forward,

@@ -1,9 +1,11 @@
 //! What rates are asked for.
 
 use crate::units::HBAR;
+use serde::{Deserialize, Serialize};
 
 /// A theory of rates.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Theory {
     /// Harmonic transition-state theory, without damping.
     Htst,

@@ -15,6 +15,7 @@ use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Vector, vector};
 use crate::linalg::{eigen_symmetric, slab};
 use crate::saddle::{State, remove};
+use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// A state that moves freely feels its lattice with less than this part of k_BT.
@@ -23,22 +24,13 @@ const PINNING: f64 = 0.05;
 const IS_TRANSLATION: f64 = 0.99;
 
 /// What kind of zero mode.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum ZeroKind {
     /// All spins turn about a symmetry axis.
     Rotation,
     /// The state moves along a ring.
     Translation,
-}
-
-impl ZeroKind {
-    /// Its name in results.
-    pub fn name(self) -> &'static str {
-        match self {
-            ZeroKind::Rotation => "rotation",
-            ZeroKind::Translation => "translation",
-        }
-    }
 }
 
 /// Zero modes of one kind.

@@ -11,7 +11,7 @@ mod shown;
 
 use super::canvas::base64;
 use super::summary::{J_PER_MEV, K_B_MEV};
-use super::{Certainty, Format, RunReport, Summary};
+use super::{Certainty, Format, RunReport, SummaryJson};
 use crate::drive::Outcome;
 use crate::error::{Error, Result};
 use pack::{column, packed};
@@ -190,7 +190,7 @@ const RATE_KEYS: [&str; 8] = [
 /// `summary.json` but for what depends on the machine, what the page does not show, and warnings that repeat an earlier saddle's.
 fn summary(run: &RunReport) -> Result<Value> {
     let mut summary: Value =
-        serde_json::from_slice(&Summary.render(run)?).map_err(|e| Error::Numerical(format!("report.html: {e}")))?;
+        serde_json::from_slice(&SummaryJson.render(run)?).map_err(|e| Error::Numerical(format!("report.html: {e}")))?;
     if let Some(work) = summary.get_mut("work").and_then(Value::as_object_mut) {
         work.retain(|key, _| key != "seconds" && key != "threads");
     }

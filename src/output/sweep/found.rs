@@ -3,9 +3,9 @@
 use super::SweepIndex;
 use crate::drive::Barrier;
 use crate::error::Result;
-use crate::output::disk::{self, MARK};
 use crate::output::folder::stored_result;
-use serde::Deserialize;
+use crate::output::summary::{Head, Saddle, Summary};
+use crate::rates::Way;
 use std::path::Path;
 
 /// What is there for a point of a sweep.
@@ -28,7 +28,7 @@ impl PointState {
             PointState::Missing => "missing",
             PointState::Other => "another result",
             PointState::Damaged => "damaged",
-            PointState::Found(found) if found.is_proven() => "certified",
+            PointState::Found(found) if found.head.is_proven() => "certified",
             PointState::Found(_) => "not certified",
         }
     }
@@ -45,12 +45,8 @@ impl PointState {
 /// A point's result in short.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
-    /// The version that wrote it.
-    pub version: String,
-    /// The band met its tolerance.
-    pub converged: bool,
-    /// Ends and saddles are proven.
-    pub certified: bool,
+    /// Which it is.
+    pub head: Head,
     /// The barrier, where there is one.
     pub barrier: Option<Barrier>,
     /// Number of saddles on the path.
@@ -63,13 +59,6 @@ pub struct Found {
     pub warnings: Vec<String>,
 }
 
-impl Found {
-    /// Converged and certified.
-    pub fn is_proven(&self) -> bool {
-        self.converged && self.certified
-    }
-}
-
 /// Prefactors over a saddle (Hz): forward and backward.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Prefactors {
@@ -79,42 +68,6 @@ pub struct Prefactors {
     pub langer_hz: [Option<f64>; 2],
 }
 
-/// What of `summary.json` matters here.
-#[derive(Deserialize)]
-#[allow(non_snake_case)]
-struct Summary {
-    version: String,
-    config_sha256: String,
-    converged: bool,
-    certified: bool,
-    warnings: Vec<String>,
-    barrier_meV: Option<BothWays>,
-    saddles: Vec<Saddle>,
-    rates: Option<Vec<Rate>>,
-}
-
-#[derive(Deserialize)]
-struct BothWays {
-    forward: f64,
-    backward: f64,
-}
-
-#[derive(Deserialize)]
-#[allow(non_snake_case)]
-struct Saddle {
-    energy_above_initial_meV: f64,
-    negative_modes: Option<usize>,
-}
-
-#[derive(Deserialize)]
-#[allow(non_snake_case)]
-struct Rate {
-    saddle: usize,
-    direction: String,
-    htst_prefactor_Hz: Option<f64>,
-    langer_prefactor_Hz: Option<f64>,
-}
-
 /// Looks into the folder of a point; a damaged result is an error.
 pub fn look(dir: &Path, index: &SweepIndex, point: usize) -> Result<PointState> {
     let point = &index.points[point];
@@ -122,35 +75,31 @@ pub fn look(dir: &Path, index: &SweepIndex, point: usize) -> Result<PointState> 
     if stored_result(&dir, |_| true)?.is_none() {
         return Ok(PointState::Missing);
     }
-    let path = dir.join(MARK);
-    let summary: Summary = serde_json::from_slice(&disk::read(&path)?)
-        .map_err(|e| disk::refused(&dir, format!("the result here is damaged: {MARK} is not a whole result ({e})")))?;
-    Ok(match summary.config_sha256 == point.config_sha256 {
+    let summary = Summary::read(&dir)?;
+    Ok(match summary.head.config_sha256 == point.config_sha256 {
         true => PointState::Found(found(summary)),
         false => PointState::Other,
     })
 }
 
 fn found(summary: Summary) -> Found {
-    let above = |s: &Saddle| s.energy_above_initial_meV;
+    let above = |s: &Saddle| s.energy_above_initial_meV.0;
     let highest = (summary.saddles.iter().enumerate()).max_by(|(_, a), (_, b)| above(a).total_cmp(&above(b)));
-    let rate = |direction: &str| {
-        let rates = summary.rates.as_ref()?;
-        rates.iter().find(|r| r.direction == direction && Some(r.saddle) == highest.map(|(k, _)| k))
+    let rate = |way: Way| {
+        let mut rates = summary.rates.iter().flatten();
+        rates.find(|r| r.direction == way && Some(r.saddle) == highest.map(|(k, _)| k))
     };
-    let both = ["forward", "backward"].map(rate);
+    let both = Way::BOTH.map(rate);
     let prefactors = summary.rates.as_ref().map(|_| Prefactors {
-        htst_hz: both.map(|r| r?.htst_prefactor_Hz),
-        langer_hz: both.map(|r| r?.langer_prefactor_Hz),
+        htst_hz: both.map(|r| Some(r?.htst_prefactor_Hz?.0)),
+        langer_hz: both.map(|r| Some(r?.langer_prefactor_Hz?.0)),
     });
     Found {
-        converged: summary.converged,
-        certified: summary.certified,
-        barrier: summary.barrier_meV.map(|b| Barrier { forward_mev: b.forward, backward_mev: b.backward }),
+        barrier: summary.barrier_meV.map(Barrier::from),
         saddles: summary.saddles.len(),
         negative_modes: highest.and_then(|(_, s)| s.negative_modes),
         prefactors,
-        version: summary.version,
+        head: summary.head,
         warnings: summary.warnings,
     }
 }

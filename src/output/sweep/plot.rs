@@ -55,7 +55,7 @@ pub fn draw_sweep(index: &SweepIndex, states: &[PointState]) -> Result<Option<Ca
         let at = |p: &usize| Some((x.numbers.as_ref()?[*p], height(*p)?));
         let mut line: Vec<(f64, f64)> = curve.points.iter().filter_map(at).collect();
         line.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let proven = |p: &usize| states[*p].found().is_some_and(|f| f.is_proven());
+        let proven = |p: &usize| states[*p].found().is_some_and(|f| f.head.is_proven());
         let (sure, other): (Vec<usize>, Vec<usize>) = curve.points.iter().copied().partition(proven);
         let marks =
             |points: Vec<usize>, marker| Series::markers(points.iter().filter_map(at).collect(), marker).colour(colour);

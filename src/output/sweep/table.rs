@@ -4,6 +4,7 @@ use super::found::Prefactors;
 use super::{Found, IndexedPoint, PointState, SweepIndex, word};
 use crate::error::Result;
 use crate::output::csv::{Cell, Table};
+use crate::rates::Way;
 
 /// The table of a sweep: its index, a column a swept key, the barrier, what is proven of it, and where it is.
 pub fn sweep_table(index: &SweepIndex, states: &[PointState]) -> Result<Vec<u8>> {
@@ -27,15 +28,15 @@ pub fn sweep_table(index: &SweepIndex, states: &[PointState]) -> Result<Vec<u8>>
     };
     column("barrier_forward_meV", &|f| f.barrier.map(|b| Cell::Real(b.forward_mev)));
     column("barrier_backward_meV", &|f| f.barrier.map(|b| Cell::Real(b.backward_mev)));
-    column("certified", &|f| Some(Cell::Word(f.certified.to_string())));
-    column("converged", &|f| Some(Cell::Word(f.converged.to_string())));
+    column("certified", &|f| Some(Cell::Word(f.head.certified.to_string())));
+    column("converged", &|f| Some(Cell::Word(f.head.converged.to_string())));
     column("saddles", &|f| Some(Cell::Whole(f.saddles)));
     column("negative_modes", &|f| f.negative_modes.map(Cell::Whole));
     if states.iter().filter_map(PointState::found).any(|f| f.prefactors.is_some()) {
         type Of = fn(&Prefactors) -> [Option<f64>; 2];
         let theories: [(&str, Of); 2] = [("htst", |p| p.htst_hz), ("langer", |p| p.langer_hz)];
         for (theory, of) in theories {
-            for (k, way) in ["forward", "backward"].into_iter().enumerate() {
+            for (k, way) in Way::BOTH.map(Way::name).into_iter().enumerate() {
                 let cell = |f: &Found| f.prefactors.as_ref().and_then(|p| of(p)[k]).map(Cell::Real);
                 column(&format!("{theory}_prefactor_{way}_Hz"), &cell);
             }
