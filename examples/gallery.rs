@@ -10,7 +10,7 @@
 use serde_json::Value;
 use spinneb::config::{Loaded, load};
 use spinneb::drive::{Outcome, Silent, run};
-use spinneb::output::disk::{self, File};
+use spinneb::files::disk::{self, File};
 use spinneb::output::render_files;
 use std::error::Error;
 use std::fmt::Write;

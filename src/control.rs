@@ -1,18 +1,24 @@
-//! What watches over a computation beside its physics: how often gradients were computed, and whether it is to stop.
+//! What watches over a computation beside its physics: how often gradients were computed, whether it is to stop, and what is
+//! recorded of it.
 
+use crate::error::{Error, Result};
+use crate::record::{Fingerprint, Keep, Recorder, Ticket};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// Counts the gradients of a run and can stop it, from any thread.
+/// Counts the gradients of a run, can stop it from any thread, and records what it computes.
 #[derive(Debug, Default)]
 pub struct Control {
     evaluations: AtomicUsize,
     stop: Arc<AtomicBool>,
+    recorder: Recorder,
 }
 
 impl Control {
     /// Stops when this switch is set to true: a run then finishes its iteration and ends with
-    /// [`Error::Stopped`](crate::Error::Stopped); the switch is never set back.
+    /// [`Error::Stopped`]; the switch is never set back.
     pub fn obey(&mut self, switch: Arc<AtomicBool>) {
         self.stop = switch;
     }
@@ -27,6 +33,17 @@ impl Control {
         self.stop.load(Ordering::Relaxed)
     }
 
+    /// Records in `keep`, and takes what an interrupted run has recorded there: a run goes on to the outcome that that would
+    /// have had.
+    pub fn record(&mut self, keep: Box<dyn Keep>) {
+        self.recorder = Recorder::new(keep);
+    }
+
+    /// What is recorded.
+    pub fn recorder(&self) -> &Recorder {
+        &self.recorder
+    }
+
     /// Gradients of one image computed so far.
     pub fn evaluations(&self) -> usize {
         self.evaluations.load(Ordering::Relaxed)
@@ -36,9 +53,88 @@ impl Control {
     pub(crate) fn count(&self) {
         self.evaluations.fetch_add(1, Ordering::Relaxed);
     }
+}
 
-    /// Counts on from `count`: what a resumed run takes over is counted as in the run that computed it.
-    pub(crate) fn set_evaluations(&self, count: usize) {
-        self.evaluations.store(count, Ordering::Relaxed);
+/// A computation that is recorded when it has finished, or answered from the record. One within another is part of that, and
+/// without a [`Control`] nothing is recorded.
+#[derive(Debug)]
+pub struct Call<'a> {
+    control: Option<&'a Control>,
+    /// The record, where this call is recorded.
+    record: Option<(&'a Recorder, Ticket)>,
+    /// Evaluations before it.
+    before: usize,
+}
+
+impl<'a> Call<'a> {
+    /// The next one, of a kind and with an input of its own.
+    pub(crate) fn begin(
+        control: Option<&'a Control>,
+        kind: &str,
+        input: impl FnOnce(Fingerprint) -> Fingerprint,
+    ) -> Call<'a> {
+        let record = control.and_then(|control| {
+            let ticket = control.recorder.begin_call(|print| input(print.text(kind)))?;
+            Some((&control.recorder, ticket))
+        });
+        Call { control, record, before: control.map_or(0, Control::evaluations) }
+    }
+
+    /// Its result, if it is recorded and `check` takes it. What it evaluated counts as in the run that computed it.
+    pub fn answer<T: DeserializeOwned>(&self, check: impl FnOnce(T) -> Option<T>) -> Option<T> {
+        let (recorder, ticket) = self.record?;
+        recorder.answer(ticket, check).map(|found| self.counted(found))
+    }
+
+    /// Where it stood, if it was saved on the way and `check` takes that.
+    pub fn underway<T: DeserializeOwned>(&self, check: impl FnOnce(T) -> Option<T>) -> Option<T> {
+        let (recorder, ticket) = self.record?;
+        recorder.underway(ticket, check).map(|found| self.counted(found))
+    }
+
+    fn counted<T>(&self, (found, evaluations): (T, usize)) -> T {
+        if let Some(control) = self.control {
+            control.evaluations.store(self.before + evaluations, Ordering::Relaxed);
+        }
+        found
+    }
+
+    /// An error if the run is to stop; all that is recorded is saved then, with where this call stands if it can go on from
+    /// there.
+    pub fn obey<T: Serialize>(&self, state: impl FnOnce() -> Option<T>) -> Result<()> {
+        if !self.control.is_some_and(Control::is_stopped) {
+            return Ok(());
+        }
+        if let Some((recorder, ticket)) = self.record {
+            recorder.save_with(|| state().map(|state| ticket.sealed(self.evaluations(), &state)));
+        }
+        Err(Error::Stopped)
+    }
+
+    /// Saves where it stands, if it is time to.
+    pub fn save_if_due<T: Serialize>(&self, state: impl FnOnce() -> T) {
+        if let Some((recorder, ticket)) = self.record {
+            recorder.save_if_due(|| ticket.sealed(self.evaluations(), &state()));
+        }
+    }
+
+    /// Records its result.
+    pub fn finish<T: Serialize>(&self, result: impl FnOnce() -> T) {
+        if let Some((recorder, ticket)) = self.record {
+            recorder.add(ticket.sealed(self.evaluations(), &result()));
+        }
+    }
+
+    /// So far.
+    fn evaluations(&self) -> usize {
+        self.control.map_or(0, Control::evaluations) - self.before
+    }
+}
+
+impl Drop for Call<'_> {
+    fn drop(&mut self) {
+        if let Some((recorder, _)) = self.record {
+            recorder.end_call();
+        }
     }
 }

@@ -33,6 +33,7 @@ pub mod output;
 pub mod path;
 pub mod profile;
 pub mod rates;
+pub mod record;
 pub mod registry;
 pub mod saddle;
 pub mod sphere;

@@ -8,10 +8,12 @@ use crate::geometry::Direction;
 use crate::geometry::vector::{Vector, unit};
 use ndarray::{Array2, ArrayView2};
 use rand::{RngExt, SeedableRng};
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// Unit vectors, one a site. Nothing here makes a vector that is not of unit length to rounding.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Vec<f64>", into = "Vec<f64>")]
 pub struct Spins {
     m: Array2<f64>,
 }
@@ -92,4 +94,26 @@ impl Spins {
     pub fn as_slice(&self) -> &[f64] {
         self.m.as_slice().expect("standard layout")
     }
+}
+
+impl From<Spins> for Vec<f64> {
+    /// Component-major.
+    fn from(spins: Spins) -> Vec<f64> {
+        spins.as_slice().to_vec()
+    }
+}
+
+impl TryFrom<Vec<f64>> for Spins {
+    type Error = &'static str;
+
+    /// From component-major numbers that are unit vectors already, to the bit.
+    fn try_from(m: Vec<f64>) -> std::result::Result<Spins, &'static str> {
+        if are_unit(&m) { Ok(Spins::from_unit_components(&m)) } else { Err("spins are unit vectors") }
+    }
+}
+
+/// Whether component-major numbers are unit vectors.
+pub(crate) fn are_unit(m: &[f64]) -> bool {
+    let n = m.len() / 3;
+    m.len() == 3 * n && (0..n).all(|i| ((0..3).map(|c| m[c * n + i].powi(2)).sum::<f64>() - 1.0).abs() < 1e-9)
 }

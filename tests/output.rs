@@ -4,10 +4,10 @@ use spinneb::drive::{
     Barrier, EndPoint, HistoryRow, ImageTable, IntermediateMinimum, Outcome, ProfilePoint, RejectedPath, SaddlePoint,
     StopCode, Work,
 };
+use spinneb::files::disk;
 use spinneb::geometry::Direction;
 use spinneb::lattice::Chain;
 use spinneb::output::canvas::{Look, Style};
-use spinneb::output::disk;
 use spinneb::output::{
     EnergyPath, EnergyPathPlot, Format, HistoryCsv, KINDS, PLOTS, PathCsv, Picture, PlotFile, ProfileCsv, ReportPage,
     RunReport, SummaryJson, draw_energy_paths, file_names, render_files,

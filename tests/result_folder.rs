@@ -2,7 +2,7 @@
 
 use serde_json::json;
 use spinneb::error::{Error, Result};
-use spinneb::output::disk::{self, File};
+use spinneb::files::disk::{self, File};
 use spinneb::output::file_names;
 use spinneb::output::folder::{self, Destination, Intent, NewResult};
 use std::fs;

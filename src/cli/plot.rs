@@ -5,8 +5,8 @@ use anyhow::Result;
 use rayon::prelude::*;
 use spinneb::config::load;
 use spinneb::error::Error;
+use spinneb::files::disk::File;
 use spinneb::output::canvas::{Look, Style, description};
-use spinneb::output::disk::File;
 use spinneb::output::folder;
 use spinneb::output::{
     EnergyPath, PLOTS, Picture, Places, PlotData, PlotFile, PlotTable, StoredRun, describe, draw_energy_paths,

@@ -2,7 +2,8 @@
 
 use super::note;
 use indicatif::{ProgressBar, ProgressStyle};
-use spinneb::drive::{Goal, HistoryRow, Observer};
+use spinneb::drive::{Goal, HistoryRow, Observer, Partial};
+use spinneb::path::Path;
 use std::collections::VecDeque;
 use std::io::{self, IsTerminal};
 use std::time::{Duration, Instant};
@@ -22,18 +23,32 @@ pub struct Progress<'a> {
     last: Instant,
     stage: String,
     decline: Decline,
+    band: Option<Partial>,
 }
 
 impl<'a> Progress<'a> {
     /// Of the run of this name; silent if `quiet`.
     pub fn new(name: &'a str, quiet: bool) -> Progress<'a> {
         let bar = (!quiet && io::stderr().is_terminal()).then(|| bar(name));
-        Progress { name, quiet, bar, last: Instant::now(), stage: String::new(), decline: Decline::default() }
+        Progress {
+            name,
+            quiet,
+            bar,
+            last: Instant::now(),
+            stage: String::new(),
+            decline: Decline::default(),
+            band: None,
+        }
     }
 
     /// The stage that the run is in, in words.
     pub fn stage_now(&self) -> &str {
         &self.stage
+    }
+
+    /// The band as it stands, if there is one.
+    pub fn band(&mut self) -> Option<Partial> {
+        self.band.take()
     }
 
     /// What says a line without disturbing the bar.
@@ -82,6 +97,10 @@ impl Observer for Progress<'_> {
                 "iteration {n}, {images} images: highest {highest:.6} meV, still turning by {rotation:.1e} rad{left}"
             ));
         }
+    }
+
+    fn relaxed(&mut self, path: &Path, history: &[HistoryRow]) {
+        self.band = Some(Partial { path: path.clone(), history: history.to_vec() });
     }
 
     fn stage(&mut self, what: &str) {

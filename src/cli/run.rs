@@ -6,14 +6,15 @@ use super::{Run, UNFINISHED, USAGE, note, report, worse};
 use anyhow::{Context, Result};
 use serde_json::{Value, json};
 use spinneb::config::{Loaded, load, physics};
-use spinneb::drive::{self, Observer, Outcome, Recorder, Scales};
+use spinneb::drive::{self, Observer, Outcome, Scales};
 use spinneb::error::Error;
-use spinneb::output::disk::{self, File};
+use spinneb::files::disk::{self, File};
 use spinneb::output::folder::{self, Destination, Intent, NewResult};
 use spinneb::output::{
-    Checkpoint, Group, INPUTS, Kind, Lock, StoppedRun, Summary, discard_partial, file_names, is_partial_left,
-    partial_files, render_files, write_partial,
+    Group, INPUTS, Kind, StoppedRun, Summary, discard_partial, file_names, is_partial_left, partial_files,
+    render_files, write_partial,
 };
+use spinneb::record::{Checkpoint, Lock};
 use std::collections::HashMap;
 use std::io::{self, Write};
 use std::num::NonZeroUsize;
@@ -132,14 +133,16 @@ pub(super) fn run_one(arguments: &Run, signals: &Signals, loaded: &Loaded, direc
         say(&format!("{name}: the file system of {place} has no locks: see to it that no other run writes there"));
     }
     let mut progress = Progress::new(name, arguments.quiet);
-    let mut recorder = recorder(arguments, loaded, directory, &progress)?;
-    let outcome = match outcome_recorded(loaded, &problem, &mut progress, &mut recorder, started) {
+    if let Some(checkpoint) = checkpoint(arguments, loaded, directory, &progress)? {
+        problem.control.record(Box::new(checkpoint));
+    }
+    let outcome = match outcome(loaded, &problem, &mut progress, started) {
         Ok(outcome) => outcome,
         Err(error) => match (error.downcast_ref(), signals.caught()) {
             (Some(Error::Stopped), Some((code, word))) => {
-                let stage = progress.stage_now().to_string();
+                let (stage, band) = (progress.stage_now().to_string(), progress.band());
                 drop(progress);
-                if let Err(error) = leave_partial(loaded, &problem, &recorder, directory, &stage, word) {
+                if let Err(error) = leave_partial(loaded, &problem, band.as_ref(), directory, &stage, word) {
                     report(&error);
                 }
                 let on = match Checkpoint::exists(directory) {
@@ -159,7 +162,7 @@ pub(super) fn run_one(arguments: &Run, signals: &Signals, loaded: &Loaded, direc
         Ok(None) => {}
         Err(error) => {
             // what was computed is not lost with the files
-            recorder.save();
+            problem.control.recorder().save();
             if Checkpoint::exists(directory) {
                 let words = "the checkpoint is kept: once files can be written, --resume makes the result of it";
                 say(&format!("{name}: {words}"));
@@ -167,7 +170,8 @@ pub(super) fn run_one(arguments: &Run, signals: &Signals, loaded: &Loaded, direc
             return Err(error.into());
         }
     }
-    drop(recorder);
+    // its checkpoint is closed
+    drop(problem);
     if let Err(error) = discard_leftovers(directory) {
         say(&format!("{name}: the checkpoint is of no use any more but cannot be taken away: {error}"));
     }
@@ -252,18 +256,16 @@ fn discard_leftovers(directory: &Path) -> Result<()> {
     Ok(discard_partial(directory)?)
 }
 
-/// Records the run as asked for, and goes on from what is on record if asked to.
-fn recorder(arguments: &Run, loaded: &Loaded, directory: &Path, progress: &Progress) -> Result<Recorder> {
-    let Some(every) = arguments.checkpoint_every.0 else {
-        return Ok(Recorder::off());
-    };
+/// Where the run is recorded, if that is asked for, with what it goes on from.
+fn checkpoint(arguments: &Run, loaded: &Loaded, directory: &Path, progress: &Progress) -> Result<Option<Checkpoint>> {
+    let Some(every) = arguments.checkpoint_every.0 else { return Ok(None) };
     let new = || Checkpoint::new(directory, VERSION, &loaded.sha256, every, progress.speaker());
     let mut say = progress.speaker();
     if !arguments.resume {
         if Checkpoint::exists(directory) {
             say("starting anew; --resume would have gone on from the checkpoint that is there");
         }
-        return Ok(Recorder::new(Box::new(new())));
+        return Ok(Some(new()));
     }
     let checkpoint = match new().resume() {
         Err(e) if arguments.force => {
@@ -275,14 +277,14 @@ fn recorder(arguments: &Run, loaded: &Loaded, directory: &Path, progress: &Progr
     if !checkpoint.is_empty() {
         say(&format!("going on from the checkpoint, with {} finished steps", checkpoint.len()));
     }
-    Ok(Recorder::new(Box::new(checkpoint)))
+    Ok(Some(checkpoint))
 }
 
 /// What is known of a run that was stopped.
 fn leave_partial(
     loaded: &Loaded,
     problem: &drive::Problem,
-    recorder: &Recorder,
+    band: Option<&drive::Partial>,
     directory: &Path,
     stage: &str,
     word: &str,
@@ -290,7 +292,7 @@ fn leave_partial(
     let reason = format!("{word} while {stage}: this is no result; run the config with --resume to go on");
     let (name, sha) = (loaded.name.as_str(), loaded.sha256.as_str());
     let stopped = StoppedRun { name, version: VERSION, config_sha256: sha, stage, reason: &reason };
-    let outcome = recorder.partial().map(|band| drive::partial(problem, band, &reason));
+    let outcome = band.map(|band| drive::partial(problem, band, &reason));
     let report = outcome.as_ref().map(|outcome| loaded.report(outcome)).transpose()?;
     let files = partial_files(&stopped, report.as_ref())?;
     Ok(write_partial(directory, &files)?)
@@ -303,17 +305,7 @@ pub(super) fn outcome(
     observer: &mut dyn Observer,
     started: Instant,
 ) -> Result<Outcome> {
-    outcome_recorded(loaded, problem, observer, &mut Recorder::off(), started)
-}
-
-fn outcome_recorded(
-    loaded: &Loaded,
-    problem: &drive::Problem,
-    observer: &mut dyn Observer,
-    recorder: &mut Recorder,
-    started: Instant,
-) -> Result<Outcome> {
-    let mut outcome = drive::run_recorded(problem, observer, recorder)?;
+    let mut outcome = drive::run(problem, observer)?;
     outcome.work.seconds = started.elapsed().as_secs_f64();
     outcome.warnings.extend(loaded.warnings.iter().cloned());
     let h = &problem.hamiltonian;

@@ -5,7 +5,7 @@ use anyhow::Result;
 use clap::{CommandFactory, ValueEnum};
 use serde_json::Value;
 use spinneb::config::{SCHEMA_FILE, schema};
-use spinneb::output::disk;
+use spinneb::files::disk;
 use std::io::{self, Write};
 use std::path::PathBuf;
 

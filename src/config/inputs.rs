@@ -6,8 +6,8 @@
 use super::Config;
 use crate::error::{Error, Result};
 use crate::files::Stored;
+use crate::files::disk::File;
 use crate::output::INPUTS;
-use crate::output::disk::File;
 use crate::path::guess::GuessSpec;
 use crate::state::StateSpec;
 use serde_json::Value;

@@ -9,7 +9,6 @@ use super::{Config, Name};
 use crate::error::{Error, Result, both};
 use crate::files::open_file;
 use crate::lattice::Lattice;
-use crate::output;
 use crate::words::quoted;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
@@ -36,7 +35,7 @@ pub struct Loaded {
     /// SHA-256 of [`as_run`](Self::as_run) in hexadecimal.
     pub sha256: String,
     /// The files of spins that it names, as they are kept with the result.
-    pub inputs: Vec<output::disk::File>,
+    pub inputs: Vec<crate::files::disk::File>,
     /// What the user should know of these files.
     pub warnings: Vec<String>,
     /// The config's file as the system knows it; nothing if it came from standard input.

@@ -1,7 +1,7 @@
 //! From a band's top to a refined saddle, and away from saddles of higher index.
 
 use super::minimum::{turned, turns};
-use super::recorder::Recorder;
+use super::stored::recorded;
 use super::top::Top;
 use crate::band::Band;
 use crate::energy::Evaluator;
@@ -12,6 +12,7 @@ use crate::path::{Path, largest_angle};
 use crate::saddle::{Refined, Spectrum, Verdict, follow_modes, refine};
 use crate::sphere::{move_points, rotation_of};
 use crate::spins::Spins;
+use serde::{Deserialize, Serialize};
 
 /// A mode of less than this part of c is shallow.
 const SHALLOW: f64 = 1e-3;
@@ -23,7 +24,7 @@ const PUSH: f64 = 0.8;
 const SAME_PLACE: f64 = 2.5;
 
 /// Where a refined saddle was looked for, and what was found.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Found {
     /// The start.
     pub top: Top,
@@ -81,9 +82,9 @@ impl Found {
     }
 
     /// The same, as far as it is not on record.
-    pub fn recorded(h: Evaluator, top: Top, c: f64, hop: f64, recorder: &mut Recorder) -> Result<Found> {
+    pub fn recorded(h: Evaluator, top: Top, c: f64, hop: f64) -> Result<Found> {
         let [m, tau] = [&top.m, &top.tau].map(Vec::clone);
-        recorder.call(h, &[&m, &tau], || Ok(Found::at(h, top, c, hop)))
+        recorded(h, "saddle", &[&m, &tau], || Ok(Found::at(h, top, c, hop)))
     }
 
     /// The saddle of index one a little along the second-lowest mode.

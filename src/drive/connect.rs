@@ -9,6 +9,7 @@
 use super::climb::{Found, ZOOMS, zoomed};
 use super::minimum::{Link, Minimum, turned, turns};
 use super::relaxation::{Goal, Relaxation};
+use super::stored::recorded;
 use super::top::{Top, direction, highest, tops};
 use crate::band::Band;
 use crate::energy::Evaluator;
@@ -123,7 +124,7 @@ pub fn follow(
             close(&mut sequence, &mut open, &stretch.b, h);
             continue;
         };
-        let mut link = Link::recorded(h, found, c, relaxation.recorder)?;
+        let mut link = Link::recorded(h, found, c)?;
         if link.before.is_same(h, &stretch.b) || link.after.is_same(h, &stretch.a) {
             link.reverse();
         }
@@ -242,7 +243,7 @@ fn new_saddle(
     let mut high: Vec<Found> = Vec::new();
     let mut known_top = None;
     for (k, top) in tops.iter().take(MOST_TOPS).enumerate() {
-        let found = Found::recorded(h, top.clone(), c, hop, relaxation.recorder)?;
+        let found = Found::recorded(h, top.clone(), c, hop)?;
         if !is_new(&found) {
             known_top = known_top.or((k == 0).then_some(found));
         } else if found.refined.state.energy_mev <= most {
@@ -253,7 +254,7 @@ fn new_saddle(
     }
     for (end, next) in [(0, 1), (last, last - 1)] {
         let input = [band.path().image(end), band.path().image(next)];
-        let from_end = relaxation.recorder.call(h, &input, || Ok(uphill(h, &band, end, next, c)))?;
+        let from_end = recorded(h, "uphill from an end", &input, || Ok(uphill(h, &band, end, next, c)))?;
         for found in from_end.into_iter().filter(is_new) {
             if found.refined.state.energy_mev <= most {
                 return Ok(Some(found));

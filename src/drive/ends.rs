@@ -10,6 +10,7 @@ use crate::path::largest_angle;
 use crate::saddle::{Point, Spectrum, State, descend, polish};
 use crate::sphere::rotation_of;
 use crate::spins::Spins;
+use serde::{Deserialize, Serialize};
 use std::mem::take;
 
 /// Largest rotation of a spin in one step (rad).
@@ -22,7 +23,7 @@ const NEARLY: f64 = 1e6;
 const SHIFTS: [f64; 3] = [1e-3, 1e-9, 1e-4];
 
 /// A relaxed state.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Relaxed {
     /// The spins.
     pub spins: Spins,
@@ -39,7 +40,7 @@ pub struct Relaxed {
 }
 
 /// How a saddle was left for a minimum.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WayDown {
     /// The site that its lowest mode turns most.
     pub site: usize,

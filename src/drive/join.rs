@@ -6,7 +6,8 @@
 
 use super::minimum::{Link, turned, turns};
 use super::relaxation::{Goal, Relaxation};
-use super::{Images, NebSettings, Recorder, Scales, Silent};
+use super::stored::recorded;
+use super::{Images, NebSettings, Scales, Silent};
 use crate::band::{Band, Laplacian};
 use crate::energy::Evaluator;
 use crate::error::Result;
@@ -46,12 +47,11 @@ pub fn joined(
     images: Images,
     apart: f64,
     tools: &Tools,
-    recorder: &mut Recorder,
 ) -> Result<Option<Joined>> {
     let Some(raw) = stretches(h, links, a, b) else { return Ok(None) };
     let Some(counts) = counts(&raw, images, apart) else { return Ok(None) };
     let input: Vec<&[f64]> = raw.iter().map(Path::as_slice).collect();
-    let pieces: Vec<Path> = recorder.call(h, &input, || {
+    let pieces: Vec<Path> = recorded(h, "stretches", &input, || {
         raw.par_iter().zip(&counts).map(|(piece, &n)| relaxed(h, piece.resampled(n), tools)).collect()
     })?;
     let mut row: Vec<Spins> = vec![a.clone()];
@@ -137,7 +137,7 @@ fn relaxed(h: Evaluator, path: Path, tools: &Tools) -> Result<Path> {
         Follows::Sweep => 100,
         _ => 2000,
     };
-    let (mut silent, mut off) = (Silent, Recorder::off());
+    let mut silent = Silent;
     let mut relaxation = Relaxation {
         settings: tools.settings,
         climb: false,
@@ -146,7 +146,6 @@ fn relaxed(h: Evaluator, path: Path, tools: &Tools) -> Result<Path> {
         laplacian: tools.laplacian,
         history: Vec::new(),
         observer: &mut silent,
-        recorder: &mut off,
     };
     let mut band = Band::new(h, path);
     relaxation.run(&mut band, Goal::Tight, limit.min(tools.settings.max_evaluations))?;

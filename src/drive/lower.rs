@@ -7,7 +7,7 @@
 
 use super::climb::Found;
 use super::minimum::Link;
-use super::recorder::Recorder;
+use super::stored::recorded;
 use super::top::Top;
 use crate::energy::Evaluator;
 use crate::error::Result;
@@ -31,26 +31,26 @@ const MOST_WALLS: usize = 8;
 
 /// The links with their highest saddle exchanged for a lower one between the same two minima; none if there is none in sight.
 /// c is the stiffness scale (meV).
-pub fn lowered(h: Evaluator, links: &[Link], c: f64, recorder: &mut Recorder) -> Result<Option<Vec<Link>>> {
+pub fn lowered(h: Evaluator, links: &[Link], c: f64) -> Result<Option<Vec<Link>>> {
     let mut better: Option<Vec<Link>> = None;
     for _ in 0..ROUNDS {
         let now = better.as_deref().unwrap_or(links);
         let height = |k: &usize| now[*k].found.refined.state.energy_mev;
         let Some(k) = (0..now.len()).max_by(|i, j| height(i).total_cmp(&height(j))) else { break };
-        let Some(lower) = beside(h, &now[k], c, recorder)? else { break };
+        let Some(lower) = beside(h, &now[k], c)? else { break };
         better.get_or_insert_with(|| links.to_vec())[k] = lower;
     }
     Ok(better)
 }
 
 /// A lower saddle between the minima of a link, with one of its walls turned.
-fn beside(h: Evaluator, link: &Link, c: f64, recorder: &mut Recorder) -> Result<Option<Link>> {
+fn beside(h: Evaluator, link: &Link, c: f64) -> Result<Option<Link>> {
     let saddle = &link.found.refined.state;
     for start in turned_walls(h, &saddle.m, APART * c) {
-        let found = recorder.call(h, &[&start], || Ok(saddle_at(h, &start, c)))?;
+        let found = recorded(h, "saddle beside", &[&start], || Ok(saddle_at(h, &start, c)))?;
         let below = |f: &Found| saddle.above_mev(&f.refined.state) > LOWER * c;
         let Some(found) = found.into_iter().next().filter(|f| f.is_saddle(c) && below(f)) else { continue };
-        let mut lower = Link::recorded(h, found, c, recorder)?;
+        let mut lower = Link::recorded(h, found, c)?;
         if lower.before.is_same(h, &link.after) && lower.after.is_same(h, &link.before) {
             lower.reverse();
         }

@@ -2,7 +2,7 @@
 
 use super::climb::Found;
 use super::ends::relax_to_minimum;
-use super::recorder::Recorder;
+use super::stored::recorded;
 use crate::energy::Evaluator;
 use crate::error::Result;
 use crate::geometry::Direction;
@@ -13,6 +13,7 @@ use crate::saddle::{Spectrum, State, descend};
 use crate::sphere::rotate_sites;
 use crate::spins::Spins;
 use crate::threads::both;
+use serde::{Deserialize, Serialize};
 
 /// How many eigenvalues of a saddle are reported.
 const REPORTED: usize = 6;
@@ -24,7 +25,7 @@ const PURE: f64 = 0.1;
 const SAME: f64 = 1e-3;
 
 /// A stationary state with its spectrum.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Minimum {
     /// The spins.
     pub spins: Spins,
@@ -134,7 +135,7 @@ fn falling(found: &Found) -> Vec<f64> {
 }
 
 /// A saddle with the minima on its two sides.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Link {
     /// The saddle.
     pub found: Found,
@@ -186,10 +187,10 @@ impl Link {
     }
 
     /// The same, as far as it is not on record.
-    pub fn recorded(h: Evaluator, found: Found, c: f64, recorder: &mut Recorder) -> Result<Link> {
+    pub fn recorded(h: Evaluator, found: Found, c: f64) -> Result<Link> {
         let Found { top, refined } = &found;
         let [m, valley, tau] = [&refined.state.m, &refined.valley, &top.tau].map(Vec::clone);
-        recorder.call(h, &[&m, &valley, &tau], || Link::of(h, found, c))
+        recorded(h, "descents", &[&m, &valley, &tau], || Link::of(h, found, c))
     }
 
     /// Exchanges its two sides: which of them the path comes from is not always plain at the saddle itself.

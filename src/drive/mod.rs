@@ -1,6 +1,5 @@
 //! From two states to a barrier: relax the ends, make a first path, relax the band, read off what it found.
 
-mod bytes;
 mod candidate;
 mod climb;
 mod connect;
@@ -12,7 +11,6 @@ mod minimum;
 mod outcome;
 mod problem;
 mod rates;
-mod recorder;
 mod relaxation;
 mod relaxed;
 mod report;
@@ -28,14 +26,25 @@ pub use minimum::{Link, Minimum};
 pub use outcome::*;
 pub use problem::{Images, NebSettings, Problem};
 pub use rates::{is_said_of_rates, stored_rates, warnings as rates_warnings};
-pub use recorder::{Keep, Partial, Recorder};
+
 pub use relaxation::{Goal, Relaxation, image_levels, prominent_maxima, refined};
 pub use relaxed::{RelaxedState, relaxed_state};
 pub use report::partial;
-pub use run::{FEWEST_IMAGES, run, run_recorded};
+pub use run::{FEWEST_IMAGES, run};
 pub use scales::Scales;
 pub use stop::{Stop, StopCode};
 pub use top::{Top, tops};
+
+use crate::path::Path;
+
+/// A band as it stood when a run was stopped.
+#[derive(Clone, Debug)]
+pub struct Partial {
+    /// Its images.
+    pub path: Path,
+    /// Its iterations.
+    pub history: Vec<HistoryRow>,
+}
 
 /// Watches a run.
 pub trait Observer: Send {
@@ -44,6 +53,9 @@ pub trait Observer: Send {
 
     /// A stage begins, in words.
     fn stage(&mut self, _what: &str) {}
+
+    /// A band as its relaxation left it, finished or stopped.
+    fn relaxed(&mut self, _path: &Path, _history: &[HistoryRow]) {}
 
     /// The relaxation of a band begins. A tight one ends once no spin is predicted to turn by more than `_tolerance_rad`.
     fn relaxing(&mut self, _goal: Goal, _tolerance_rad: f64) {}

@@ -163,7 +163,7 @@ pub struct ProfilePoint {
 }
 
 /// One row a band iteration.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HistoryRow {
     /// Counted from 1.
     pub iteration: usize,

@@ -7,6 +7,7 @@ use crate::lattice::Chain;
 use crate::optimise::{Implicit, OptimiserSpec};
 use crate::path::guess::{GuessSpec, NoiseSpec};
 use crate::rates::RateSettings;
+use crate::record::Fingerprint;
 use crate::spins::Spins;
 use crate::state::{Sense, StateContext};
 
@@ -78,6 +79,19 @@ impl Problem {
     /// What states on the way need to know.
     pub fn states(&self, scales: &Scales) -> StateContext<'_> {
         StateContext { sense: self.sense, ..scales.states(&self.chain, &self.hamiltonian) }
+    }
+
+    /// What tells it from other problems: its energies, states and settings.
+    pub(super) fn fingerprint(&self) -> Fingerprint {
+        let h = &self.hamiltonian;
+        let mut print = Fingerprint::default().real(h.reference_mev()).real(h.stiffness_mev());
+        for spins in [&self.initial, &self.final_state] {
+            let mut gradient = vec![0.0; 3 * h.sites()];
+            let energy = h.energy_gradient(spins.as_slice(), &mut gradient);
+            print = print.real(energy).row(&gradient).row(spins.as_slice());
+        }
+        let Problem { relax_ends, images, guess, noise, smooth, refine, certify, neb, .. } = self;
+        print.text(&format!("{relax_ends} {images:?} {guess:?} {noise:?} {smooth:?} {refine} {certify} {neb:?}"))
     }
 
     /// Whether the maxima are followed to their saddles.

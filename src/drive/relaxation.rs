@@ -1,9 +1,8 @@
 //! The loop that relaxes a band: evaluate, judge, move; it counts and says why it stopped.
 
-use super::bytes::{Fingerprint, Reader, Writer};
 use super::outcome::HistoryRow;
-use super::stored::{Stored, are_unit, read_history, write_history};
-use super::{NebSettings, Observer, Recorder, Scales, Stop};
+use super::stored::{Stored, are_counts, are_finite};
+use super::{NebSettings, Observer, Scales, Stop};
 use crate::band::{Band, Laplacian, Sweep, align_rotations};
 use crate::energy::Evaluator;
 use crate::error::Result;
@@ -11,7 +10,9 @@ use crate::geometry::Vector;
 use crate::linalg::slab;
 use crate::optimise::{Follows, Optimiser, OptimiserSpec};
 use crate::path::Path;
+use crate::record::Fingerprint;
 use crate::sphere::rotation_of;
+use serde::{Deserialize, Serialize};
 
 /// |F⊥|∞/c that is enough to double the images or to read off which path is lowest.
 pub const LOOSE: f64 = 5e-3;
@@ -43,11 +44,10 @@ pub struct Relaxation<'a> {
     pub history: Vec<HistoryRow>,
     /// Who watches.
     pub observer: &'a mut dyn Observer,
-    /// What is recorded, to go on from there if the run is interrupted.
-    pub recorder: &'a mut Recorder,
 }
 
 /// Watches the predicted rotation: a sweep that runs in circles is damped, and what makes no progress ends.
+#[derive(Clone, Serialize, Deserialize)]
 struct Progress {
     best: f64,
     since: usize,
@@ -91,26 +91,30 @@ impl Relaxation<'_> {
     pub fn run<'h>(&mut self, band: &mut Band<'h>, goal: Goal, limit: usize) -> Result<Stop> {
         let h = band.evaluator();
         let first = self.history.len();
-        let ticket = self.recorder.ticket(h, |print| fingerprint(print, band, goal, limit));
-        if let Some((stop, rows)) = self.recorder.answer(h, &ticket, |r| read_end(r, band)) {
-            self.history.extend(rows);
-            return Ok(stop);
+        let call = h.call("relaxation", |print| fingerprint(print, band, goal, limit));
+        if let Some(end) = call.answer(|end: End| end.restored(band)) {
+            self.history.extend(end.rows);
+            return Ok(end.stop);
         }
         self.observer.relaxing(goal, self.settings.tolerance);
         let mut now = self.start(h);
-        if let Some(rows) = self.recorder.resume(h, &ticket, |r| now.read(r, band)) {
-            self.history.extend(rows);
+        if let Some(stand) = call.underway(|stand: Stand| stand.restored(band)) {
+            self.history.extend(now.take_over(stand, band));
         }
         let mut direction = vec![0.0; band.inner_mut().len()];
         let stop = loop {
-            let state = || ticket.sealed(h, |w| now.write(w, band, &self.history[first..]));
-            self.recorder.obey(h, || Some(state()))?;
-            self.recorder.save_if_due(state);
+            call.obey(|| Some(now.stand(band, &self.history[first..])))?;
+            call.save_if_due(|| now.stand(band, &self.history[first..]));
             if let Some(stop) = self.step(band, &mut now, &mut direction, goal, limit) {
                 break stop;
             }
         };
-        self.recorder.finish(h, &ticket, |w| write_end(w, band, stop, &self.history[first..]));
+        call.finish(|| End {
+            path: band.path().clone(),
+            evaluations: band.evaluations(),
+            stop,
+            rows: self.history[first..].to_vec(),
+        });
         Ok(stop)
     }
 
@@ -220,66 +224,89 @@ impl Relaxation<'_> {
     }
 }
 
+/// All that the next iteration depends on, with the iterations so far: where a relaxation stands.
+#[derive(Serialize, Deserialize)]
+struct Stand {
+    path: Path,
+    evaluations: usize,
+    shifts: Vec<f64>,
+    /// What the optimiser remembers.
+    memory: Vec<Vec<f64>>,
+    progress: Progress,
+    rows: Vec<HistoryRow>,
+}
+
+/// The end of a relaxation.
+#[derive(Serialize, Deserialize)]
+struct End {
+    path: Path,
+    evaluations: usize,
+    stop: Stop,
+    rows: Vec<HistoryRow>,
+}
+
 impl Iterate {
-    /// All that the next iteration depends on, with the iterations so far.
-    fn write(&self, w: &mut Writer, band: &Band, rows: &[HistoryRow]) {
-        w.row(band.path().as_slice());
-        w.whole(band.evaluations());
-        w.row(self.sweep.shifts());
-        w.rows(&self.optimiser.memory());
-        w.real(self.progress.best);
-        w.whole(self.progress.since);
-        w.real(self.progress.damping);
-        write_history(rows, w);
+    fn stand(&self, band: &Band, rows: &[HistoryRow]) -> Stand {
+        Stand {
+            path: band.path().clone(),
+            evaluations: band.evaluations(),
+            shifts: self.sweep.shifts().to_vec(),
+            memory: self.optimiser.memory(),
+            progress: self.progress.clone(),
+            rows: rows.to_vec(),
+        }
     }
 
-    /// Goes on from what was written; the iterations up to there.
-    fn read(&mut self, r: &mut Reader, band: &mut Band) -> Option<Vec<HistoryRow>> {
-        let images = read_images(r, band)?;
-        let evaluations = r.count()?;
-        let shifts = r.finite_row().filter(|shifts| shifts.is_empty() || shifts.len() == band.images())?;
-        // an optimiser remembers vectors of the inner images, and single numbers
-        let inner = band.inner_mut().len();
-        let memory = r.list(|r| r.finite_row().filter(|row| row.len() == inner || row.len() < 2))?;
-        let (best, since, damping) = (r.real()?, r.count()?, r.finite()?);
-        let rows = read_history(r)?;
-        band.restore(&images, evaluations);
-        self.sweep.set_shifts(shifts);
-        self.optimiser.remember(memory);
+    /// Goes on from where another one stood; the iterations up to there.
+    fn take_over(&mut self, stand: Stand, band: &mut Band) -> Vec<HistoryRow> {
+        band.restore(stand.path.as_slice(), stand.evaluations);
+        self.sweep.set_shifts(stand.shifts);
+        self.optimiser.remember(stand.memory);
+        let Progress { best, since, damping, .. } = stand.progress;
         (self.progress.best, self.progress.since, self.progress.damping) = (best, since, damping);
-        Some(rows)
+        stand.rows
     }
+}
+
+impl Stand {
+    /// Nothing where it cannot be of this band.
+    fn restored(self, band: &Band) -> Option<Stand> {
+        // an optimiser remembers vectors of the inner images, and single numbers
+        let inner = band.path().as_slice().len() - 6 * band.path().sites();
+        let is_memory = |row: &Vec<f64>| are_finite(row) && (row.len() == inner || row.len() < 2);
+        let is_sound = fits(&self.path, band)
+            && are_counts(&[self.evaluations, self.progress.since])
+            && are_finite(&self.shifts)
+            && (self.shifts.is_empty() || self.shifts.len() == band.images())
+            && self.memory.iter().all(is_memory)
+            && are_finite(&[self.progress.damping]);
+        let rows = self.rows.restored(band.evaluator())?;
+        is_sound.then_some(Stand { rows, ..self })
+    }
+}
+
+impl End {
+    /// Puts the band where its relaxation ended; nothing where that was another band.
+    fn restored(self, band: &mut Band) -> Option<End> {
+        let is_sound = fits(&self.path, band) && are_counts(&[self.evaluations]) && self.evaluations > 0;
+        is_sound.then_some(())?;
+        let (h, evaluations) = (band.evaluator(), self.evaluations - 1);
+        let end = End { stop: self.stop.restored(h)?, rows: self.rows.restored(h)?, ..self };
+        band.restore(end.path.as_slice(), evaluations);
+        band.evaluate();
+        Some(end)
+    }
+}
+
+/// Whether a path has the size of a band.
+fn fits(path: &Path, band: &Band) -> bool {
+    (path.images(), path.sites()) == (band.images(), band.path().sites())
 }
 
 fn fingerprint(print: Fingerprint, band: &Band, goal: Goal, limit: usize) -> Fingerprint {
     let held = (0..band.images()).filter(|&k| band.is_held(k)).fold(print, Fingerprint::whole);
-    let print = held.whole(Stop::KIND).whole(usize::from(goal == Goal::Tight)).whole(limit);
+    let print = held.whole(usize::from(goal == Goal::Tight)).whole(limit);
     print.whole(band.evaluations()).row(band.path().as_slice())
-}
-
-/// The end of a relaxation.
-fn write_end(w: &mut Writer, band: &Band, stop: Stop, rows: &[HistoryRow]) {
-    w.row(band.path().as_slice());
-    w.whole(band.evaluations());
-    stop.write(w);
-    write_history(rows, w);
-}
-
-/// The images of a band of this size.
-fn read_images(r: &mut Reader, band: &Band) -> Option<Vec<f64>> {
-    let slab = 3 * band.path().sites();
-    r.row().filter(|m| m.len() == band.path().as_slice().len() && m.chunks(slab).all(are_unit))
-}
-
-/// Puts the band where its relaxation ended.
-fn read_end(r: &mut Reader, band: &mut Band) -> Option<(Stop, Vec<HistoryRow>)> {
-    let images = read_images(r, band)?;
-    let evaluations = r.count()?;
-    let stop = Stop::read(r, band.evaluator())?;
-    let rows = read_history(r)?;
-    band.restore(&images, evaluations.checked_sub(1)?);
-    band.evaluate();
-    Some((stop, rows))
 }
 
 /// Whether an optimiser needs the preconditioner.

@@ -11,8 +11,9 @@ use super::minimum::{Link, Minimum};
 use super::outcome::*;
 use super::relaxation::{Goal, Relaxation, height, image_levels, needs_laplacian, refined};
 use super::report::{self, Proof};
+use super::stored::recorded;
 use super::top::{Top, highest, tops};
-use super::{Images, Observer, Problem, Recorder, Scales, Silent, Stop};
+use super::{Images, Observer, Problem, Scales, Silent, Stop};
 use crate::band::{Band, Laplacian, align_rotations};
 use crate::energy::Evaluator;
 use crate::error::Result;
@@ -50,20 +51,12 @@ const WINDOW: f64 = 0.1;
 /// Force at a relaxed end, in parts of the largest stiffness.
 pub(super) const END_TOLERANCE: f64 = 1e-14;
 
-/// Finds the minimum-energy path of a problem.
+/// Finds the minimum-energy path of a problem, taking what its [`Control`](crate::control::Control) finds on record from there, and
+/// recording what it computes. A run that its control stops ends with [`Error::Stopped`](crate::error::Error::Stopped).
 pub fn run(problem: &Problem, observer: &mut dyn Observer) -> Result<Outcome> {
-    run_recorded(problem, observer, &mut Recorder::off())
-}
-
-/// The same, taking what it finds on record from there, and recording what it computes.
-///
-/// A run that is stopped ([`Hamiltonian::obey`](crate::energy::Hamiltonian::obey)) ends with
-/// [`Error::Stopped`](crate::error::Error::Stopped); with a recorder of the same [`Keep`](super::Keep) it goes on later, to the
-/// outcome that it would have had.
-pub fn run_recorded(problem: &Problem, observer: &mut dyn Observer, recorder: &mut Recorder) -> Result<Outcome> {
-    recorder.begin(problem);
+    problem.control.recorder().begin(|| problem.fingerprint());
     // on a thread of the pool, so that it is not left and entered again for every band
-    rayon::scope(|_| Run::prepare(problem, observer, recorder)?.finish())
+    rayon::scope(|_| Run::prepare(problem, observer)?.finish())
 }
 
 /// A path with what is known of it.
@@ -92,7 +85,6 @@ fn over(c: &Candidate, links: &[Link]) -> f64 {
 struct Run<'a, 'o> {
     problem: &'a Problem,
     observer: &'o mut dyn Observer,
-    recorder: &'o mut Recorder,
     started: Instant,
     ends: [Relaxed; 2],
     scales: Scales,
@@ -105,18 +97,14 @@ struct Run<'a, 'o> {
 }
 
 impl<'a, 'o> Run<'a, 'o> {
-    fn prepare(
-        problem: &'a Problem,
-        observer: &'o mut dyn Observer,
-        recorder: &'o mut Recorder,
-    ) -> Result<Run<'a, 'o>> {
+    fn prepare(problem: &'a Problem, observer: &'o mut dyn Observer) -> Result<Run<'a, 'o>> {
         let started = Instant::now();
         let h = problem.evaluator();
         observer.stage("relaxing the ends");
         let mut warnings = Vec::new();
         let given = [&problem.initial, &problem.final_state];
         let ends = if problem.relax_ends {
-            recorder.call(h, &given.map(|spins| spins.as_slice()), || relaxed_ends(h, given))?
+            recorded(h, "ends", &given.map(|spins| spins.as_slice()), || relaxed_ends(h, given))?
         } else {
             given.map(|spins| kept(h, spins))
         };
@@ -129,13 +117,12 @@ impl<'a, 'o> Run<'a, 'o> {
             );
         }
         let (a, b) = (ends[0].spins.as_slice(), ends[1].spins.as_slice());
-        let scales = recorder.call(h, &[a, b], || Ok(Scales::of_ends(&h, a, b)))?;
+        let scales = recorded(h, "scales", &[a, b], || Ok(Scales::of_ends(&h, a, b)))?;
         let axes = h.symmetry_axes_at(a);
         let laplacian = needs_laplacian(&problem.neb.optimiser).then(|| Laplacian::new(&h, scales.stiffness_mev));
         let mut run = Run {
             problem,
             observer,
-            recorder,
             started,
             ends,
             scales,
@@ -240,7 +227,7 @@ impl<'a, 'o> Run<'a, 'o> {
             return Ok(None);
         }
         let scale = self.scales.stiffness_mev;
-        let Some(links) = lowered(self.problem.evaluator(), &proof.links, scale, self.recorder)? else {
+        let Some(links) = lowered(self.problem.evaluator(), &proof.links, scale)? else {
             return Ok(None);
         };
         let lower = Proof { ends: proof.ends.clone(), links, doubts: Vec::new() };
@@ -309,7 +296,7 @@ impl<'a, 'o> Run<'a, 'o> {
             laplacian: self.laplacian.as_ref(),
         };
         let ends = [&self.ends[0].spins, &self.ends[1].spins];
-        let joined = joined(h, &proof.links, ends, self.problem.images, 0.9 * RESOLVED, &tools, self.recorder)?;
+        let joined = joined(h, &proof.links, ends, self.problem.images, 0.9 * RESOLVED, &tools)?;
         let Some(Joined { path, stops }) = joined else { return Ok(false) };
         let mut band = Band::continued(h, path, c.band.evaluations());
         for k in stops {
@@ -355,7 +342,7 @@ impl<'a, 'o> Run<'a, 'o> {
                 None => Link::between(h, highest.clone(), ends.clone()),
                 Some(_) => None,
             };
-            sequence.links.push(alone.map_or_else(|| Link::recorded(h, highest.clone(), scale, self.recorder), Ok)?);
+            sequence.links.push(alone.map_or_else(|| Link::recorded(h, highest.clone(), scale), Ok)?);
         }
         let mut doubts: Vec<String> = sequence.links.iter().filter_map(|l| l.doubt(h)).collect();
         doubts.extend(sequence.gap);
@@ -379,7 +366,6 @@ impl<'a, 'o> Run<'a, 'o> {
             laplacian: self.laplacian.as_ref(),
             history,
             observer: if quiet { &mut self.silent } else { &mut *self.observer },
-            recorder: self.recorder,
         }
     }
 
@@ -461,7 +447,7 @@ impl<'a, 'o> Run<'a, 'o> {
             }
             let h = c.band.evaluator();
             c.found = match self.zoom(c)? {
-                Some(top) => Some(Found::recorded(h, top, scale, self.scales.half_site_rad(), self.recorder)?),
+                Some(top) => Some(Found::recorded(h, top, scale, self.scales.half_site_rad())?),
                 None => None,
             };
             let Some(found) = c.found.as_ref() else { break };
@@ -514,7 +500,7 @@ impl<'a, 'o> Run<'a, 'o> {
         for top in tops(&c.band, WINDOW * height(&c.band)) {
             let f = match c.found.as_ref().filter(|f| is_seated(&c.band, top.image, f)) {
                 Some(f) => Found { top, refined: f.refined.clone() },
-                None => Found::recorded(h, top, scale, self.scales.half_site_rad(), self.recorder)?,
+                None => Found::recorded(h, top, scale, self.scales.half_site_rad())?,
             };
             if f.is_saddle(scale) && !found.iter().any(|g| same(&g.refined.state.m, &f.refined.state.m)) {
                 found.push(f);
@@ -585,7 +571,7 @@ impl<'a, 'o> Run<'a, 'o> {
         let mut relaxation = self.relaxation(std::mem::take(&mut c.history), false);
         let stop = relaxation.run(&mut c.band, goal, limit);
         c.history = relaxation.history;
-        self.recorder.show(&c.band, &c.history);
+        self.observer.relaxed(c.band.path(), &c.history);
         c.stop = stop?;
         Ok(())
     }

@@ -7,9 +7,10 @@ use crate::linalg::{eigenvalues_symmetric, slab};
 use crate::saddle::State;
 use crate::state::StateContext;
 use crate::threads::both;
+use serde::{Deserialize, Serialize};
 
 /// Scales from which tolerances, shifts and image counts follow.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scales {
     /// Stiffness c (meV): the softest mode of a stable end, 2K for an easy axis.
     pub stiffness_mev: f64,

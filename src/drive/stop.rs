@@ -30,7 +30,7 @@ pub enum StopCode {
 }
 
 /// The end of a band's relaxation.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Stop {
     /// The goal was met.
     Converged {

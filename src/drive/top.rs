@@ -6,9 +6,10 @@ use crate::linalg::slab;
 use crate::path::blend;
 use crate::sphere::write_logs;
 use crate::threads::both;
+use serde::{Deserialize, Serialize};
 
 /// A maximum of a band, as far as the band tells.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Top {
     /// Spins, component-major.
     pub m: Vec<f64>,

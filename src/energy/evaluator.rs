@@ -1,8 +1,9 @@
 //! An energy in use: whoever evaluates it is counted, and learns that it is to stop.
 
 use super::Hamiltonian;
-use crate::control::Control;
+use crate::control::{Call, Control};
 use crate::field::Components;
+use crate::record::Fingerprint;
 use std::ops::{Deref, Range};
 
 /// A [`Hamiltonian`] whose gradients are counted by a [`Control`], if there is one.
@@ -47,16 +48,9 @@ impl<'a> Evaluator<'a> {
         self.control.is_some_and(Control::is_stopped)
     }
 
-    /// Gradients of one image counted so far.
-    pub fn evaluations(&self) -> usize {
-        self.control.map_or(0, Control::evaluations)
-    }
-
-    /// See [`Control::set_evaluations`].
-    pub(crate) fn set_evaluations(&self, count: usize) {
-        if let Some(control) = self.control {
-            control.set_evaluations(count);
-        }
+    /// A computation of a kind, with its input, to be recorded or answered from the record.
+    pub fn call(&self, kind: &str, input: impl FnOnce(Fingerprint) -> Fingerprint) -> Call<'a> {
+        Call::begin(self.control, kind, input)
     }
 
     fn count(&self) {

@@ -6,6 +6,7 @@
 
 mod collector;
 mod csv;
+pub mod disk;
 mod npy;
 mod npz;
 mod numbers;

@@ -12,10 +12,10 @@
 //! and what lies about is known to be the program's, from the manifest of `summary.json` or from `.spinneb.writing`.
 
 use super::disk::{self, File, Kind, MARK, io_error, refused};
-use super::lock::Lock;
 use super::manifest::{Manifest, Owned, There, hash};
 use super::summary::Head;
 use crate::error::{Error, Result};
+use crate::record::Lock;
 use serde::Deserialize;
 use std::collections::BTreeSet;
 use std::fs;

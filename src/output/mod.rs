@@ -1,5 +1,5 @@
-//! What is written: each format is a pure function of the outcome, from [`RunReport`] to bytes; only [`disk`] touches the disk,
-//! with the [`folder`] of a result and the [`Checkpoint`] and the [`Lock`] of a run at work.
+//! What is written: each format is a pure function of the outcome, from [`RunReport`] to bytes; only
+//! [`disk`] touches the disk, with the [`folder`] of a result.
 //!
 //! Energies are in meV, angles and path lengths in rad, and every outer name carries its unit. The same outcome gives the same
 //! bytes: there are no time stamps.
@@ -7,18 +7,14 @@
 mod arrhenius_plot;
 pub mod canvas;
 mod certainty;
-mod checkpoint;
 mod columns;
 mod config_copy;
 mod convergence_plot;
 mod csv;
-pub mod disk;
 mod energy_path_plot;
 mod energy_terms_plot;
 pub mod folder;
 mod font;
-mod frame;
-mod lock;
 mod magnetisation_plot;
 mod manifest;
 mod partial;
@@ -38,13 +34,11 @@ pub mod sweep;
 
 pub use arrhenius_plot::{ArrheniusPlot, draw_lifetimes};
 pub use certainty::Certainty;
-pub use checkpoint::{Checkpoint, Identity};
 pub use config_copy::ConfigCopy;
 pub use convergence_plot::ConvergencePlot;
 pub use csv::{HistoryCsv, PathCsv, ProfileCsv};
 pub use energy_path_plot::{EnergyPath, EnergyPathPlot, draw_energy_paths};
 pub use energy_terms_plot::EnergyTermsPlot;
-pub use lock::Lock;
 pub use magnetisation_plot::MagnetisationPlot;
 pub use manifest::Manifest;
 pub use partial::{StoppedRun, discard_partial, is_partial_left, partial_files, write_partial};
@@ -61,7 +55,7 @@ pub use summary::{BothWays, Head, Number, Summary, SummaryJson};
 
 use crate::drive::Outcome;
 use crate::error::Result;
-use crate::files::OvfData;
+use crate::files::{OvfData, disk};
 use crate::lattice::Chain;
 use rayon::prelude::*;
 

@@ -14,9 +14,11 @@ use crate::spins::Spins;
 use crate::threads::{READ, apiece};
 use ndarray::Array3;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 /// Images along a path. Inside (image, xyz, site), so that an image is one contiguous slab of 3N numbers.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Vec<Spins>", into = "Vec<Spins>")]
 pub struct Path {
     m: Array3<f64>,
 }
@@ -113,4 +115,22 @@ pub fn distance(a: &[f64], b: &[f64]) -> f64 {
 /// The largest angle between spins of the same site (rad).
 pub fn largest_angle(a: &[f64], b: &[f64]) -> f64 {
     angles_between(Components::new(a), Components::new(b)).1
+}
+impl From<Path> for Vec<Spins> {
+    fn from(path: Path) -> Vec<Spins> {
+        (0..path.images()).map(|k| path.spins(k)).collect()
+    }
+}
+
+impl TryFrom<Vec<Spins>> for Path {
+    type Error = &'static str;
+
+    fn try_from(images: Vec<Spins>) -> Result<Path, &'static str> {
+        let same = images.windows(2).all(|pair| pair[0].sites() == pair[1].sites());
+        if images.len() >= 2 && same {
+            Ok(Path::new(&images))
+        } else {
+            Err("a path is two images or more of as many spins")
+        }
+    }
 }

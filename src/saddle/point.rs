@@ -5,23 +5,31 @@ use crate::field::{Components, TILE};
 use crate::linalg::{Banded, slab};
 use crate::saddle::orthonormal;
 use crate::sphere::move_points;
+use serde::{Deserialize, Serialize};
 
-/// Everything a step down the gradient needs, at one configuration; a Newton step needs its Hessian too.
-#[derive(Clone, Debug, Default)]
+/// Everything a step down the gradient needs, at one configuration; a Newton step needs its Hessian too. It is stored as its
+/// spins: all else follows from them to the last bit.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Point {
     /// Spins, component-major.
     pub m: Vec<f64>,
     /// Energy above the Hamiltonian's reference (meV).
+    #[serde(skip)]
     pub energy_mev: f64,
     /// Each site's share of it (meV).
+    #[serde(skip)]
     density: Vec<f64>,
     /// Euclidean gradient (meV).
+    #[serde(skip)]
     pub gradient: Vec<f64>,
     /// Tangent basis.
+    #[serde(skip)]
     pub basis: TangentBasis,
     /// Riemannian gradient in tangent coordinates (meV).
+    #[serde(skip)]
     pub slope: Vec<f64>,
     /// Orthonormal zero modes: rotations about the symmetry axes, in tangent coordinates.
+    #[serde(skip)]
     pub zeros: Vec<Vec<f64>>,
 }
 

@@ -8,10 +8,11 @@ use super::point::Point;
 use super::state::State;
 use crate::energy::Evaluator;
 use crate::linalg::{Banded, Ldl, lowest_modes};
+use serde::{Deserialize, Serialize};
 use std::mem::take;
 
 /// What kind of stationary point a state is.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Spectrum {
     /// Eigenvalues below −floor.
     pub negative: usize,

@@ -4,14 +4,16 @@ use super::point::Point;
 use crate::energy::Evaluator;
 use crate::linalg::{Banded, Mode, lowest_modes, slab};
 use crate::sphere::move_points;
+use serde::{Deserialize, Serialize};
 use std::ops::Deref;
 
 /// Everything a Newton step needs, at one configuration: all that a [`Point`] has, and the Hessian.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct State {
     /// Spins, energy and gradient.
     pub point: Point,
     /// Riemannian Hessian in tangent coordinates (meV).
+    #[serde(skip)]
     pub hessian: Banded,
 }
 

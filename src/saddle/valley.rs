@@ -16,6 +16,7 @@ use crate::energy::Evaluator;
 use crate::linalg::{Mode, lowest_modes, slab};
 use crate::path::{distance, largest_angle};
 use crate::sphere::rotation_of;
+use serde::{Deserialize, Serialize};
 
 /// Most steps.
 const STEPS: usize = 80;
@@ -25,7 +26,7 @@ const CAP: f64 = 0.3;
 const FARTHEST: f64 = 8.0;
 
 /// How a refinement ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Verdict {
     /// A stationary point to machine precision.
     Saddle,
@@ -40,7 +41,7 @@ pub enum Verdict {
 }
 
 /// A refined saddle.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Refined {
     /// How it ended.
     pub verdict: Verdict,

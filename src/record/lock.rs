@@ -1,7 +1,7 @@
 //! One run at a time in a folder: a lock that the system takes away when the process ends, however it ends.
 
-use super::disk;
 use crate::error::{Error, Result};
+use crate::files::disk;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, ErrorKind, Read, Seek, Write};
 use std::path::{Path, PathBuf};

@@ -3,8 +3,8 @@
 //! All files of a result are first written under temporary names in the same folder, flushed to the disk and closed; a full disk
 //! therefore leaves an older result as it was. Only then the new files take their names ([`folder`](super::folder)).
 
+use super::open_file;
 use crate::error::{Error, Result};
-use crate::files::open_file;
 use std::fs::{self, OpenOptions};
 use std::io::{self, ErrorKind, Read, Write};
 use std::path::Path;
@@ -76,12 +76,12 @@ pub fn read_if_there(path: &Path) -> Result<Option<Vec<u8>>> {
 }
 
 /// An error that the user can mend: something is there already.
-pub(super) fn refused(path: &Path, words: impl Into<String>) -> Error {
+pub(crate) fn refused(path: &Path, words: impl Into<String>) -> Error {
     io_error(path, io::Error::new(ErrorKind::AlreadyExists, words.into()))
 }
 
 /// Makes a directory, and makes sure that files can be written in it.
-pub(super) fn make_ready(dir: &Path) -> Result<()> {
+pub(crate) fn make_ready(dir: &Path) -> Result<()> {
     create(dir)?;
     // an empty file can be made on a disk that is full
     let (mut file, _path) = temporary(dir)?.into_parts();
@@ -151,14 +151,14 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
 }
 
 /// The file under a temporary name, on the disk, and closed: as many may be staged as there are.
-pub(super) fn stage(dir: &Path, name: &str, bytes: &[u8]) -> Result<TempPath> {
+pub(crate) fn stage(dir: &Path, name: &str, bytes: &[u8]) -> Result<TempPath> {
     let mut staged = temporary(folder_of(dir, name)?)?;
     fill(&mut staged, bytes).map_err(|e| io_error(&dir.join(name), e))?;
     Ok(staged.into_temp_path())
 }
 
 /// The same of a file that is there under another path: by a second name where the file system has those, else by a copy.
-pub(super) fn stage_same(dir: &Path, name: &str, there: &Path) -> Result<TempPath> {
+pub(crate) fn stage_same(dir: &Path, name: &str, there: &Path) -> Result<TempPath> {
     let second = |path: &Path| fs::hard_link(there, path).or_else(|_| copy(there, path));
     let staged = builder().make_in(folder_of(dir, name)?, second);
     staged.map(NamedTempFile::into_temp_path).map_err(|e| io_error(&dir.join(name), e))
@@ -179,7 +179,7 @@ fn folder_of(dir: &Path, name: &str) -> Result<std::path::PathBuf> {
 }
 
 /// Gives a staged file its name.
-pub(super) fn put(staged: TempPath, path: &Path) -> Result<()> {
+pub(crate) fn put(staged: TempPath, path: &Path) -> Result<()> {
     staged.persist(path).map_err(|e| io_error(path, e.error))
 }
 
@@ -194,7 +194,7 @@ fn temporary(dir: impl AsRef<Path>) -> Result<NamedTempFile> {
     temporary_file(dir).map_err(|e| io_error(dir, unwritable(&e)))
 }
 
-pub(super) fn temporary_file(dir: &Path) -> io::Result<NamedTempFile> {
+pub(crate) fn temporary_file(dir: &Path) -> io::Result<NamedTempFile> {
     builder().make_in(dir, new_file)
 }
 
@@ -212,7 +212,7 @@ fn unwritable(e: &io::Error) -> io::Error {
     io::Error::new(e.kind(), format!("cannot write here: {}", reason(e)))
 }
 
-pub(super) fn create(dir: &Path) -> Result<()> {
+pub(crate) fn create(dir: &Path) -> Result<()> {
     if dir.exists() && !dir.is_dir() {
         let words = "is a file, and results need a directory; give another with --out";
         return Err(io_error(dir, io::Error::new(ErrorKind::NotADirectory, words)));
@@ -223,7 +223,7 @@ pub(super) fn create(dir: &Path) -> Result<()> {
     })
 }
 
-pub(super) fn remove(path: &Path) -> Result<()> {
+pub(crate) fn remove(path: &Path) -> Result<()> {
     match fs::remove_file(path) {
         Err(e) if !matches!(e.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => Err(io_error(path, e)),
         _ => Ok(()),
@@ -231,7 +231,7 @@ pub(super) fn remove(path: &Path) -> Result<()> {
 }
 
 /// Makes the new names survive a power cut, where the system can.
-pub(super) fn flush_directory(dir: &Path) -> Result<()> {
+pub(crate) fn flush_directory(dir: &Path) -> Result<()> {
     if cfg!(unix) {
         fs::File::open(dir).and_then(|d| d.sync_all()).map_err(|e| io_error(dir, e))?;
     }
@@ -243,6 +243,6 @@ fn reason(e: &io::Error) -> String {
     e.raw_os_error().map_or_else(|| e.kind().to_string(), |code| io::Error::from_raw_os_error(code).to_string())
 }
 
-pub(super) fn io_error(path: &Path, source: io::Error) -> Error {
+pub(crate) fn io_error(path: &Path, source: io::Error) -> Error {
     Error::Io { path: path.into(), source }
 }

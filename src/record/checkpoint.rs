@@ -8,10 +8,10 @@
 //! Written at intervals only; what a kill in the middle of a write leaves at the journal's end is no whole frame and is dropped.
 //! A snapshot counts only behind just as many finished computations as it says.
 
-use super::disk;
+use super::Keep;
 use super::frame::{self, Frames, HEAD};
-use crate::drive::Keep;
 use crate::error::{Error, Result};
+use crate::files::disk;
 use crc32fast::Hasher;
 use serde::{Deserialize, Serialize};
 use std::fs::{self, File, OpenOptions};
