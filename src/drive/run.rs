@@ -117,7 +117,7 @@ impl<'a, 'o> Run<'a, 'o> {
             );
         }
         let (a, b) = (ends[0].spins.as_slice(), ends[1].spins.as_slice());
-        let scales = recorded(h, "scales", &[a, b], || Ok(Scales::of_ends(&h, a, b)))?;
+        let scales = recorded(h, "scales", &[a, b], || Ok(Scales::of_ends(h, a, b)))?;
         let axes = h.symmetry_axes_at(a);
         let laplacian = needs_laplacian(&problem.neb.optimiser).then(|| Laplacian::new(&h, scales.stiffness_mev));
         let mut run = Run {

@@ -1,6 +1,6 @@
 //! The scales of a problem: how stiff its softest mode is, how wide its walls are.
 
-use crate::energy::Hamiltonian;
+use crate::energy::{Evaluator, Hamiltonian};
 use crate::field::Components;
 use crate::lattice::Chain;
 use crate::linalg::{eigenvalues_symmetric, slab};
@@ -27,10 +27,10 @@ impl Scales {
     }
 
     /// From two relaxed ends.
-    pub fn of_ends(h: &Hamiltonian, a: &[f64], b: &[f64]) -> Scales {
+    pub fn of_ends(h: Evaluator, a: &[f64], b: &[f64]) -> Scales {
         let (of_a, of_b) = both(a.len(), || softest_mode(h, a), || softest_mode(h, b));
         let softest = of_a.max(of_b);
-        Scales::new(h, if softest > 1e-9 * h.stiffness_mev() { softest } else { on_site_gap(h) })
+        Scales::new(&h, if softest > 1e-9 * h.stiffness_mev() { softest } else { on_site_gap(&h) })
     }
 
     fn new(h: &Hamiltonian, c: f64) -> Scales {
@@ -67,8 +67,8 @@ impl Scales {
 }
 
 /// Lowest eigenvalue of the Riemannian Hessian (meV), rotations about symmetry axes apart.
-fn softest_mode(h: &Hamiltonian, m: &[f64]) -> f64 {
-    State::at(h.into(), m.to_vec()).lowest_mode().map_or(0.0, |mode| mode.value)
+fn softest_mode(h: Evaluator, m: &[f64]) -> f64 {
+    State::at(h, m.to_vec()).lowest_mode().map_or(0.0, |mode| mode.value)
 }
 
 /// Median over sites of the gap between the two lowest on-site curvatures: 2K of an easy axis. Magnetostatics count as between
