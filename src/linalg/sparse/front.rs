@@ -5,11 +5,11 @@ use crate::linalg::ldl::guarded;
 use multiversion::multiversion;
 
 /// Panels that are eliminated before the rest is brought up to date.
-const BLOCK: usize = 24;
-/// Rows that go through all panels of the rest together, and stay in the second cache.
-const ROWS: usize = 128;
+const BLOCK: usize = 16;
+/// Rows that go through all panels of the rest together, and stay in the first cache.
+const ROWS: usize = 36;
 /// Rows of a tile in registers.
-const TILE: usize = 8;
+const TILE: usize = 12;
 
 /// Numbers of a square of a panel.
 const SQUARE: usize = WIDTH * WIDTH;
@@ -94,7 +94,7 @@ impl Sources<'_> {
                 let (scaled, top) = (&work[depth * q..depth * (q + 1)], WIDTH * q);
                 let from = start.max(top);
                 let panel = &mut target[panels::first(rows, q)..][WIDTH * (from - top)..WIDTH * (end - top)];
-                self.subtract_rows(panel, above + from, scaled);
+                subtract_tiles(panel, self.l, [self.rows, self.first, above + from], scaled);
             }
         }
     }
@@ -113,16 +113,11 @@ impl Sources<'_> {
             }
         }
     }
-
-    /// The rows of a panel from `row` of the front on.
-    fn subtract_rows(&self, panel: &mut [f64], row: usize, scaled: &[f64]) {
-        subtract_tiles(panel, self.l, [self.rows, self.first, row], scaled);
-    }
 }
 
+/// The rows of a panel from `row` of the front on; its eliminated panels begin with `first`.
 #[multiversion(targets("x86_64+avx2"))]
-fn subtract_tiles(panel: &mut [f64], l: &[f64], [rows, first, row]: [usize; 3], scaled: &[f64]) {
-    let mut row = row;
+fn subtract_tiles(panel: &mut [f64], l: &[f64], [rows, first, mut row]: [usize; 3], scaled: &[f64]) {
     let mut tiles = panel.chunks_exact_mut(TILE * WIDTH);
     for tile in &mut tiles {
         subtract_tile::<TILE>(tile, l, [rows, first, row], scaled);

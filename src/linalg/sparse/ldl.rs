@@ -273,6 +273,18 @@ mod tests {
     }
 
     #[test]
+    fn factors_take_the_memory_that_the_plan_promises() {
+        let mut r = ChaCha8Rng::seed_from_u64(18);
+        for lattice in samples::all(&mut r) {
+            let factors = SparseLdl::of(lattice.random(&mut r));
+            let m = &factors.memory;
+            let numbers =
+                m.l.len() + m.d.len() + m.waiting[0].len() + m.waiting[1].len() + 4 * factors.matrix.blocks.len();
+            assert_eq!(size_of::<f64>() * numbers, factors.matrix.plan.bytes(), "{}", lattice.name);
+        }
+    }
+
+    #[test]
     fn columns_together_have_the_bits_of_one_alone() {
         let mut r = ChaCha8Rng::seed_from_u64(16);
         let lattice = Lattice::grid([7, 6, 1], [false, true, false], 1.0, &mut r);

@@ -95,8 +95,7 @@ impl Symbolic {
         sites.enumerate().for_each(|(k, i)| place[*i as usize] = k as u32);
         let mut plan = Symbolic { graph, place, ..Symbolic::default() };
         plan.set_fronts(&groups);
-        plan.set_slots();
-        plan.set_targets(&groups);
+        plan.set_slots(&groups);
         plan.set_sizes();
         plan
     }
@@ -151,11 +150,12 @@ impl Symbolic {
         }
     }
 
-    /// Where the other sites of every front stand in the one above it.
-    fn set_slots(&mut self) {
+    /// Where in the fronts the sites stand: the other sites of those below, and the blocks of the matrix.
+    fn set_slots(&mut self, groups: &[Group]) {
         self.slots = vec![0; self.others.len()];
         let mut slot = vec![0; self.place.len()];
-        for front in &self.fronts {
+        for (k, group) in groups.iter().enumerate() {
+            let front = self.fronts[k].clone();
             front.own.clone().enumerate().for_each(|(k, place)| slot[place] = k as u32);
             let first = SITES * front.panels;
             let others = &self.others[front.others.clone()];
@@ -165,30 +165,23 @@ impl Symbolic {
                     self.slots[e] = slot[self.others[e] as usize];
                 }
             }
+            let start = self.targets.len();
+            for (column, i) in group.own.iter().enumerate() {
+                self.add_targets(*i as usize, column, front.rows(), &slot);
+            }
+            self.fronts[k].targets = start..self.targets.len();
         }
     }
 
-    /// Where the blocks of the matrix stand.
-    fn set_targets(&mut self, groups: &[Group]) {
-        let mut slot = vec![0; self.place.len()];
-        for (front, group) in self.fronts.iter_mut().zip(groups) {
-            front.own.clone().enumerate().for_each(|(k, place)| slot[place] = k);
-            let first = SITES * front.panels;
-            let others = &self.others[front.others.clone()];
-            others.iter().enumerate().for_each(|(k, place)| slot[*place as usize] = first + k);
-            let (start, rows) = (self.targets.len(), front.rows());
-            for (column, i) in group.own.iter().enumerate() {
-                let i = *i as usize;
-                let partners = self.graph.partners(i).iter().map(|j| *j as usize);
-                for j in partners.filter(|j| self.place[*j] > self.place[i]).chain([i]) {
-                    let Some(block) = self.graph.block(i.max(j), i.min(j)) else { continue };
-                    let panel = column / SITES;
-                    let (row, within) = (2 * slot[self.place[j] as usize], 2 * (column % SITES));
-                    let at = panels::first(rows, panel) + WIDTH * (row - WIDTH * panel) + within;
-                    self.targets.push(Target { block: block as u32, mirrored: i > j, at });
-                }
-            }
-            front.targets = start..self.targets.len();
+    /// The blocks of site i, a column of a front of so many rows, with itself and with those that are eliminated later.
+    fn add_targets(&mut self, i: usize, column: usize, rows: usize, slot: &[u32]) {
+        let (graph, place) = (&self.graph, &self.place);
+        let partners = graph.partners(i).iter().map(|j| *j as usize);
+        for j in partners.filter(|j| place[*j] > place[i]).chain([i]) {
+            let Some(block) = graph.block(i.max(j), i.min(j)) else { continue };
+            let (panel, row) = (column / SITES, 2 * slot[place[j] as usize] as usize);
+            let at = panels::first(rows, panel) + WIDTH * (row - WIDTH * panel) + 2 * (column % SITES);
+            self.targets.push(Target { block: block as u32, mirrored: i > j, at });
         }
     }
 
@@ -214,6 +207,39 @@ impl Symbolic {
             let front = &self.fronts[k];
             let children = &self.children[front.children.clone()];
             waiting[1 - front.stack] -= children.iter().map(|c| self.fronts[*c as usize].left()).sum::<usize>();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::samples;
+    use rand::SeedableRng;
+
+    #[test]
+    fn fronts_hold_what_elimination_fills_and_no_other_site() {
+        let mut r = rand_chacha::ChaCha8Rng::seed_from_u64(51);
+        for lattice in samples::all(&mut r) {
+            let n = lattice.positions.len();
+            let plan = lattice.zeros().plan().clone();
+            let mut filled = vec![false; n * n];
+            for (i, j) in &lattice.bonds {
+                let (i, j) = (plan.place[*i] as usize, plan.place[*j] as usize);
+                (filled[i * n + j], filled[j * n + i]) = (true, true);
+            }
+            for k in 0..n {
+                let later: Vec<usize> = (k + 1..n).filter(|i| filled[i * n + k]).collect();
+                later.iter().for_each(|i| later.iter().for_each(|j| filled[i * n + j] = true));
+            }
+            let mut next = 0;
+            for front in &plan.fronts {
+                assert_eq!(front.own.start, next);
+                next = front.own.end;
+                let reached = (next..n).filter(|i| front.own.clone().any(|k| filled[i * n + k]));
+                let others = plan.others[front.others.clone()].iter().map(|i| *i as usize);
+                assert!(reached.eq(others), "{}", lattice.name);
+            }
+            assert_eq!(next, n);
         }
     }
 }
