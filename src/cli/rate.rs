@@ -1,18 +1,17 @@
 //! `rate`: lifetimes of results that are there already.
 
-use super::run::{Earlier, Progress, names, outcome, start_threads, write};
+use super::run::{Earlier, Progress, names, start_threads, write};
 use super::{Rate, UNFINISHED, USAGE, note, report, worse};
 use anyhow::Result;
 use serde_json::json;
 use spinneb::config::{Loaded, RatesConfig, load};
-use spinneb::drive::{Outcome, Problem, is_said_of_rates, rates_warnings, stored_rates};
+use spinneb::drive::{self, Outcome, Problem, is_said_of_rates, rates_warnings, stored_rates};
 use spinneb::output::{StoredOutcome, folder};
 use spinneb::rates::{Row, Theory, TransitionRow, Way, digits};
 use spinneb::record::Lock;
 use std::f64::consts::LN_10;
 use std::io::{self, Write};
 use std::path::Path;
-use std::time::Instant;
 
 /// Rates of all results, one after the other.
 pub fn rate(arguments: &Rate) -> Result<u8> {
@@ -25,7 +24,6 @@ pub fn rate(arguments: &Rate) -> Result<u8> {
 }
 
 fn rate_one(arguments: &Rate, directory: &Path) -> Result<u8> {
-    let started = Instant::now();
     let place = directory.display();
     let Some(stored) = folder::stored_result(directory, |_| true)? else {
         note(&format!("error: {place} holds no finished result: run its config first, then ask for its rates"));
@@ -52,7 +50,7 @@ fn rate_one(arguments: &Rate, directory: &Path) -> Result<u8> {
             if !arguments.quiet {
                 note(&format!("{name}: the saddles are found anew from its config: {why}"));
             }
-            outcome(&loaded, &problem, &mut Progress::new(name, arguments.quiet), started)?
+            drive::run(&problem, &mut Progress::new(name, arguments.quiet))?
         }
     };
     write(&loaded, &outcome, directory, Earlier::GivesWay(manifest.source.as_deref()), false)?;

@@ -5,8 +5,8 @@ use super::signals::Signals;
 use super::{Run, UNFINISHED, USAGE, note, report, worse};
 use anyhow::{Context, Result};
 use serde_json::{Value, json};
-use spinneb::config::{Loaded, load, physics};
-use spinneb::drive::{self, Observer, Outcome, Scales};
+use spinneb::config::{Loaded, load};
+use spinneb::drive::{self, Outcome};
 use spinneb::error::Error;
 use spinneb::files::disk::{self, File};
 use spinneb::output::folder::{self, Destination, Intent, NewResult};
@@ -20,7 +20,6 @@ use std::io::{self, Write};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::thread::available_parallelism;
-use std::time::Instant;
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
@@ -116,7 +115,6 @@ fn distinct(loaded: &[Loaded], directories: &[PathBuf]) -> u8 {
 
 /// Runs one config into its folder, or says that it is done.
 pub(super) fn run_one(arguments: &Run, signals: &Signals, loaded: &Loaded, directory: &Path) -> Result<u8> {
-    let started = Instant::now();
     let say = |line: &str| {
         if !arguments.quiet {
             note(line)
@@ -136,10 +134,10 @@ pub(super) fn run_one(arguments: &Run, signals: &Signals, loaded: &Loaded, direc
     if let Some(checkpoint) = checkpoint(arguments, loaded, directory, &progress)? {
         problem.control.record(Box::new(checkpoint));
     }
-    let outcome = match outcome(loaded, &problem, &mut progress, started) {
+    let outcome = match drive::run(&problem, &mut progress) {
         Ok(outcome) => outcome,
-        Err(error) => match (error.downcast_ref(), signals.caught()) {
-            (Some(Error::Stopped), Some((code, word))) => {
+        Err(error) => match (&error, signals.caught()) {
+            (Error::Stopped, Some((code, word))) => {
                 let (stage, band) = (progress.stage_now().to_string(), progress.band());
                 drop(progress);
                 if let Err(error) = leave_partial(loaded, &problem, band.as_ref(), directory, &stage, word) {
@@ -152,7 +150,7 @@ pub(super) fn run_one(arguments: &Run, signals: &Signals, loaded: &Loaded, direc
                 say(&format!("{name}: {word} while {stage}; {on}; partial results in {place}"));
                 return Ok(code);
             }
-            _ => return Err(error),
+            _ => return Err(error.into()),
         },
     };
     drop(progress);
@@ -296,21 +294,6 @@ fn leave_partial(
     let report = outcome.as_ref().map(|outcome| loaded.report(outcome)).transpose()?;
     let files = partial_files(&stopped, report.as_ref())?;
     Ok(write_partial(directory, &files)?)
-}
-
-/// The outcome of a config's problem, as it is written.
-pub(super) fn outcome(
-    loaded: &Loaded,
-    problem: &drive::Problem,
-    observer: &mut dyn Observer,
-    started: Instant,
-) -> Result<Outcome> {
-    let mut outcome = drive::run(problem, observer)?;
-    outcome.work.seconds = started.elapsed().as_secs_f64();
-    outcome.warnings.extend(loaded.warnings.iter().cloned());
-    let h = &problem.hamiltonian;
-    outcome.warnings.extend(physics::warnings(loaded, h, &Scales::of_terms(h)));
-    Ok(outcome)
 }
 
 /// What happens with an earlier result, and the source of the new one.

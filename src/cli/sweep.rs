@@ -13,6 +13,7 @@ use clap::Args;
 use rayon::prelude::*;
 use spinneb::config::Loaded;
 use spinneb::config::sweep::Sweep;
+use spinneb::drive::Doubt;
 use spinneb::error::Error;
 use spinneb::output::sweep::{IndexedPoint, PointState, SweepIndex, look};
 use std::io::{self, Write};
@@ -306,7 +307,7 @@ fn tell(index: &SweepIndex, after: &[PointState], failed: &[(usize, String, u8)]
     }
     for (k, state) in after.iter().enumerate().filter(|_| !quiet) {
         if let Some(found) = state.found().filter(|f| !f.head.is_proven()) {
-            let reason = found.warnings.last().map(|w| w.strip_prefix("not certified: ").unwrap_or(w));
+            let reason = found.warnings.last().map(|w| Doubt::of_warning(w).unwrap_or(w));
             let reason = reason.map_or(String::new(), |w| format!(": {w}"));
             lines.push(format!("point {k}, {}: not certified{reason}", index.points[k].directory));
         }

@@ -1,6 +1,6 @@
 //! From a config to the problem that the drive is given, with every check on the way.
 
-use super::{Loaded, Text, memory};
+use super::{Loaded, Text, memory, physics};
 use crate::drive::{FEWEST_IMAGES, Images, Outcome, Problem, Scales};
 use crate::energy::{EnergyTerm, Hamiltonian, Medium, Part, TermSpec, symmetry_axes};
 use crate::error::{Error, Result, both};
@@ -15,6 +15,7 @@ use crate::path::largest_angle;
 use crate::rates::RateSettings;
 use crate::spins::Spins;
 use crate::state::{Sense, StateContext, StateSpec};
+use std::time::Instant;
 
 /// Largest torque on a site (meV) that is taken for meant: 1e20 meV is 16 mJ.
 const LARGEST_MEV: f64 = 1e20;
@@ -70,6 +71,7 @@ impl Loaded {
     pub fn problem(&self) -> Result<Problem> {
         let config = &self.config;
         let here = |e: Error| self.text.locate(e);
+        let started = Instant::now();
         let States { chain, hamiltonian, scales, initial, final_state, sense } = self.states(true)?;
         let final_state = final_state.unwrap_or_else(|| initial.clone());
         if largest_angle(initial.as_slice(), final_state.as_slice()) < SAME {
@@ -89,6 +91,9 @@ impl Loaded {
         problem.rates = self.rates(&problem.chain)?;
         self.affordable(needed_bytes(&problem, &scales), Some(expected_images(&problem, &scales)))?;
         guess(&problem, &scales).map_err(here)?;
+        let of_physics = physics::warnings(self, &problem.hamiltonian, &scales);
+        problem.warnings = self.warnings.iter().cloned().chain(of_physics).collect();
+        problem.made_in_s = started.elapsed().as_secs_f64();
         Ok(problem)
     }
 

@@ -6,6 +6,7 @@
 //! its ends. A saddle with one minimum on both sides (where of two walls one turns all the way round) is not on the way. Minima
 //! joined by a valley that is flat to rounding have no saddle between them and count as one.
 
+use super::Doubt;
 use super::climb::{Found, ZOOMS, zoomed};
 use super::minimum::{Link, Minimum, turned, turns};
 use super::relaxation::{Goal, Relaxation};
@@ -50,7 +51,7 @@ pub struct Sequence {
     /// Saddle, minimum, saddle, …
     pub links: Vec<Link>,
     /// Why the sequence does not lead from end to end; nothing if it does.
-    pub gap: Option<String>,
+    pub gap: Option<Doubt>,
 }
 
 /// A stretch of path between two minima, with the saddle on it if that is known already.
@@ -103,7 +104,7 @@ pub fn follow(
     while let Some(mut stretch) = stretches.pop() {
         count += 1;
         if count > MOST {
-            sequence.gap = Some(format!("the path has more than {MOST} stretches between minima"));
+            sequence.gap = Some(Doubt::Stretches(MOST));
             break;
         }
         if stretch.saddle.is_none() && (stretch.a.is_identical(h, &stretch.b) || is_flat(relaxation, h, &stretch)?) {
@@ -119,8 +120,7 @@ pub fn follow(
             }
         };
         let Some(found) = found.filter(|f| f.is_saddle(c)) else {
-            sequence.gap =
-                Some("a stretch of the path between two minima shows no saddle that could be refined".into());
+            sequence.gap = Some(Doubt::Gap);
             close(&mut sequence, &mut open, &stretch.b, h);
             continue;
         };
@@ -149,7 +149,7 @@ pub fn follow(
             continue;
         }
         if astray {
-            sequence.gap = Some("a descent from a saddle leads back to where it came from".into());
+            sequence.gap = Some(Doubt::Return);
         }
         if !right_done && !astray {
             stretches.push(stretch.after(&link.after, context)?);

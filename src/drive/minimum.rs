@@ -1,5 +1,6 @@
 //! Minima: what a descent ends in, and whether two of them are the same.
 
+use super::Doubt;
 use super::climb::Found;
 use super::ends::relax_to_minimum;
 use super::stored::recorded;
@@ -201,31 +202,26 @@ impl Link {
     }
 
     /// Why this is not a proven saddle of index one between two proven minima; nothing if it is.
-    pub fn doubt(&self, h: Evaluator) -> Option<String> {
+    pub fn doubt(&self, h: Evaluator) -> Option<Doubt> {
         let state = &self.found.refined.state;
         let s = &self.spectrum;
         if !s.is_stationary(state.max_torque_mev()) {
-            return Some(format!("a torque of {:.1e} meV remains on the saddle", state.max_torque_mev()));
+            return Some(Doubt::Torque(state.max_torque_mev()));
         }
         if s.negative > 1 {
-            return Some(format!("the saddle has {} negative modes", s.negative));
+            return Some(Doubt::NegativeModes(s.negative));
         }
         if self.given {
             return None;
         }
         let rounding = 16.0 * f64::EPSILON * (state.energy_mev.abs() + h.stiffness_mev());
         if self.fallen_mev.iter().any(|f| *f <= rounding) {
-            return Some(format!(
-                "the energy does not fall on both sides of the saddle by more than its rounding error of {rounding:.1e} meV"
-            ));
+            return Some(Doubt::NoFall(rounding));
         }
         if s.negative == 0 && s.flat == 0 {
-            return Some("the saddle has no negative mode".into());
+            return Some(Doubt::NoNegativeMode);
         }
         let unproven = [&self.before, &self.after].into_iter().find(|m| !m.is_proven())?;
-        Some(format!(
-            "a descent from the saddle ended in a state that is not proven to be a minimum ({} negative modes, a torque of {:.1e} meV)",
-            unproven.spectrum.negative, unproven.max_torque_mev
-        ))
+        Some(Doubt::Descent { negative: unproven.spectrum.negative, torque_mev: unproven.max_torque_mev })
     }
 }

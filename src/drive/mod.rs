@@ -3,9 +3,11 @@
 mod candidate;
 mod climb;
 mod connect;
+mod doubt;
 mod ends;
 mod explore;
 mod join;
+mod judge;
 mod lower;
 mod minimum;
 mod outcome;
@@ -19,7 +21,9 @@ mod scales;
 mod stop;
 mod stored;
 mod top;
+mod verdict;
 
+pub use doubt::{Doubt, PathEnd};
 pub use ends::{Relaxed, WayDown, relax_to_minimum};
 pub use explore::natural_guesses;
 pub use minimum::{Link, Minimum};
@@ -32,8 +36,9 @@ pub use relaxed::{RelaxedState, relaxed_state};
 pub use report::partial;
 pub use run::{FEWEST_IMAGES, run};
 pub use scales::Scales;
-pub use stop::{Stop, StopCode};
+pub use stop::Stop;
 pub use top::{Top, tops};
+pub use verdict::{StopCode, Verdict};
 
 use crate::path::Path;
 

@@ -44,6 +44,10 @@ pub struct Problem {
     pub neb: NebSettings,
     /// Rates over the saddles; none if absent.
     pub rates: Option<RateSettings>,
+    /// What the user should know before it is run: the last warnings of its outcome.
+    pub warnings: Vec<String>,
+    /// Wall time that it took to make (s), counted with that of its run.
+    pub made_in_s: f64,
 }
 
 impl Problem {
@@ -66,6 +70,8 @@ impl Problem {
             certify: true,
             neb,
             rates: None,
+            warnings: Vec::new(),
+            made_in_s: 0.0,
         }
     }
 }

@@ -4,13 +4,14 @@ use super::climb::Found;
 use super::minimum::{Link, Minimum};
 use super::outcome::SaddlePoint;
 use super::top::Top;
+use super::{Doubt, Verdict};
 use crate::energy::Evaluator;
 use crate::linalg::slab;
 use crate::rates::{
     Crossing, Equivalents, Orbits, RateSettings, Rates, SaddleRate, ZeroKind, equivalent_saddles, refused,
     saddle_rates, transitions,
 };
-use crate::saddle::{Refined, State, Verdict};
+use crate::saddle::{self, Refined, State};
 use crate::spins::Spins;
 
 /// A stored energy above the initial state and that of the stored spins differ by less than this part of the scale.
@@ -26,15 +27,15 @@ pub struct Known<'a> {
     /// Final above initial state (meV).
     pub above_final: f64,
     /// What stands against the certificate of the whole.
-    pub doubts: &'a [String],
-    /// Why there is no barrier; nothing if there is one.
-    pub no_barrier: Option<&'a str>,
+    pub doubts: &'a [Doubt],
+    /// What the run came to, if there is no barrier.
+    pub no_barrier: Option<&'a Verdict>,
 }
 
 impl Known<'_> {
     /// What stands against rates of the whole.
-    fn doubt(&self) -> Option<&str> {
-        self.no_barrier.or(self.doubts.first().map(String::as_str))
+    fn doubt(&self) -> Option<String> {
+        self.no_barrier.map(Verdict::to_string).or_else(|| self.doubts.first().map(Doubt::to_string))
     }
 }
 
@@ -45,7 +46,7 @@ pub fn of_path(known: &Known, settings: &RateSettings) -> Rates {
         true => known.saddles.iter().enumerate().flat_map(|(k, s)| unproven(known, k, s, settings)).collect(),
         false => known.links.iter().flat_map(|l| proven(known, l, settings)).collect(),
     };
-    let transitions = transitions(&saddles, &orbits(known, &saddles, settings), settings, doubt);
+    let transitions = transitions(&saddles, &orbits(known, &saddles, settings), settings, doubt.as_deref());
     Rates { settings: settings.clone(), saddles, transitions }
 }
 
@@ -72,7 +73,7 @@ fn orbits(known: &Known, rates: &[SaddleRate], settings: &RateSettings) -> Orbit
 
 fn proven(known: &Known, link: &Link, settings: &RateSettings) -> [SaddleRate; 2] {
     let h = known.h;
-    let doubt = link.doubt(h);
+    let doubt = link.doubt(h).map(|doubt| doubt.to_string());
     let m = &link.found.refined.state.m;
     let number = known.saddles.iter().position(|s| s.spins.as_slice() == m).unwrap_or(0);
     let crossing = Crossing {
@@ -92,7 +93,7 @@ fn unproven(known: &Known, number: usize, saddle: &SaddlePoint, settings: &RateS
     if let Some(why) = known.no_barrier {
         return refused(number, settings, barriers, &format!("there is no barrier: {why}"));
     }
-    let why = known.doubt().unwrap_or("certification was not asked for");
+    let why = known.doubt().unwrap_or_else(|| Doubt::NotAskedFor.to_string());
     let way_out = "a rate belongs to a proven saddle between two proven minima (\"saddle\": {\"refine\": true, \"certify\": true})";
     let index = match saddle.negative_modes {
         Some(n) if n != 1 => format!(" and has {n} negative modes"),
@@ -141,7 +142,7 @@ fn stored_link(h: Evaluator, saddle: &SaddlePoint, beside: &[Minimum]) -> Link {
     let (before, after) = (beside[0].clone(), beside[1].clone());
     let towards = |end: &Minimum| h.difference_mev(&state.m, end.spins.as_slice());
     let fallen_mev = [towards(&before), towards(&after)];
-    let spectrum = crate::saddle::Spectrum::of(h, &state, 0);
+    let spectrum = saddle::Spectrum::of(h, &state, 0);
     let lowest = state.lowest_mode();
     let valley = lowest.as_ref().map_or_else(|| vec![0.0; state.m.len()], |mode| state.field(&mode.vector));
     let curvature_mev = lowest.map_or(0.0, |mode| mode.value);
@@ -151,7 +152,7 @@ fn stored_link(h: Evaluator, saddle: &SaddlePoint, beside: &[Minimum]) -> Link {
     let (s, image) = (saddle.reaction_coordinate_rad, saddle.image);
     let top = Top { m: state.m.clone(), tau, energy_mev: state.energy_mev, s, image };
     let index = spectrum.negative;
-    let verdict = if index > 1 { Verdict::HigherIndex } else { Verdict::Saddle };
+    let verdict = if index > 1 { saddle::Verdict::HigherIndex } else { saddle::Verdict::Saddle };
     let refined =
         Refined { verdict, state, valley, steps: 0, factorisations: 0, index, curvature_mev, rotation_rad: 0.0 };
     Link { found: Found { top, refined }, spectrum, before, after, fallen_mev, ways: Default::default(), given: false }

@@ -3,11 +3,12 @@
 use super::candidate::Candidate;
 use super::climb::Found;
 use super::ends::Relaxed;
+use super::judge::{Judgement, Seen};
 use super::minimum::{Link, Minimum};
 use super::outcome::*;
 use super::rates::{self, Known};
 use super::relaxation::{height, prominent_maxima};
-use super::{Partial, Problem, StopCode};
+use super::{Doubt, Partial, Problem, Verdict};
 use crate::band::{Band, Extremum, Profile};
 use crate::energy::Evaluator;
 use crate::linalg::slab;
@@ -21,11 +22,12 @@ use std::time::Instant;
 const PROFILE: usize = 16;
 
 /// What a run knew before its path.
-pub struct Summary<'a> {
+#[derive(Clone, Copy)]
+pub struct Prepared<'a> {
     pub problem: &'a Problem,
     pub started: Instant,
-    pub ends: [Relaxed; 2],
-    pub warnings: Vec<String>,
+    pub ends: &'a [Relaxed; 2],
+    pub warnings: &'a [String],
 }
 
 /// What was proven of a path.
@@ -35,15 +37,15 @@ pub struct Proof {
     /// Saddles in path order, with the minima beside them.
     pub links: Vec<Link>,
     /// What stands against a certificate; nothing if it is given.
-    pub doubts: Vec<String>,
+    pub doubts: Vec<Doubt>,
 }
 
-impl Summary<'_> {
+impl Prepared<'_> {
     fn work(&self, iterations: usize) -> Work {
         Work {
             iterations,
             force_evaluations: self.problem.control.evaluations(),
-            seconds: self.started.elapsed().as_secs_f64(),
+            seconds: self.problem.made_in_s + self.started.elapsed().as_secs_f64(),
             threads: rayon::current_num_threads(),
         }
     }
@@ -53,11 +55,16 @@ impl Summary<'_> {
         let moved = |k: usize| self.problem.relax_ends.then_some(self.ends[k].largest_rotation_rad);
         [0, 1].map(|k| EndPoint { moved_rad: moved(k), ..end_of(&ends[k]) })
     }
+
+    /// What is to be said, with this of the path.
+    fn warnings(&self, of_path: impl IntoIterator<Item = String>) -> Vec<String> {
+        self.warnings.iter().cloned().chain(of_path).chain(self.problem.warnings.iter().cloned()).collect()
+    }
 }
 
 /// The outcome of a path.
 pub fn outcome(
-    run: Summary,
+    run: Prepared,
     c: Candidate,
     found: &[Found],
     proof: Proof,
@@ -65,156 +72,42 @@ pub fn outcome(
 ) -> Outcome {
     let h = run.problem.evaluator();
     let band = &c.band;
-    let above_final = h.difference_mev(band.path().image(band.images() - 1), band.path().image(0));
-    let saddles = if !proof.links.is_empty() {
-        sorted(proof.links.iter().map(|l| saddle_of_link(h, band, l)).collect())
-    } else if !found.is_empty() {
-        sorted(found.iter().map(|f| saddle_of(h, band, f)).collect())
-    } else {
-        band_saddles(run.problem, band)
-    };
-    let mut warnings = run.warnings.clone();
+    let initial = band.path().image(0);
+    let above_final = h.difference_mev(band.path().image(band.images() - 1), initial);
+    let saddles = saddles(run.problem, band, found, &proof.links);
     let seen = Seen { problem: run.problem, band, saddles: &saddles, above_final, ends: &proof.ends };
-    let mut judged = seen.judge(&c, proof.doubts);
-    let saddles = if judged.stop_code == StopCode::FlatValley { Vec::new() } else { saddles };
-    let doubts = std::mem::take(&mut judged.doubts);
+    let Judgement { verdict, barrier, doubts } = seen.judge(&c, proof.doubts);
+    // nothing is crossed in a flat valley
+    let (saddles, links) = match verdict {
+        Verdict::FlatValley => (Vec::new(), &[][..]),
+        _ => (saddles, &proof.links[..]),
+    };
     let rates = run.problem.rates.as_ref().map(|settings| {
-        let no_barrier = judged.barrier.is_none().then_some(judged.stop_reason.as_str());
-        // nothing is crossed in a flat valley
-        let links = if saddles.is_empty() { &[] } else { &proof.links[..] };
-        let known = Known { h, links, saddles: &saddles, above_final, doubts: &doubts, no_barrier };
-        rates::of_path(&known, settings)
+        let no_barrier = barrier.is_none().then_some(&verdict);
+        rates::of_path(&Known { h, links, saddles: &saddles, above_final, doubts: &doubts, no_barrier }, settings)
     });
-    let flat = judged.stop_code == StopCode::FlatValley;
-    let converged = (c.stop.is_converged() || flat) && judged.barrier.is_some();
-    let certified = doubts.is_empty() && judged.barrier.is_some();
-    warnings.extend(doubts.into_iter().map(|d| format!("not certified: {d}")));
-    warnings.extend(flat_warnings(&proof.ends, &proof.links));
-    warnings.extend(rates.as_ref().map(rates::warnings).unwrap_or_default());
-    let images = image_table(h, band);
-    let (profile, profile_terms_mev) = (profile(band), profile_terms(&band.profile(), &images));
-    let minima = if proof.links.len() > 1 { link_minima(band, &proof.links) } else { band_minima(h, band) };
-    let climbs = judged.barrier.map(|b| {
-        let height = |m: &IntermediateMinimum| {
-            (m.reaction_coordinate_rad, m.state.energy_mev - h.energy_mev(band.path().image(0)))
-        };
+    let intermediate_minima = if proof.links.len() > 1 { link_minima(band, &proof.links) } else { band_minima(band) };
+    let highest_climb = barrier.map(|b| {
+        let above = |m: &IntermediateMinimum| m.state.energy_mev - h.energy_mev(initial);
+        let minima = intermediate_minima.iter().map(|m| (m.reaction_coordinate_rad, above(m)));
         let tops = saddles.iter().map(|s| (s.reaction_coordinate_rad, s.above_initial_mev));
-        highest_climb(b, tops, minima.iter().map(height), above_final)
+        highest_climb(b, tops, minima, above_final)
     });
-    let work = run.work(band.evaluations());
-    let [initial, final_state] = run.end_points(&proof.ends);
+    let flat = flat_warnings(&proof.ends, &proof.links);
+    let of_rates = rates.iter().flat_map(rates::warnings);
+    let warnings = run.warnings(doubts.iter().map(Doubt::warning).chain(flat).chain(of_rates));
+    let (certified, iterations) = (doubts.is_empty() && barrier.is_some(), band.evaluations());
+    let course = Course::of(c.band, c.history);
     Outcome {
-        converged,
         certified,
-        stop_code: judged.stop_code,
-        stop_reason: judged.stop_reason,
         warnings,
-        barrier: judged.barrier,
-        highest_climb: climbs,
-        initial,
-        final_state,
-        intermediate_minima: minima,
+        barrier,
+        highest_climb,
+        saddles,
+        intermediate_minima,
         rates,
         rejected_paths,
-        images,
-        profile,
-        profile_terms_mev,
-        work,
-        max_perpendicular_torque_mev: band.max_perpendicular_mev(),
-        largest_predicted_rotation_rad: c.history.last().map_or(0.0, |r| r.largest_predicted_rotation_rad),
-        history: c.history,
-        saddles,
-        path: c.band.into_path(),
-    }
-}
-
-/// What a path shows of its barrier.
-struct Seen<'a> {
-    problem: &'a Problem,
-    band: &'a Band<'a>,
-    saddles: &'a [SaddlePoint],
-    /// Final above initial state (meV).
-    above_final: f64,
-    ends: &'a [Minimum; 2],
-}
-
-/// What is said of a barrier.
-struct Judged {
-    barrier: Option<Barrier>,
-    stop_code: StopCode,
-    stop_reason: String,
-    /// What stands against a certificate.
-    doubts: Vec<String>,
-}
-
-impl Judged {
-    fn add(&mut self, code: StopCode, reason: &str) {
-        self.stop_code = code;
-        self.stop_reason.push_str("; ");
-        self.stop_reason.push_str(reason);
-    }
-}
-
-impl Seen<'_> {
-    /// Energy to climb, from the highest saddle or, where the path has an image above all of them, from that.
-    fn judge(&self, c: &Candidate, doubts: Vec<String>) -> Judged {
-        let mut judged = Judged { barrier: None, stop_code: c.stop.code(), stop_reason: c.stop.to_string(), doubts };
-        if self.is_flat() {
-            // what no saddle search could find or prove there does not count against it
-            judged.doubts.clear();
-            judged.barrier = Some(Barrier { forward_mev: 0.0, backward_mev: 0.0 });
-            judged.stop_code = StopCode::FlatValley;
-            judged.stop_reason = "a valley that is flat to rounding joins the two minima: there is no barrier".into();
-            return judged;
-        }
-        if self.is_of_higher_index(c) {
-            judged.add(StopCode::HigherIndex, "only a saddle of higher index was found, which is no barrier");
-            judged.doubts.push("the path passes a saddle of higher index".into());
-            return judged;
-        }
-        let mut highest = self.saddles.iter().map(|s| s.above_initial_mev).fold(f64::NEG_INFINITY, f64::max);
-        let seen = self.band.energies_mev()[self.band.highest()] - self.band.energies_mev()[0];
-        let (ends, height) = (self.above_final.max(0.0), height(self.band));
-        if seen > highest + 1e-6 * height && seen > ends + 1e-9 * height {
-            highest = seen;
-            if self.problem.seeks_saddles() {
-                let doubt = "an image of the path lies above every refined saddle; the barrier is that image's energy";
-                judged.doubts.push(doubt.into());
-            }
-        }
-        if highest <= ends && !self.problem.relax_ends {
-            let which = if self.above_final > 0.0 { "final" } else { "initial" };
-            let reason =
-                format!("the highest point of the path is the {which} state, kept as given: that is no barrier");
-            judged.doubts.push(reason.clone());
-            judged.add(StopCode::KeptEnd, &reason);
-            return judged;
-        }
-        if highest <= ends {
-            highest = ends;
-            let reason = "the path rises to no maximum between its ends, so there is no barrier beyond the higher end";
-            judged.add(StopCode::NoMaximum, reason);
-        }
-        judged.barrier = Some(Barrier { forward_mev: highest, backward_mev: highest - self.above_final });
-        judged
-    }
-
-    /// Whether the path joins two proven minima and no image of it differs from the first by more than rounding.
-    fn is_flat(&self) -> bool {
-        let (h, path) = (self.band.hamiltonian(), self.band.path());
-        let rounding = h.rounding_mev();
-        let level = |k: usize| h.difference_mev(path.image(k), path.image(0)).abs() <= rounding;
-        self.problem.relax_ends
-            && self.ends.iter().all(Minimum::is_proven)
-            && height(self.band) <= 1e3 * rounding
-            && path.largest_rotation() <= 1.0
-            && (1..path.images()).all(level)
-    }
-
-    fn is_of_higher_index(&self, c: &Candidate) -> bool {
-        self.problem.seeks_saddles()
-            && c.found.as_ref().is_some_and(|f| f.refined.index > 1)
-            && self.saddles.iter().all(|s| s.negative_modes != Some(1))
+        ..course.outcome(&verdict, run.end_points(&proof.ends), run.work(iterations))
     }
 }
 
@@ -242,75 +135,82 @@ fn highest_climb(
 }
 
 /// Both ends relaxed to one minimum: a result without a path.
-pub fn same_minimum(run: Summary) -> Outcome {
+pub fn same_minimum(run: Prepared) -> Outcome {
     let h = run.problem.evaluator();
     let path = Path::new(&[run.ends[0].spins.clone(), run.ends[1].spins.clone()]);
-    let band = Band::new(h, path.clone());
     let ends = Minimum::examine_both(h, run.ends.each_ref().map(|end| &end.spins));
-    let mut warnings = run.warnings.clone();
-    warnings.push("there is no path between a minimum and itself".into());
-    let work = run.work(0);
-    let [initial, final_state] = run.end_points(&ends);
-    Outcome {
-        converged: false,
-        certified: false,
-        stop_code: StopCode::SameMinimum,
-        stop_reason: "the initial and the final state relaxed to the same minimum".into(),
-        warnings,
-        barrier: None,
-        highest_climb: None,
-        saddles: Vec::new(),
-        initial,
-        final_state,
-        intermediate_minima: Vec::new(),
-        rates: None,
-        rejected_paths: Vec::new(),
-        images: image_table(h, &band),
+    let course = Course {
+        images: image_table(h, &Band::new(h, path.clone())),
+        path,
         profile: Vec::new(),
         profile_terms_mev: Vec::new(),
         history: Vec::new(),
-        work,
         max_perpendicular_torque_mev: 0.0,
-        largest_predicted_rotation_rad: 0.0,
-        path,
+    };
+    Outcome {
+        warnings: run.warnings(["there is no path between a minimum and itself".into()]),
+        ..course.outcome(&Verdict::SameMinimum, run.end_points(&ends), run.work(0))
     }
 }
 
 /// What is known of a run that was stopped: the band as it stood, without a barrier. `why` says that it is not the end.
 pub fn partial(problem: &Problem, partial: &Partial, why: &str) -> Outcome {
-    let h = problem.evaluator();
-    let mut band = Band::new(h, partial.path.clone());
+    let mut band = Band::new(problem.evaluator(), partial.path.clone());
     band.evaluate();
-    let images = image_table(h, &band);
-    let end = |k: usize| EndPoint {
-        energy_mev: h.energy_mev(band.path().image(k)),
-        max_torque_mev: torque(&band, k),
-        negative_modes: None,
-        zero_modes: None,
-        moved_rad: None,
-    };
-    Outcome {
-        converged: false,
-        certified: false,
-        stop_code: StopCode::Interrupted,
-        stop_reason: why.into(),
-        warnings: Vec::new(),
-        barrier: None,
-        highest_climb: None,
-        saddles: Vec::new(),
-        initial: end(0),
-        final_state: end(band.images() - 1),
-        intermediate_minima: Vec::new(),
-        rates: None,
-        rejected_paths: Vec::new(),
-        profile_terms_mev: profile_terms(&band.profile(), &images),
-        images,
-        profile: profile(&band),
-        work: Work { iterations: partial.history.len(), threads: rayon::current_num_threads(), ..Work::default() },
-        max_perpendicular_torque_mev: band.max_perpendicular_mev(),
-        largest_predicted_rotation_rad: partial.history.last().map_or(0.0, |r| r.largest_predicted_rotation_rad),
-        history: partial.history.clone(),
-        path: band.into_path(),
+    let ends = [0, band.images() - 1].map(|k| image_state(&band, k));
+    let work = Work { iterations: partial.history.len(), threads: rayon::current_num_threads(), ..Work::default() };
+    Course::of(band, partial.history.clone()).outcome(&Verdict::Interrupted(why.into()), ends, work)
+}
+
+/// A path with its tables.
+struct Course {
+    path: Path,
+    images: ImageTable,
+    profile: Vec<ProfilePoint>,
+    profile_terms_mev: Vec<(String, Vec<f64>)>,
+    history: Vec<HistoryRow>,
+    max_perpendicular_torque_mev: f64,
+}
+
+impl Course {
+    /// Of a band that was evaluated.
+    fn of(band: Band, history: Vec<HistoryRow>) -> Course {
+        let images = image_table(band.evaluator(), &band);
+        Course {
+            profile: profile(&band),
+            profile_terms_mev: profile_terms(&band.profile(), &images),
+            images,
+            history,
+            max_perpendicular_torque_mev: band.max_perpendicular_mev(),
+            path: band.into_path(),
+        }
+    }
+
+    /// What a run came to, with nothing else said of its path.
+    fn outcome(self, verdict: &Verdict, [initial, final_state]: [EndPoint; 2], work: Work) -> Outcome {
+        Outcome {
+            converged: verdict.is_converged(),
+            certified: false,
+            stop_code: verdict.code(),
+            stop_reason: verdict.to_string(),
+            warnings: Vec::new(),
+            barrier: None,
+            highest_climb: None,
+            saddles: Vec::new(),
+            initial,
+            final_state,
+            intermediate_minima: Vec::new(),
+            rates: None,
+            rejected_paths: Vec::new(),
+            path: self.path,
+            images: self.images,
+            profile: self.profile,
+            profile_terms_mev: self.profile_terms_mev,
+            work,
+            max_perpendicular_torque_mev: self.max_perpendicular_torque_mev,
+            largest_predicted_rotation_rad: self.history.last().map_or(0.0, |r| r.largest_predicted_rotation_rad),
+            history: self.history,
+        }
     }
 }
 
@@ -341,7 +241,14 @@ fn end_of(m: &Minimum) -> EndPoint {
     }
 }
 
-fn sorted(mut saddles: Vec<SaddlePoint>) -> Vec<SaddlePoint> {
+/// The saddles in path order: proven, refined, or else as the band shows them.
+fn saddles(problem: &Problem, band: &Band, found: &[Found], links: &[Link]) -> Vec<SaddlePoint> {
+    let h = problem.evaluator();
+    let mut saddles: Vec<SaddlePoint> = match (links, found) {
+        ([], []) => return band_saddles(problem, band),
+        ([], found) => found.iter().map(|f| saddle_of(h, band, f)).collect(),
+        (links, _) => links.iter().map(|l| saddle_of_link(h, band, l)).collect(),
+    };
     saddles.sort_by(|p, q| p.reaction_coordinate_rad.total_cmp(&q.reaction_coordinate_rad));
     saddles
 }
@@ -433,24 +340,28 @@ fn torque(band: &Band, k: usize) -> f64 {
     slab::max_abs(&f)
 }
 
-/// Interior images that are prominent minima of the path.
-fn band_minima(h: Evaluator, band: &Band) -> Vec<IntermediateMinimum> {
-    let upside_down: Vec<f64> = band.energies_mev().iter().map(|e| -e).collect();
-    let s = band.path().reaction_coordinate();
-    let state = |k: usize| EndPoint {
-        energy_mev: h.energy_mev(band.path().image(k)),
+/// An image as it is, its modes not counted.
+fn image_state(band: &Band, k: usize) -> EndPoint {
+    EndPoint {
+        energy_mev: band.hamiltonian().energy_mev(band.path().image(k)),
         max_torque_mev: torque(band, k),
         negative_modes: None,
         zero_modes: None,
         moved_rad: None,
-    };
+    }
+}
+
+/// Interior images that are prominent minima of the path.
+fn band_minima(band: &Band) -> Vec<IntermediateMinimum> {
+    let upside_down: Vec<f64> = band.energies_mev().iter().map(|e| -e).collect();
+    let s = band.path().reaction_coordinate();
     prominent_maxima(&upside_down, 1e-3 * height(band))
         .into_iter()
         .map(|k| IntermediateMinimum {
             image: k,
             reaction_coordinate_rad: s[k],
             spins: band.path().spins(k),
-            state: state(k),
+            state: image_state(band, k),
         })
         .collect()
 }

@@ -10,10 +10,10 @@ use super::lower::lowered;
 use super::minimum::{Link, Minimum};
 use super::outcome::*;
 use super::relaxation::{Goal, Relaxation, height, image_levels, needs_laplacian, refined};
-use super::report::{self, Proof};
+use super::report::{self, Prepared, Proof};
 use super::stored::recorded;
 use super::top::{Top, highest, tops};
-use super::{Images, Observer, Problem, Scales, Silent, Stop};
+use super::{Doubt, Images, Observer, PathEnd, Problem, Scales, Silent, Stop};
 use crate::band::{Band, Laplacian, align_rotations};
 use crate::energy::Evaluator;
 use crate::error::Result;
@@ -144,7 +144,7 @@ impl<'a, 'o> Run<'a, 'o> {
     fn finish(mut self) -> Result<Outcome> {
         let (a, b) = (self.ends[0].spins.as_slice(), self.ends[1].spins.as_slice());
         if distance(a, b) < 1e-6 * (self.problem.chain.sites as f64).sqrt() {
-            return Ok(report::same_minimum(self.summary()));
+            return Ok(report::same_minimum(self.prepared()));
         }
         if let Some(flat) = self.turned_minimum()? {
             return Ok(flat);
@@ -187,7 +187,7 @@ impl<'a, 'o> Run<'a, 'o> {
         }
         others.append(&mut candidates);
         let rejected = others.iter().map(|c| rejection(c, &best.candidate, scale)).collect();
-        Ok(report::outcome(self.summary(), best.candidate, &best.found, best.proof, rejected))
+        Ok(report::outcome(self.prepared(), best.candidate, &best.found, best.proof, rejected))
     }
 
     /// A path in full: as many images as it needs, its saddles, and what could be proven of them.
@@ -324,11 +324,11 @@ impl<'a, 'o> Run<'a, 'o> {
         let highest = found.iter().max_by(|p, q| p.refined.state.energy_mev.total_cmp(&q.refined.state.energy_mev));
         let Some(highest) = highest.filter(|_| self.problem.certify) else {
             let doubt = match (self.problem.certify, self.problem.seeks_saddles()) {
-                (false, _) => "certification was not asked for (saddle.certify is false)",
-                (_, false) => "the saddles were not refined (saddle.refine and neb.climb are false)",
-                _ => "no saddle could be refined to machine precision",
+                (false, _) => Doubt::NotAskedFor,
+                (_, false) => Doubt::NotRefined,
+                _ => Doubt::NoSaddle,
             };
-            return Ok(Proof { ends, links: Vec::new(), doubts: vec![doubt.into()] });
+            return Ok(Proof { ends, links: Vec::new(), doubts: vec![doubt] });
         };
         self.observer.stage("proving the saddles");
         let scale = self.scales.stiffness_mev;
@@ -344,16 +344,13 @@ impl<'a, 'o> Run<'a, 'o> {
             };
             sequence.links.push(alone.map_or_else(|| Link::recorded(h, highest.clone(), scale), Ok)?);
         }
-        let mut doubts: Vec<String> = sequence.links.iter().filter_map(|l| l.doubt(h)).collect();
+        let mut doubts: Vec<Doubt> = sequence.links.iter().filter_map(|l| l.doubt(h)).collect();
         doubts.extend(sequence.gap);
         if self.problem.relax_ends {
-            for (end, which) in ends.iter().zip(["initial", "final"]) {
-                if !end.is_proven() {
-                    doubts.push(format!("the {which} state is not proven to be a minimum"));
-                }
-            }
+            let unproven = ends.iter().zip(PathEnd::BOTH).filter(|(end, _)| !end.is_proven());
+            doubts.extend(unproven.map(|(_, which)| Doubt::NoMinimum(which)));
         }
-        doubts.dedup();
+        doubts.dedup_by_key(|doubt| doubt.to_string());
         Ok(Proof { ends, links: sequence.links, doubts })
     }
 
@@ -369,13 +366,8 @@ impl<'a, 'o> Run<'a, 'o> {
         }
     }
 
-    fn summary(&self) -> report::Summary<'a> {
-        report::Summary {
-            problem: self.problem,
-            started: self.started,
-            ends: self.ends.clone(),
-            warnings: self.warnings.clone(),
-        }
+    fn prepared(&self) -> Prepared<'_> {
+        Prepared { problem: self.problem, started: self.started, ends: &self.ends, warnings: &self.warnings }
     }
 
     /// Ends that are one minimum turned about a symmetry axis: the rigid turn between them costs nothing.
@@ -400,9 +392,8 @@ impl<'a, 'o> Run<'a, 'o> {
         }
         let stop = Stop::Converged { rotation: 0.0, tolerance: self.problem.neb.tolerance };
         let c = Candidate::new("rotation".into(), band, stop);
-        let doubt = "the two states are one minimum turned about a symmetry axis, but the turn between them is not flat to rounding";
-        let proof = Proof { ends, links: Vec::new(), doubts: vec![doubt.into()] };
-        Ok(Some(report::outcome(self.summary(), c, &[], proof, Vec::new())))
+        let proof = Proof { ends, links: Vec::new(), doubts: vec![Doubt::CostlyTurn] };
+        Ok(Some(report::outcome(self.prepared(), c, &[], proof, Vec::new())))
     }
 
     /// The natural first paths, the most promising first: a few evaluations each, the best two followed to their saddles.

@@ -3,32 +3,6 @@
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Why a run ended, from a closed list: `stop_code` in `summary.json`, beside the reason in words.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum StopCode {
-    /// The band met its tolerance.
-    Converged,
-    /// The evaluations allowed were used up.
-    MaxEvaluations,
-    /// No more progress.
-    Stalled,
-    /// Numbers that are not finite appeared.
-    NotFinite,
-    /// Both ends relaxed to the same state: there is no path.
-    SameMinimum,
-    /// The ends are joined by a valley flat to rounding: the barrier is zero.
-    FlatValley,
-    /// The path rises to no maximum between its ends: the barrier is the higher end.
-    NoMaximum,
-    /// Only a saddle with more than one descending mode was found, which is no barrier.
-    HigherIndex,
-    /// The highest point of the path is an end that was kept as given, which is no barrier.
-    KeptEnd,
-    /// The run was stopped from outside.
-    Interrupted,
-}
-
 /// The end of a band's relaxation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Stop {
@@ -65,16 +39,6 @@ impl Stop {
     /// Whether the goal was met.
     pub fn is_converged(&self) -> bool {
         matches!(self, Stop::Converged { .. })
-    }
-
-    /// The same without numbers.
-    pub fn code(&self) -> StopCode {
-        match self {
-            Stop::Converged { .. } => StopCode::Converged,
-            Stop::MaxEvaluations { .. } => StopCode::MaxEvaluations,
-            Stop::Stalled { .. } => StopCode::Stalled,
-            Stop::NotFinite => StopCode::NotFinite,
-        }
     }
 }
 

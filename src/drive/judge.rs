@@ -1,0 +1,78 @@
+//! What a path shows of its barrier.
+
+use super::candidate::Candidate;
+use super::minimum::Minimum;
+use super::outcome::{Barrier, SaddlePoint};
+use super::relaxation::height;
+use super::{Doubt, PathEnd, Problem, Verdict};
+use crate::band::Band;
+
+/// What a path shows.
+pub struct Seen<'a> {
+    pub problem: &'a Problem,
+    pub band: &'a Band<'a>,
+    pub saddles: &'a [SaddlePoint],
+    /// Final above initial state (meV).
+    pub above_final: f64,
+    pub ends: &'a [Minimum; 2],
+}
+
+/// What is said of it.
+pub struct Judgement {
+    pub verdict: Verdict,
+    pub barrier: Option<Barrier>,
+    /// What stands against a certificate.
+    pub doubts: Vec<Doubt>,
+}
+
+impl Seen<'_> {
+    /// Energy to climb, from the highest saddle or, where the path has an image above all of them, from that. The `doubts` are those
+    /// about its saddles.
+    pub fn judge(&self, c: &Candidate, mut doubts: Vec<Doubt>) -> Judgement {
+        if self.is_flat() {
+            // what no saddle search could find or prove there does not count against it
+            let barrier = Some(Barrier { forward_mev: 0.0, backward_mev: 0.0 });
+            return Judgement { verdict: Verdict::FlatValley, barrier, doubts: Vec::new() };
+        }
+        if self.is_of_higher_index(c) {
+            doubts.push(Doubt::HigherIndex);
+            return Judgement { verdict: Verdict::HigherIndex(c.stop), barrier: None, doubts };
+        }
+        let mut highest = self.saddles.iter().map(|s| s.above_initial_mev).fold(f64::NEG_INFINITY, f64::max);
+        let seen = self.band.energies_mev()[self.band.highest()] - self.band.energies_mev()[0];
+        let (ends, height) = (self.above_final.max(0.0), height(self.band));
+        if seen > highest + 1e-6 * height && seen > ends + 1e-9 * height {
+            highest = seen;
+            doubts.extend(self.problem.seeks_saddles().then_some(Doubt::HigherImage));
+        }
+        if highest <= ends && !self.problem.relax_ends {
+            let end = if self.above_final > 0.0 { PathEnd::Final } else { PathEnd::Initial };
+            doubts.push(Doubt::KeptEnd(end));
+            return Judgement { verdict: Verdict::KeptEnd(c.stop, end), barrier: None, doubts };
+        }
+        let (verdict, forward_mev) = match highest <= ends {
+            true => (Verdict::NoMaximum(c.stop), ends),
+            false => (Verdict::Path(c.stop), highest),
+        };
+        let barrier = Some(Barrier { forward_mev, backward_mev: forward_mev - self.above_final });
+        Judgement { verdict, barrier, doubts }
+    }
+
+    /// Whether the path joins two proven minima and no image of it differs from the first by more than rounding.
+    fn is_flat(&self) -> bool {
+        let (h, path) = (self.band.hamiltonian(), self.band.path());
+        let rounding = h.rounding_mev();
+        let level = |k: usize| h.difference_mev(path.image(k), path.image(0)).abs() <= rounding;
+        self.problem.relax_ends
+            && self.ends.iter().all(Minimum::is_proven)
+            && height(self.band) <= 1e3 * rounding
+            && path.largest_rotation() <= 1.0
+            && (1..path.images()).all(level)
+    }
+
+    fn is_of_higher_index(&self, c: &Candidate) -> bool {
+        self.problem.seeks_saddles()
+            && c.found.as_ref().is_some_and(|f| f.refined.index > 1)
+            && self.saddles.iter().all(|s| s.negative_modes != Some(1))
+    }
+}
