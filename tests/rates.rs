@@ -392,7 +392,7 @@ fn a_chain_of_minima_is_crossed_at_the_rate_of_its_mean_first_passage() {
 /// Why the first saddle has no rate by a theory.
 fn refusal(outcome: &Outcome, theory: Theory) -> String {
     let r = rate(outcome, Way::Forward);
-    let found = r.refused.iter().find(|(t, _)| *t == theory).map(|(_, reason)| reason.clone());
+    let found = r.refused.iter().find(|(t, _)| *t == theory).map(|(_, reason)| reason.to_string());
     found.unwrap_or_else(|| panic!("{} was not refused", theory.name()))
 }
 
@@ -437,7 +437,7 @@ fn a_saddle_of_higher_index_has_no_rate() {
     for r in [forward, backward] {
         assert!(r.htst.is_none() && r.langer.is_none());
         assert!(
-            r.refused.len() == 2 && r.refused.iter().all(|(_, why)| why.contains("negative modes")),
+            r.refused.len() == 2 && r.refused.iter().all(|(_, why)| why.to_string().contains("negative modes")),
             "{:?}",
             r.refused
         );
@@ -645,7 +645,7 @@ fn a_state_beside_a_saddle_that_is_no_minimum_has_no_rate() {
         };
         let [forward, _] = spinneb::rates::saddle_rates(h.into(), 0, &crossing, problem.rates.as_ref().expect("rates"));
         assert_eq!(forward.refused.is_empty(), forward.rows[0].ln_lifetime_s().is_some());
-        forward.refused.first().map(|(_, why)| why.clone())
+        forward.refused.first().map(|(_, why)| why.to_string())
     };
     assert_eq!(refused([0.0, 0.0, 1.0]), None);
     // an end kept on a slope, and one on top of the hard axis

@@ -8,7 +8,7 @@ use super::{Doubt, Verdict};
 use crate::energy::Evaluator;
 use crate::linalg::slab;
 use crate::rates::{
-    Crossing, Equivalents, Orbits, RateSettings, Rates, SaddleRate, ZeroKind, equivalent_saddles, refused,
+    Crossing, Equivalents, Orbits, RateSettings, Rates, Refusal, SaddleRate, ZeroKind, equivalent_saddles, refused,
     saddle_rates, transitions,
 };
 use crate::saddle::{self, Refined, State};
@@ -91,15 +91,10 @@ fn proven(known: &Known, link: &Link, settings: &RateSettings) -> [SaddleRate; 2
 fn unproven(known: &Known, number: usize, saddle: &SaddlePoint, settings: &RateSettings) -> [SaddleRate; 2] {
     let barriers = [saddle.above_initial_mev, saddle.above_initial_mev - known.above_final].map(Some);
     if let Some(why) = known.no_barrier {
-        return refused(number, settings, barriers, &format!("there is no barrier: {why}"));
+        return refused(number, settings, barriers, &Refusal::NoBarrier(why.to_string()));
     }
-    let why = known.doubt().unwrap_or_else(|| Doubt::NotAskedFor.to_string());
-    let way_out = "a rate belongs to a proven saddle between two proven minima (\"saddle\": {\"refine\": true, \"certify\": true})";
-    let index = match saddle.negative_modes {
-        Some(n) if n != 1 => format!(" and has {n} negative modes"),
-        _ => String::new(),
-    };
-    refused(number, settings, barriers, &format!("the saddle is not certified{index}: {why}; {way_out}"))
+    let doubt = known.doubt().unwrap_or_else(|| Doubt::NotAskedFor.to_string());
+    refused(number, settings, barriers, &Refusal::Unproven { negative_modes: saddle.negative_modes, doubt })
 }
 
 /// The rates over saddles and minima (both ends among them) that were found earlier, in path order; the reason if they do not

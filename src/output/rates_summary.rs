@@ -4,7 +4,7 @@
 //! all of them are null, and `reason` says so. `known_within_factor`: a rate or time may be larger or smaller by that.
 
 use super::summary::Number;
-use crate::rates::{Prefactor, Rates, Row, SaddleRate, Theory, TransitionRate, TransitionRow, Way, ZeroKind};
+use crate::rates::{Prefactor, Rates, Refusal, Row, SaddleRate, Theory, TransitionRate, TransitionRow, Way, ZeroKind};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -121,7 +121,7 @@ fn saddle(rates: &Rates, r: &SaddleRate) -> RateEntry {
         g_factor: Number(settings.g_factor),
         blocking_temperature_1_s_K: r.blocking_k[0].map(Number),
         blocking_temperature_10_years_K: r.blocking_k[1].map(Number),
-        refused: r.refused.iter().cloned().collect(),
+        refused: r.refused.iter().map(|(theory, reason)| (*theory, reason.to_string())).collect(),
         warnings: r.warnings.clone(),
         temperatures: r.rows.iter().map(temperature).collect(),
     }
@@ -136,7 +136,7 @@ fn transition(t: &TransitionRate) -> TransitionEntry {
         barrier_meV: Number(t.barrier_mev),
         blocking_temperature_1_s_K: t.blocking_k[0].map(Number),
         blocking_temperature_10_years_K: t.blocking_k[1].map(Number),
-        refused: t.refused.clone(),
+        refused: t.refused.as_ref().map(Refusal::to_string),
         temperatures: t.rows.iter().map(passage).collect(),
     }
 }

@@ -44,6 +44,7 @@ pub use determinant::log_determinant;
 pub use growth::growth_rate;
 pub use passage::{TEN_YEARS_S, blocking_temperature, first_passage, passages};
 pub use rate::{Crossing, LEAST_BARRIER, Prefactor, Row, SaddleRate, Way, refused, saddle_rates};
+pub use refusal::{Refusal, UnknownModes};
 pub use settings::{RateSettings, Theory};
 pub use symmetry::{Equivalents, equivalent_saddles};
 pub use transition::{Orbits, TransitionRate, TransitionRow, transitions};

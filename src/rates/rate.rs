@@ -6,8 +6,8 @@ use super::refusal::{conserved_moment, no_minimum, unfit};
 use super::validity::{Fluctuations, Validity, warnings};
 use super::zero_modes::ZeroMode;
 use super::{
-    Equivalents, RateSettings, Theory, Unstable, ZeroKind, crossover_temperature, equivalent_saddles, growth_rate,
-    unstable_mode, zero_modes,
+    Equivalents, RateSettings, Refusal, Theory, Unstable, ZeroKind, crossover_temperature, equivalent_saddles,
+    growth_rate, unstable_mode, zero_modes,
 };
 use crate::energy::Evaluator;
 use crate::saddle::{Spectrum, State};
@@ -153,7 +153,7 @@ pub struct SaddleRate {
     /// Temperature (K) at which the mean lifetime is 1 s, and at which it is ten years.
     pub blocking_k: [Option<f64>; 2],
     /// Theories that give no rate here, and why.
-    pub refused: Vec<(Theory, String)>,
+    pub refused: Vec<(Theory, Refusal)>,
     /// Where the numbers are rough.
     pub warnings: Vec<String>,
 }
@@ -208,7 +208,7 @@ pub fn refused(
     saddle: usize,
     settings: &RateSettings,
     barriers_mev: [Option<f64>; 2],
-    reason: &str,
+    reason: &Refusal,
 ) -> [SaddleRate; 2] {
     [0, 1].map(|side| SaddleRate {
         saddle,
@@ -224,7 +224,7 @@ pub fn refused(
         validity: None,
         rows: Vec::new(),
         blocking_k: [None, None],
-        refused: settings.theories.iter().map(|t| (*t, reason.to_string())).collect(),
+        refused: settings.theories.iter().map(|t| (*t, reason.clone())).collect(),
         warnings: Vec::new(),
     })
 }
@@ -256,15 +256,15 @@ impl Well {
         settings: &RateSettings,
         spectrum: &Spectrum,
         valley: Option<&[f64]>,
-    ) -> Result<Well, String> {
+        name: &'static str,
+    ) -> Result<Well, Refusal> {
         let thermal_mev = K_B * settings.temperatures_k.iter().copied().fold(f64::INFINITY, f64::min);
-        let zeros = zero_modes(&h, &state, &settings.moments_mub, spectrum.flat, spectrum.floor_mev, thermal_mev)?;
+        let zeros = zero_modes(&h, &state, &settings.moments_mub, spectrum.flat, spectrum.floor_mev, thermal_mev)
+            .map_err(|unknown| Refusal::Volume(name, unknown))?;
         let directions: Vec<Vec<f64>> = zeros.iter().flat_map(|z| z.modes.clone()).collect();
         let unstable = match valley {
             None => None,
-            Some(valley) => {
-                Some(unstable_mode(&state, valley, &directions).ok_or("a descending mode that could not be computed")?)
-            }
+            Some(valley) => Some(unstable_mode(&state, valley, &directions).ok_or(Refusal::LostMode)?),
         };
         let pinned = PinnedHessian::new(&state.hessian, &directions, unstable.as_ref(), h.stiffness_mev() / 3.0);
         Ok(Well { state, zeros, unstable, pinned })
@@ -295,24 +295,22 @@ fn computed(
     crossing: &Crossing,
     settings: &RateSettings,
     barriers: [f64; 2],
-) -> Result<[SaddleRate; 2], String> {
+) -> Result<[SaddleRate; 2], Refusal> {
     if let Some(reason) = unfit(crossing) {
         return Err(reason);
     }
-    let top = Well::new(h, crossing.saddle.clone(), settings, crossing.spectrum, Some(crossing.valley))
-        .map_err(|e| format!("the saddle has {e}"))?;
+    let top = Well::new(h, crossing.saddle.clone(), settings, crossing.spectrum, Some(crossing.valley), "the saddle")?;
     let well = |side: usize| {
         let (state, spectrum) =
             (State::at(h, crossing.minima[side].as_slice().to_vec()), crossing.minima_spectra[side]);
-        if let Some(reason) = no_minimum(spectrum, state.max_torque_mev()) {
-            return Err(format!("the state {} the saddle is no minimum: {reason}", ["before", "after"][side]));
+        if let Some(reason) = no_minimum(spectrum, state.max_torque_mev(), ["before", "after"][side]) {
+            return Err(reason);
         }
-        Well::new(h, state, settings, spectrum, None)
-            .map_err(|e| format!("the minimum {} it has {e}", ["before", "after"][side]))
+        Well::new(h, state, settings, spectrum, None, ["the minimum before it", "the minimum after it"][side])
     };
     let wells = [well(0)?, well(1)?];
     let Some(unstable) = top.unstable.clone() else {
-        return Err("the saddle has no descending mode".into());
+        return Err(Refusal::NoDescendingMode);
     };
     let gyration = settings.gyration_per_s_mev();
     let mut refusals = Vec::new();
@@ -331,9 +329,7 @@ fn computed(
             return None;
         }
         if theory == Theory::Langer && dense {
-            let reason =
-                format!("where every spin acts on every other it takes a dense matrix, of {MOST_DENSE} sites at most");
-            refusals.push((theory, reason));
+            refusals.push((theory, Refusal::Dense(MOST_DENSE)));
             return None;
         }
         let found = match theory {
@@ -345,9 +341,7 @@ fn computed(
         };
         let found = found.filter(|f| f.is_finite() && *f > 0.0);
         if found.is_none() {
-            let reason =
-                "the crossing has no frequency that can be told from zero: the spins do not precess across the saddle";
-            refusals.push((theory, reason.into()));
+            refusals.push((theory, Refusal::NoFrequency));
         }
         found
     };

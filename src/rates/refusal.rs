@@ -7,37 +7,109 @@ use crate::geometry::{Vector, vector};
 use crate::linalg::slab;
 use crate::saddle::Spectrum;
 use crate::spins::Spins;
+use thiserror::Error;
 
 /// A total moment that changes by less than this part of the sum of all is the same.
 const SAME_MOMENT: f64 = 1e-6;
 
-/// Why a saddle has no rate by any theory: no certificate, or not one descending mode. Nothing if it may have one.
-pub fn unfit(crossing: &Crossing) -> Option<String> {
-    let s = crossing.spectrum;
-    if s.negative > 1 {
-        return Some(format!(
-            "the saddle has {} negative modes: a rate belongs to a saddle with one; another first path (\"path.guess\") may \
-             pass a lower one",
-            s.negative
-        ));
-    }
-    if s.negative == 0 {
-        return Some(format!(
-            "the saddle's descending mode is flat to {:.1e} meV, the rounding error of its Hessian, so the curvature that a \
-             rate is made of is not known; a shorter chain, a field or a defect gives the top of the path a shape",
-            s.floor_mev
-        ));
-    }
-    let doubt = crossing.doubt?;
-    Some(format!("the saddle is not certified: {doubt}; a rate belongs to a proven saddle between two proven minima"))
+/// Why there is no rate, from a closed list. Energies in meV.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum Refusal {
+    /// The path is no barrier, for this reason.
+    #[error("there is no barrier: {0}")]
+    NoBarrier(String),
+    /// This stands against the certificate of the whole path.
+    #[error("{0}")]
+    Path(String),
+    /// This stands against the certificate of every saddle of the path.
+    #[error(
+        "the saddle is not certified{}: {doubt}; a rate belongs to a proven saddle between two proven minima \
+         (\"saddle\": {{\"refine\": true, \"certify\": true}})", index(*.negative_modes)
+    )]
+    Unproven {
+        /// Its descending modes, where counted.
+        negative_modes: Option<usize>,
+        /// What stands against it.
+        doubt: String,
+    },
+    /// This stands against the certificate of the saddle.
+    #[error("the saddle is not certified: {0}; a rate belongs to a proven saddle between two proven minima")]
+    Doubted(String),
+    /// The saddle has so many descending modes.
+    #[error(
+        "the saddle has {0} negative modes: a rate belongs to a saddle with one; another first path (\"path.guess\") may pass a \
+         lower one"
+    )]
+    NegativeModes(usize),
+    /// The saddle's descending mode lies below this rounding error of its Hessian.
+    #[error(
+        "the saddle's descending mode is flat to {0:.1e} meV, the rounding error of its Hessian, so the curvature that a rate is \
+         made of is not known; a shorter chain, a field or a defect gives the top of the path a shape"
+    )]
+    FlatMode(f64),
+    /// No descending mode of the saddle was found.
+    #[error("the saddle has no descending mode")]
+    NoDescendingMode,
+    /// The descending mode of the saddle was not computed.
+    #[error("the saddle has a descending mode that could not be computed")]
+    LostMode,
+    /// A state beside the saddle has so many descending modes, such as an end that was kept as given.
+    #[error("the state {0} the saddle is no minimum: it has {1} descending modes")]
+    Descends(&'static str, usize),
+    /// A state beside the saddle has this torque.
+    #[error("the state {0} the saddle is no minimum: a torque of {1:.1e} meV is left on it")]
+    Torque(&'static str, f64),
+    /// A state has modes whose volume is not known.
+    #[error("{0} has {1}")]
+    Volume(&'static str, UnknownModes),
+    /// Precession conserves the moment along this axis, which differs between the saddle and a minimum.
+    #[error(
+        "the energy is the same for all turns about ({:.3}, {:.3}, {:.3}), so without damping the moment along that axis is \
+         conserved and no spin crosses the saddle: what transition-state theory counts is not there; use \"langer\" with a damping \
+         above 0, or a second anisotropy that breaks the symmetry", .0[0], .0[1], .0[2]
+    )]
+    Conserved(Vector),
+    /// Langer's theory takes a dense matrix, of this many sites at most.
+    #[error("where every spin acts on every other it takes a dense matrix, of {0} sites at most")]
+    Dense(usize),
+    /// The frequency of the crossing cannot be told from zero.
+    #[error("the crossing has no frequency that can be told from zero: the spins do not precess across the saddle")]
+    NoFrequency,
 }
 
-/// Why a state is not one to be left at a rate, such as an end that was kept as given; nothing if it is a minimum.
-pub fn no_minimum(spectrum: &Spectrum, torque_mev: f64) -> Option<String> {
-    if spectrum.negative > 0 {
-        return Some(format!("it has {} descending modes", spectrum.negative));
+/// Modes below the rounding error that are neither a rotation nor a translation.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[error(
+    "{modes} mode(s) flat to {floor_mev:.1e} meV that are no rotation and no translation of a ring: how far they reach is not \
+     known; a term that gives them a stiffness, such as an anisotropy or a pinning site, would tell"
+)]
+pub struct UnknownModes {
+    /// How many.
+    pub modes: usize,
+    /// The rounding error (meV).
+    pub floor_mev: f64,
+}
+
+fn index(negative_modes: Option<usize>) -> String {
+    negative_modes.filter(|n| *n != 1).map_or(String::new(), |n| format!(" and has {n} negative modes"))
+}
+
+/// Why a saddle has no rate by any theory: no certificate, or not one descending mode. Nothing if it may have one.
+pub fn unfit(crossing: &Crossing) -> Option<Refusal> {
+    let s = crossing.spectrum;
+    match s.negative {
+        0 => Some(Refusal::FlatMode(s.floor_mev)),
+        1 => crossing.doubt.map(|doubt| Refusal::Doubted(doubt.into())),
+        n => Some(Refusal::NegativeModes(n)),
     }
-    (!spectrum.is_stationary(torque_mev)).then(|| format!("a torque of {torque_mev:.1e} meV is left on it"))
+}
+
+/// Why a state beside a saddle is not one to be left at a rate, such as an end that was kept as given; nothing if it is a minimum.
+pub fn no_minimum(spectrum: &Spectrum, torque_mev: f64, side: &'static str) -> Option<Refusal> {
+    if spectrum.negative > 0 {
+        return Some(Refusal::Descends(side, spectrum.negative));
+    }
+    (!spectrum.is_stationary(torque_mev)).then_some(Refusal::Torque(side, torque_mev))
 }
 
 /// Why precession alone cannot cross: a symmetry axis along which the total moment is conserved, and it differs between the saddle
@@ -47,20 +119,14 @@ pub fn conserved_moment(
     saddle: &[f64],
     minima: [&Spins; 2],
     settings: &RateSettings,
-) -> Option<String> {
+) -> Option<Refusal> {
     let total: f64 = settings.moments_mub.iter().sum();
     let changes = |axis: &Vector| {
         let at = |m: &[f64]| moment_along(h, m, *axis, &settings.moments_mub);
         let here = at(saddle);
         minima.iter().any(|m| (at(m.as_slice()) - here).abs() > SAME_MOMENT * total)
     };
-    let axis = h.symmetry_axes_at(saddle).into_iter().find(changes)?;
-    Some(format!(
-        "the energy is the same for all turns about ({:.3}, {:.3}, {:.3}), so without damping the moment along that axis is \
-         conserved and no spin crosses the saddle: what transition-state theory counts is not there; use \"langer\" with a \
-         damping above 0, or a second anisotropy that breaks the symmetry",
-        axis[0], axis[1], axis[2]
-    ))
+    h.symmetry_axes_at(saddle).into_iter().find(changes).map(Refusal::Conserved)
 }
 
 /// Total moment (μ_B) along an axis, frozen sites apart.

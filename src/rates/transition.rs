@@ -2,7 +2,7 @@
 
 use super::passage::{TEN_YEARS_S, blocking_temperature, first_passage, passages};
 use super::rate::factor;
-use super::{Equivalents, RateSettings, Row, SaddleRate, Theory, Way};
+use super::{Equivalents, RateSettings, Refusal, Row, SaddleRate, Theory, Way};
 use crate::units::K_B;
 
 /// How many of each stationary state symmetry makes of the path's own with both ends kept: from a minimum of a kind of which there
@@ -52,7 +52,7 @@ pub struct TransitionRate {
     /// Temperature (K) at which the mean first passage takes 1 s, and at which it takes ten years.
     pub blocking_k: [Option<f64>; 2],
     /// Why there is no rate; nothing if there is one.
-    pub refused: Option<String>,
+    pub refused: Option<Refusal>,
 }
 
 /// The rates of the whole path in both directions, from those of its saddles (forward and backward, in path order) and the
@@ -132,7 +132,7 @@ fn transition(
     let possible = settings.temperatures_k.iter().any(|t| Theory::ALL.iter().any(|theory| both(*theory, *t).is_some()));
     let refused = match possible {
         true => None,
-        false => doubt.map(String::from).or_else(reasons),
+        false => doubt.map(|doubt| Refusal::Path(doubt.into())).or_else(reasons),
     };
     let equivalents = orbits.paths.clone();
     TransitionRate { way, saddles: count, equivalents, barrier_mev, rows, blocking_k, refused }

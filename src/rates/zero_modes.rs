@@ -8,6 +8,7 @@
 //! Rotations are exact zero modes. A translation is one where the lattice is so fine that the energy changes by less than
 //! [`PINNING`] k_BT while the state moves by a site; its eigenvalue ε gives that energy, ε Σ|dm/dx|²/2π² (a cosine).
 
+use super::UnknownModes;
 use super::symmetry::{is_translation_symmetric, period};
 use super::unstable::nearest_mode;
 use crate::energy::Hamiltonian;
@@ -54,7 +55,7 @@ pub fn zero_modes(
     flat: usize,
     floor_mev: f64,
     thermal_mev: f64,
-) -> Result<Vec<ZeroMode>, String> {
+) -> Result<Vec<ZeroMode>, UnknownModes> {
     let mut found = Vec::new();
     if !state.zeros.is_empty() {
         let volume = rotation_volume(h, state);
@@ -67,10 +68,7 @@ pub fn zero_modes(
     }
     match flat.saturating_sub(explained) {
         0 => Ok(found),
-        unknown => Err(format!(
-            "{unknown} mode(s) flat to {floor_mev:.1e} meV that are no rotation and no translation of a ring: how far they reach \
-             is not known; a term that gives them a stiffness, such as an anisotropy or a pinning site, would tell"
-        )),
+        modes => Err(UnknownModes { modes, floor_mev }),
     }
 }
 
