@@ -11,6 +11,7 @@ mod judge;
 mod lower;
 mod minimum;
 mod outcome;
+mod places;
 mod problem;
 mod rates;
 mod relaxation;

@@ -6,6 +6,7 @@ use super::ends::Relaxed;
 use super::judge::{Judgement, Seen};
 use super::minimum::{Link, Minimum};
 use super::outcome::*;
+use super::places::{Place, in_order, nearest};
 use super::rates::{self, Known};
 use super::relaxation::{height, prominent_maxima};
 use super::{Doubt, Partial, Problem, Verdict};
@@ -74,7 +75,8 @@ pub fn outcome(
     let band = &c.band;
     let initial = band.path().image(0);
     let above_final = h.difference_mev(band.path().image(band.images() - 1), initial);
-    let saddles = saddles(run.problem, band, found, &proof.links);
+    let places = places_of(band.path(), &proof.links);
+    let saddles = saddles(run.problem, band, found, &proof.links, &places);
     let seen = Seen { problem: run.problem, band, saddles: &saddles, above_final, ends: &proof.ends };
     let Judgement { verdict, barrier, doubts } = seen.judge(&c, proof.doubts);
     // nothing is crossed in a flat valley
@@ -86,7 +88,11 @@ pub fn outcome(
         let no_barrier = barrier.is_none().then_some(&verdict);
         rates::of_path(&Known { h, links, saddles: &saddles, above_final, doubts: &doubts, no_barrier }, settings)
     });
-    let intermediate_minima = if proof.links.len() > 1 { link_minima(band, &proof.links) } else { band_minima(band) };
+    let behind = proof.links.iter().zip(places.iter().skip(1).step_by(2));
+    let intermediate_minima = match proof.links.len() {
+        0 | 1 => band_minima(band),
+        _ => behind.map(|(link, place)| minimum_of(link, *place)).collect(),
+    };
     let highest_climb = barrier.map(|b| {
         let above = |m: &IntermediateMinimum| m.state.energy_mev - h.energy_mev(initial);
         let minima = intermediate_minima.iter().map(|m| (m.reaction_coordinate_rad, above(m)));
@@ -242,41 +248,31 @@ fn end_of(m: &Minimum) -> EndPoint {
 }
 
 /// The saddles in path order: proven, refined, or else as the band shows them.
-fn saddles(problem: &Problem, band: &Band, found: &[Found], links: &[Link]) -> Vec<SaddlePoint> {
+fn saddles(problem: &Problem, band: &Band, found: &[Found], links: &[Link], places: &[Place]) -> Vec<SaddlePoint> {
     let h = problem.evaluator();
-    let mut saddles: Vec<SaddlePoint> = match (links, found) {
-        ([], []) => return band_saddles(problem, band),
-        ([], found) => found.iter().map(|f| saddle_of(h, band, f)).collect(),
-        (links, _) => links.iter().map(|l| saddle_of_link(h, band, l)).collect(),
-    };
-    saddles.sort_by(|p, q| p.reaction_coordinate_rad.total_cmp(&q.reaction_coordinate_rad));
-    saddles
+    let of_link = |(l, place): (&Link, &Place)| saddle_of_link(h, band, l, *place);
+    match (links, found) {
+        ([], []) => band_saddles(problem, band),
+        ([], found) => {
+            // where the path only rises to an end, a search may come to that
+            let found = found.iter().filter(|f| f.refined.index > 0);
+            let at = |f: &Found| saddle_of(h, band, f, nearest(band.path(), &f.refined.state.m));
+            let mut saddles: Vec<SaddlePoint> = found.map(at).collect();
+            saddles.sort_by(|p, q| p.reaction_coordinate_rad.total_cmp(&q.reaction_coordinate_rad));
+            saddles
+        }
+        (links, _) => links.iter().zip(places.iter().step_by(2)).map(of_link).collect(),
+    }
 }
 
-/// The place on the path nearest to a state: reaction coordinate (rad) and image.
-fn nearest(band: &Band, m: &[f64]) -> (f64, usize) {
-    let path = band.path();
-    let s = path.reaction_coordinate();
-    let far = path.distances_from(m);
-    let k = (0..far.len()).fold(0, |best, k| if far[k] < far[best] { k } else { best });
-    let (a, b) = if k + 1 < far.len() && (k == 0 || far[k + 1] < far[k - 1]) {
-        (k, k + 1)
-    } else {
-        (k.saturating_sub(1), k.max(1).min(far.len() - 1))
-    };
-    let share = far[a] / (far[a] + far[b]).max(f64::MIN_POSITIVE);
-    (s[a] + share * (s[b] - s[a]), k)
-}
-
-fn saddle_of(h: Evaluator, band: &Band, f: &Found) -> SaddlePoint {
+fn saddle_of(h: Evaluator, band: &Band, f: &Found, place: Place) -> SaddlePoint {
     let first = band.path().image(0);
     let above = h.difference_mev(&f.refined.state.m, first);
-    let (s, image) = nearest(band, &f.refined.state.m);
     SaddlePoint {
         energy_mev: h.energy_mev(first) + above,
         above_initial_mev: above,
-        reaction_coordinate_rad: s,
-        image,
+        reaction_coordinate_rad: place.s,
+        image: place.image,
         spins: Spins::from_unit_components(&f.refined.state.m),
         max_torque_mev: Some(f.refined.state.max_torque_mev()),
         negative_modes: Some(f.refined.index),
@@ -285,12 +281,12 @@ fn saddle_of(h: Evaluator, band: &Band, f: &Found) -> SaddlePoint {
     }
 }
 
-fn saddle_of_link(h: Evaluator, band: &Band, link: &Link) -> SaddlePoint {
+fn saddle_of_link(h: Evaluator, band: &Band, link: &Link, place: Place) -> SaddlePoint {
     SaddlePoint {
         negative_modes: Some(link.spectrum.negative),
         zero_modes: Some(link.spectrum.zero_and_flat()),
         lowest_eigenvalues_mev: link.spectrum.lowest_mev.clone(),
-        ..saddle_of(h, band, &link.found)
+        ..saddle_of(h, band, &link.found, place)
     }
 }
 
@@ -324,13 +320,20 @@ fn band_saddles(problem: &Problem, band: &Band) -> Vec<SaddlePoint> {
     prominent_maxima(band.energies_mev(), 1e-6 * height(band)).into_iter().map(point).collect()
 }
 
-/// The minima between consecutive saddles.
-fn link_minima(band: &Band, links: &[Link]) -> Vec<IntermediateMinimum> {
-    let one = |l: &Link| {
-        let (s, image) = nearest(band, l.after.spins.as_slice());
-        IntermediateMinimum { image, reaction_coordinate_rad: s, spins: l.after.spins.clone(), state: end_of(&l.after) }
-    };
-    links[..links.len() - 1].iter().map(one).collect()
+/// Where a path passes the saddles of its links, and the minima between them.
+fn places_of(path: &Path, links: &[Link]) -> Vec<Place> {
+    let states = links.iter().flat_map(|l| [&l.found.refined.state.m[..], l.after.spins.as_slice()]);
+    in_order(path, &states.take((2 * links.len()).saturating_sub(1)).collect::<Vec<_>>())
+}
+
+/// The minimum behind a link.
+fn minimum_of(link: &Link, place: Place) -> IntermediateMinimum {
+    IntermediateMinimum {
+        image: place.image,
+        reaction_coordinate_rad: place.s,
+        spins: link.after.spins.clone(),
+        state: end_of(&link.after),
+    }
 }
 
 /// Largest component of the whole force on image k (meV).
