@@ -78,7 +78,7 @@ fn pool(threads: usize) -> rayon::ThreadPool {
 
 /// The chain of the shipped wall nucleation, refined to `sites`, with a wall on its way through.
 fn problem(sites: usize) -> (Hamiltonian, Path) {
-    let chain = Chain::open(sites);
+    let chain = Chain::open(sites).resolve().expect("a chain");
     let ratio = 50.0 / sites as f64;
     let exchange = Exchange::uniform(&chain, &[10.0]);
     let easy_axis = Anisotropy::uniform(sites, 0.5 * ratio * ratio, Direction::Z);

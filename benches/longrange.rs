@@ -72,6 +72,7 @@ const ANISOTROPY: &str = r#"{"anisotropy": {"K": "10 kJ/m^3", "axis": [1, 0, 0]}
 fn hamiltonian(sites: usize, terms: &[&str]) -> Hamiltonian {
     let edges = Some([Length(20.0), Length(5.0)].map(Into::into));
     let chain = Chain { spacing: Some(Length(5.0)), cross_section: edges, ..Chain::open(sites) };
+    let chain = chain.resolve().expect("a chain");
     let medium = Medium::new(&chain, None, Some(Magnetisation(8e5).into()));
     let build = |text: &&str| -> Box<dyn EnergyTerm> {
         let spec: TermSpec = serde_json::from_str(text).expect("a term");

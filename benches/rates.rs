@@ -20,7 +20,7 @@ fn main() {
 }
 
 fn measure(sites: usize) {
-    let chain = Chain::open(sites);
+    let chain = Chain::open(sites).resolve().expect("a chain");
     let (j, k) = (10.0, 0.5 * (50.0 / sites as f64).powi(2));
     let terms: Vec<Box<dyn EnergyTerm>> = vec![
         Box::new(Exchange::uniform(&chain, &[j])),

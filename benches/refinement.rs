@@ -113,14 +113,14 @@ fn anisotropy(sites: usize) -> f64 {
 }
 
 fn problem(sites: usize) -> Problem {
-    let chain = Chain::open(sites);
+    let chain = Chain::open(sites).resolve().expect("a chain");
     let terms: Vec<Box<dyn spinneb::energy::EnergyTerm>> = vec![
         Box::new(Exchange::uniform(&chain, &[J])),
         Box::new(Anisotropy::uniform(sites, anisotropy(sites), Direction::Z)),
     ];
     let h = Hamiltonian::new(&chain, terms).expect("a valid chain");
     let [up, down] = [Direction::Z, Direction::Z.reversed()].map(|d| Spins::uniform(sites, d));
-    let mut problem = Problem::new(chain, h, up, down);
+    let mut problem = Problem::new(h, up, down);
     problem.guess = Some(GuessSpec::Sweep(Sweep { from: Edge::Left, width: None, axis: None }));
     problem.images = Images::Count(IMAGES);
     problem

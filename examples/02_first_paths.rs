@@ -90,7 +90,7 @@ fn main() -> Result<()> {
 fn problem(case: &Case) -> Result<Problem> {
     let frozen = |site, direction| Frozen { sites: Selection::List(vec![site]), direction: Some(direction) };
     let ends = vec![frozen(0, Direction::Z), frozen(SITES - 1, Direction::Z.reversed())];
-    let chain = Chain { frozen: ends, ..Chain::open(SITES) };
+    let chain = Chain { frozen: ends, ..Chain::open(SITES) }.resolve()?;
     let mut easy = Anisotropy::uniform(SITES, K, Direction::Z);
     for &i in case.weak_sites {
         easy.k[i] = 0.5 * K;
@@ -106,7 +106,7 @@ fn problem(case: &Case) -> Result<Problem> {
     };
     let (a, b) = (wall(case.from)?, wall(case.to)?);
     let hamiltonian = Hamiltonian::new(&chain, terms)?;
-    let mut problem = Problem::new(chain, hamiltonian, a, b);
+    let mut problem = Problem::new(hamiltonian, a, b);
     problem.images = Images::Count(IMAGES);
     (problem.refine, problem.certify, problem.neb.climb) = (false, false, false);
     problem.neb.tolerance = 1e-5;
@@ -129,7 +129,7 @@ fn measure(case: &Case) -> Result<Vec<Row>> {
 
 fn row(case: &Case, start: &'static str, guess: GuessSpec, a: &Spins, b: &Spins) -> Result<Row> {
     let of = problem(case)?;
-    let states = StateContext::new(&of.chain, (J / (2.0 * K)).sqrt());
+    let states = StateContext::new(of.hamiltonian.lattice(), (J / (2.0 * K)).sqrt());
     let context = GuessContext { states, default_axis: Direction::Z };
     let path: Path = guess.member().path(a, b, IMAGES, &context)?;
     let spacing = path.spacings();

@@ -74,12 +74,12 @@ fn main() -> Result<()> {
 
 /// Rates out of one well by Langer's theory, over both saddles, in units of γK/μ.
 fn langer_rates(alpha: f64, barriers: &[f64]) -> Result<Vec<f64>> {
-    let chain = Chain::open(1);
+    let chain = Chain::open(1).resolve()?;
     let easy: Box<dyn EnergyTerm> = Box::new(Anisotropy::uniform(1, 1.0, Direction::Z));
     let hard = Box::new(Anisotropy::uniform(1, -HARD, Direction::X));
     let hamiltonian = Hamiltonian::new(&chain, vec![easy, hard])?;
     let [up, down] = [Direction::Z, Direction::Z.reversed()].map(|d| Spins::uniform(1, d));
-    let mut problem = Problem::new(chain, hamiltonian, up, down);
+    let mut problem = Problem::new(hamiltonian, up, down);
     problem.rates = Some(RateSettings {
         temperatures_k: barriers.iter().map(|delta| 1.0 / (delta * K_B)).collect(),
         damping: alpha,

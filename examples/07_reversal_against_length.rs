@@ -125,7 +125,7 @@ fn chain(sites: usize) -> Chain {
 }
 
 fn bar_of(sites: usize, terms: &[&str]) -> Result<Hamiltonian> {
-    let chain = chain(sites);
+    let chain = chain(sites).resolve()?;
     let medium = Medium::new(&chain, None, Some(Magnetisation(8e5).into()));
     let build = |text: &&str| -> Result<Box<dyn EnergyTerm>> {
         let spec: TermSpec = serde_json::from_str(text)?;
@@ -157,7 +157,7 @@ fn lowest_odd_mode(h: &Hamiltonian, m: &[f64]) -> f64 {
 /// The certified barrier of the reversal from +x to −x.
 fn found(sites: usize, h: Hamiltonian) -> Result<Found> {
     let [a, b] = [Direction::X, Direction::X.reversed()].map(|d| Spins::uniform(sites, d));
-    let outcome = run(&Problem::new(chain(sites), h, a, b), &mut Silent)?;
+    let outcome = run(&Problem::new(h, a, b), &mut Silent)?;
     ensure!(outcome.certified, "{sites} cells: {:?}", outcome.warnings);
     let barrier_mev = outcome.barrier.context("a barrier")?.forward_mev;
     let top = outcome.saddles.iter().max_by(|a, b| a.energy_mev.total_cmp(&b.energy_mev)).context("a saddle")?;

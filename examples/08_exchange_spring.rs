@@ -71,7 +71,7 @@ impl Grain {
     }
 
     fn in_field(&self, b_t: f64) -> Result<Hamiltonian> {
-        let chain = Chain::open(self.anisotropy_mev.len());
+        let chain = Chain::open(self.anisotropy_mev.len()).resolve()?;
         let exchange = Exchange::uniform(&chain, &[self.exchange_mev]);
         let easy = Anisotropy { axis: [0.0, 0.0, 1.0], k: self.anisotropy_mev.clone(), k2: Vec::new() };
         let b = self.moment_mev_per_t.iter().map(|m| b_t * m).collect();
@@ -84,7 +84,7 @@ impl Grain {
     fn barrier_mev(&self) -> Result<f64> {
         let sites = self.anisotropy_mev.len();
         let [up, down] = [Direction::Z, Direction::Z.reversed()].map(|d| Spins::uniform(sites, d));
-        let outcome = run(&Problem::new(Chain::open(sites), self.in_field(0.0)?, up, down), &mut Silent)?;
+        let outcome = run(&Problem::new(self.in_field(0.0)?, up, down), &mut Silent)?;
         ensure!(outcome.certified, "{sites} cells: {:?}", outcome.warnings);
         Ok(outcome.barrier.context("a barrier")?.forward_mev)
     }

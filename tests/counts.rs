@@ -26,7 +26,7 @@ fn case(name: &str, n: usize) -> Problem {
     let k = anisotropy(n);
     let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(7);
     let mut build = if name == "ring in a field" { Build::ring(n) } else { Build::open(n) };
-    let chain = build.chain.clone();
+    let chain = build.lattice.clone();
     let along = |b: f64| Zeeman::uniform(n, [0.0, 0.0, b]);
     let mut staggered = false;
     build = match name {
@@ -49,7 +49,7 @@ fn case(name: &str, n: usize) -> Problem {
         "random J and K" => {
             let (mut j, mut a) = (Exchange::uniform(&chain, &[1.0]), Anisotropy::uniform(n, k, Direction::Z));
             for i in 0..n {
-                j.shells[0][i] *= random.random_range(0.3..1.7);
+                j.families[0].mev[i] *= random.random_range(0.3..1.7);
                 a.k[i] *= random.random_range(-0.2..2.2);
             }
             build.terms = vec![Box::new(j)];

@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 use spinneb::energy::{EnergyTerm, Hamiltonian, Medium, TangentBasis, TermSpec, assemble};
 use spinneb::field::{Components, ComponentsMut, project};
 use spinneb::geometry::{Direction, exp, rotate, tangent_basis, vector};
-use spinneb::lattice::{Chain, Frozen, Selection};
+use spinneb::lattice::{Chain, Frozen, Lattice, Selection};
 use spinneb::linalg::Banded;
 use spinneb::spins::Spins;
 use spinneb::units::{Length, Moment};
@@ -15,7 +15,7 @@ fn chain(sites: usize, periodic: bool) -> Chain {
     Chain { periodic, spacing: Some(Length(1.5)), cross_section, ..Chain::open(sites) }
 }
 
-fn build(text: &str, chain: &Chain) -> Box<dyn EnergyTerm> {
+fn build(text: &str, chain: &Lattice) -> Box<dyn EnergyTerm> {
     let spec: TermSpec = serde_json::from_str(text).expect(text);
     spec.member().build(&Medium::new(chain, Some(Moment(2.0).into()), None)).expect(text)
 }
@@ -73,7 +73,7 @@ fn every_entry_parses_into_the_member_of_its_name() {
     for entry in TermSpec::ENTRIES {
         let spec: TermSpec = serde_json::from_str(entry.example).expect(entry.example);
         assert_eq!(spec.name(), entry.name);
-        assert_eq!(build(entry.example, &chain(8, false)).name(), entry.name);
+        assert_eq!(build(entry.example, &chain(8, false).resolve().unwrap()).name(), entry.name);
     }
 }
 
@@ -84,7 +84,7 @@ fn the_gradient_is_the_slope_of_the_energy_and_the_hessian_the_slope_of_the_grad
             if sites < 8 && (text.contains("bonds") || text.contains("sites")) {
                 continue;
             }
-            let chain = chain(sites, periodic);
+            let chain = chain(sites, periodic).resolve().unwrap();
             let h = Hamiltonian::new(&chain, vec![build(&text, &chain)]).unwrap();
             let m = random_spins(sites, 3);
             let v = random_tangent(&m, 4);
@@ -131,6 +131,7 @@ fn the_banded_hessian_in_tangent_coordinates_is_the_hessian_product() {
         for (sites, periodic) in [(8, false), (9, true)] {
             let mut chain = chain(sites, periodic);
             chain.frozen = vec![Frozen { sites: Selection::List(vec![3]), direction: Some(Direction::Z) }];
+            let chain = chain.resolve().unwrap();
             let h = Hamiltonian::new(&chain, vec![build(&text, &chain)]).unwrap();
             let m = random_spins(sites, 6);
             let mut v = random_tangent(&m, 7);
@@ -152,7 +153,7 @@ fn the_banded_hessian_in_tangent_coordinates_is_the_hessian_product() {
 #[test]
 fn a_long_chain_in_tiles_has_the_gradient_of_its_sites_one_by_one() {
     let sites = 1500;
-    let chain = chain(sites, true);
+    let chain = chain(sites, true).resolve().unwrap();
     // one of the two long-ranged terms at a time
     let terms = || fragments().iter().filter(|f| !f.contains("dipolar")).map(|f| build(f, &chain)).collect::<Vec<_>>();
     let h = Hamiltonian::new(&chain, terms()).unwrap();
@@ -186,7 +187,7 @@ fn change_by_a_turn(h: &Hamiltonian, m: &[f64], axis: [f64; 3]) -> f64 {
 #[test]
 fn an_axis_of_symmetry_leaves_the_energy_as_it_is_and_another_does_not() {
     for text in fragments() {
-        let chain = chain(9, true);
+        let chain = chain(9, true).resolve().unwrap();
         let term = build(&text, &chain);
         let named = term.axes();
         let h = Hamiltonian::new(&chain, vec![term]).unwrap();
@@ -204,7 +205,7 @@ fn an_axis_of_symmetry_leaves_the_energy_as_it_is_and_another_does_not() {
 #[test]
 fn axes_of_symmetry_are_those_of_the_sum_of_all_terms() {
     let axes = |terms: &[&str], sites: usize| {
-        let chain = chain(sites, false);
+        let chain = chain(sites, false).resolve().unwrap();
         let terms = terms.iter().map(|text| build(text, &chain)).collect();
         Hamiltonian::new(&chain, terms).unwrap().symmetry_axes().to_vec()
     };
@@ -254,6 +255,7 @@ fn the_hessian_of_a_long_ranged_chain_is_its_product_dense_or_as_exponentials() 
             let mut chain = chain(sites, periodic);
             chain.direction = Some(Direction::new([1.0, -0.4, 0.2]).unwrap());
             chain.frozen = vec![Frozen { sites: Selection::List(vec![3, 17]), direction: Some(Direction::Z) }];
+            let chain = chain.resolve().unwrap();
             let terms = [r#"{"exchange": {"J": ["0.1 meV", "-0.02 meV"]}}"#, text].map(|t| build(t, &chain));
             let h = Hamiltonian::new(&chain, terms.into()).unwrap();
             let m = random_spins(sites, 12);
@@ -333,7 +335,7 @@ fn factors_of_hessians_agree_with_those_of_an_independent_sparse_solver() {
     let mut signs = std::collections::BTreeSet::new();
     for (round, (j, periodic)) in shells.iter().flat_map(|j| [(j, false), (j, true)]).enumerate() {
         for sites in [9, 50, 301] {
-            let chain = chain(sites, periodic);
+            let chain = chain(sites, periodic).resolve().unwrap();
             let exchange = format!(r#"{{"exchange": {{"J": {j}}}}}"#);
             let anisotropy = r#"{"anisotropy": {"K": "0.5 meV", "axis": [0.2, 0.1, 1]}}"#;
             let terms = [exchange.as_str(), anisotropy].map(|t| build(t, &chain));
@@ -364,7 +366,7 @@ fn factors_of_hessians_agree_with_those_of_an_independent_sparse_solver() {
 
 #[test]
 fn terms_as_a_config_names_them_have_the_signs_of_their_definitions() {
-    let chain = chain(2, false);
+    let chain = chain(2, false).resolve().unwrap();
     let energy = |text: &str, a: [f64; 3], b: [f64; 3]| {
         let h = Hamiltonian::new(&chain, vec![build(text, &chain)]).unwrap();
         h.energy_mev(Spins::from_vectors(&[a, b]).unwrap().as_slice())

@@ -271,7 +271,7 @@ fn an_image_is_chosen_by_its_number_from_either_end() {
         let mut spec: StateSpec = serde_json::from_str(json).unwrap();
         let StateSpec::File(file) = &mut spec else { panic!("{json}") };
         file.load(folder.path())?;
-        let chain = Chain::open(6);
+        let chain = Chain::open(6).resolve().unwrap();
         file.vectors(&StateContext::new(&chain, 1.0))
     };
     assert_eq!(state(r#"{"file": {"path": "m.ovf", "segment": 2}}"#).unwrap(), given[2]);
@@ -291,7 +291,7 @@ fn a_path_from_a_file_is_taken_as_it_is_or_spaced_evenly_along_it() {
     let stored = files::Stored { file: "p.npz".into(), content: read("p.npz", &bytes).unwrap() };
     let guess = PathFile { path: "p.npz".into(), sha256: None, stored: Some(stored.into()) };
     let ends = [0, 4].map(|k| Spins::from_vectors(&given[k]).unwrap());
-    let chain = Chain::open(6);
+    let chain = Chain::open(6).resolve().unwrap();
     let states = StateContext::new(&chain, 1.0);
     let context = GuessContext { states, default_axis: Direction::X };
     let path = |images| guess.path(&ends[0], &ends[1], images, &context).unwrap();

@@ -3,7 +3,7 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use spinneb::geometry::{Direction, Vector, angle, rotate, vector};
-use spinneb::lattice::{Chain, Frozen, Selection};
+use spinneb::lattice::{Chain, Frozen, Lattice, Selection};
 use spinneb::path::guess::{GuessContext, GuessSpec, NoiseSpec, add_noise, common_axis, component_sag, smooth};
 use spinneb::path::{Path, distance};
 use spinneb::registry::Entry;
@@ -14,16 +14,16 @@ use std::f64::consts::PI;
 
 const EPS: f64 = f64::EPSILON;
 
-fn try_state(text: &str, chain: &Chain) -> Result<Spins, String> {
+fn try_state(text: &str, chain: &Lattice) -> Result<Spins, String> {
     let spec: StateSpec = serde_json::from_str(text).map_err(|e| e.to_string())?;
     spec.build(&StateContext::new(chain, 1.5)).map_err(|e| e.to_string())
 }
 
 fn state(text: &str, sites: usize) -> Spins {
-    try_state(text, &Chain::open(sites)).expect(text)
+    try_state(text, &Chain::open(sites).resolve().unwrap()).expect(text)
 }
 
-fn try_path(text: &str, a: &Spins, b: &Spins, images: usize, chain: &Chain) -> Result<Path, String> {
+fn try_path(text: &str, a: &Spins, b: &Spins, images: usize, chain: &Lattice) -> Result<Path, String> {
     let spec: GuessSpec = serde_json::from_str(text).map_err(|e| e.to_string())?;
     let states = StateContext::new(chain, 1.5);
     let context = GuessContext { states, default_axis: Direction::X };
@@ -31,7 +31,7 @@ fn try_path(text: &str, a: &Spins, b: &Spins, images: usize, chain: &Chain) -> R
 }
 
 fn path(text: &str, a: &Spins, b: &Spins, images: usize) -> Path {
-    try_path(text, a, b, images, &Chain::open(a.sites())).expect(text)
+    try_path(text, a, b, images, &Chain::open(a.sites()).resolve().unwrap()).expect(text)
 }
 
 fn z(sites: usize, sign: f64) -> Spins {
@@ -148,7 +148,7 @@ fn every_guess_keeps_the_ends_the_count_and_the_unit_length() {
                 let p = path(text, a, b, images);
                 check_contract(text, &p, a, b, images);
                 let noise = NoiseSpec { amplitude: Angle(0.1), seed: 1 };
-                let noisy = add_noise(&p, &noise, &Chain::open(a.sites()));
+                let noisy = add_noise(&p, &noise, &Chain::open(a.sites()).resolve().unwrap());
                 check_contract("noise", &noisy, a, b, images);
                 check_contract("smooth", &smooth(&noisy, 0.6), a, b, images);
             }
@@ -389,7 +389,13 @@ fn a_path_by_waypoints_meets_them_and_is_equally_spaced() {
     // without stops it is the geodesic
     let none = path(r#"{"waypoints": {"states": []}}"#, &a, &b, 9);
     assert_eq!(none, path(r#"{"geodesic": {}}"#, &a, &b, 9));
-    let error = try_path(r#"{"waypoints": {"states": [{"vectors": [[0, 0, 1]]}]}}"#, &a, &b, 5, &Chain::open(12));
+    let error = try_path(
+        r#"{"waypoints": {"states": [{"vectors": [[0, 0, 1]]}]}}"#,
+        &a,
+        &b,
+        5,
+        &Chain::open(12).resolve().unwrap(),
+    );
     assert!(
         error.clone().is_err_and(|e| e.starts_with("states[0].vectors: found 1 vectors for 12 sites")),
         "{error:?}"
@@ -402,7 +408,7 @@ fn frozen_spins_do_not_move_on_any_path() {
         Frozen { sites: Selection::List(vec![0]), direction: Some(Direction::X) },
         Frozen { sites: Selection::List(vec![11]), direction: None },
     ];
-    let chain = Chain { frozen, ..Chain::open(12) };
+    let chain = Chain { frozen, ..Chain::open(12) }.resolve().unwrap();
     let a = try_state(r#"{"domain_wall": {"center": 4, "through": [1, 1, 0.2]}}"#, &chain).unwrap();
     assert_eq!(a.get(0), [1.0, 0.0, 0.0]);
     let mut end = random(12, 5).vectors();
@@ -426,8 +432,9 @@ fn frozen_spins_do_not_move_on_any_path() {
 #[test]
 fn noise_is_smooth_depends_on_its_seed_alone_and_scales_with_its_amplitude() {
     let p = path(r#"{"geodesic": {}}"#, &z(200, 1.0), &z(200, -1.0), 9);
-    let noisy =
-        |amplitude: f64, seed: u64| add_noise(&p, &NoiseSpec { amplitude: Angle(amplitude), seed }, &Chain::open(200));
+    let noisy = |amplitude: f64, seed: u64| {
+        add_noise(&p, &NoiseSpec { amplitude: Angle(amplitude), seed }, &Chain::open(200).resolve().unwrap())
+    };
     assert_eq!(noisy(0.01, 7), noisy(0.01, 7));
     assert!(noisy(0.01, 7) != noisy(0.01, 8));
     assert_eq!(noisy(0.0, 7), p);
@@ -491,7 +498,7 @@ fn a_wall_between_domains_that_are_not_opposite_takes_the_side_of_through() {
 
 #[test]
 fn a_wall_or_spiral_that_cannot_be_is_refused_at_its_key() {
-    let chain = Chain::open(8);
+    let chain = Chain::open(8).resolve().unwrap();
     for (text, expected) in [
         (r#"{"domain_wall": {"center": 3, "width": -1}}"#, "width: "),
         (r#"{"domain_wall": {"center": 3, "through": [0, 0, -1]}}"#, "through: "),

@@ -8,7 +8,7 @@ use spinneb::drive::{Images, Outcome, Problem, Silent, run};
 use spinneb::energy::magnetostatics::MU_0_MU_B_SQUARED;
 use spinneb::energy::{Exchange, Hamiltonian, Medium, TangentBasis, TermSpec, assemble};
 use spinneb::geometry::Direction;
-use spinneb::lattice::Chain;
+use spinneb::lattice::{Chain, Lattice};
 use spinneb::linalg::eigenvalues_symmetric;
 use spinneb::profile::Profile;
 use spinneb::spins::Spins;
@@ -18,8 +18,8 @@ use std::process::Command;
 /// ζ(3).
 const ZETA_3: f64 = 1.2020569031595942;
 
-fn dipoles(sites: usize, periodic: bool) -> (Chain, Hamiltonian) {
-    let chain = Chain { periodic, spacing: Some(Length(0.5)), ..Chain::open(sites) };
+fn dipoles(sites: usize, periodic: bool) -> (Lattice, Hamiltonian) {
+    let chain = Chain { periodic, spacing: Some(Length(0.5)), ..Chain::open(sites) }.resolve().unwrap();
     let spec: TermSpec = serde_json::from_str(r#"{"dipolar": {}}"#).unwrap();
     let medium = Medium::new(&chain, Some(Moment(3.0).into()), None);
     let term = spec.member().build(&medium).unwrap();
@@ -125,7 +125,9 @@ fn two_cells_without_exchange_or_magnetostatics_turn_one_after_the_other() {
 #[test]
 fn two_cells_that_turn_at_once_cost_twice_that_and_are_never_certified() {
     let chain =
-        Chain { spacing: Some(Length(3.0)), cross_section: Some([Length(3.0); 2].map(Into::into)), ..Chain::open(2) };
+        Chain { spacing: Some(Length(3.0)), cross_section: Some([Length(3.0); 2].map(Into::into)), ..Chain::open(2) }
+            .resolve()
+            .unwrap();
     let medium = Medium::new(&chain, None, Some(Magnetisation(1e6).into()));
     let easy = r#"{"anisotropy": {"K": "100 kJ/m^3", "axis": [0, 0, 1]}}"#;
     let build = || vec![serde_json::from_str::<TermSpec>(easy).unwrap().member().build(&medium).unwrap()];
@@ -142,8 +144,7 @@ fn two_cells_that_turn_at_once_cost_twice_that_and_are_never_certified() {
     // a run that is told to begin there, by a geodesic or a rigid rotation, does not end there
     for guess in [r#"{"geodesic": {"axis": [1, 0, 0]}}"#, r#"{"rotation": {"axis": [1, 0, 0]}}"#] {
         for images in [11, 12] {
-            let mut problem =
-                Problem::new(chain.clone(), Hamiltonian::new(&chain, build()).unwrap(), up.clone(), up.clone());
+            let mut problem = Problem::new(Hamiltonian::new(&chain, build()).unwrap(), up.clone(), up.clone());
             problem.final_state = Spins::uniform(2, Direction::Z.reversed());
             problem.guess = Some(serde_json::from_str(guess).unwrap());
             problem.images = Images::Count(images);
@@ -154,7 +155,7 @@ fn two_cells_that_turn_at_once_cost_twice_that_and_are_never_certified() {
 }
 
 /// A wire of cells that differ: a notch, a taper, a ring of beads.
-fn uneven(sites: usize, periodic: bool, square: bool) -> (Chain, Hamiltonian) {
+fn uneven(sites: usize, periodic: bool, square: bool) -> (Lattice, Hamiltonian) {
     let width = |i: usize| Length(12.0 + 5.0 * ((i * i) as f64 * 0.7).sin());
     let widths: Vec<Length> = (0..sites).map(width).collect();
     let thickness: Vec<Length> = if square { widths.clone() } else { vec![Length(5.0); sites] };
@@ -164,6 +165,7 @@ fn uneven(sites: usize, periodic: bool, square: bool) -> (Chain, Hamiltonian) {
         cross_section: Some([Profile::List(widths), Profile::List(thickness)]),
         ..Chain::open(sites)
     };
+    let chain = chain.resolve().unwrap();
     let medium = Medium::new(&chain, None, Some(Magnetisation(8e5).into()));
     let terms = [r#"{"exchange": {"A": "13 pJ/m"}}"#, r#"{"demag": {}}"#];
     let build = |text: &&str| serde_json::from_str::<TermSpec>(text).unwrap().member().build(&medium).unwrap();
@@ -211,9 +213,9 @@ fn cells_of_unequal_sections_have_derivatives_of_their_energy() {
 #[test]
 fn a_wire_that_tapers_by_nothing_is_a_straight_one() {
     let straight = wire(30);
-    let mut chain = straight.chain.clone();
-    let barely = |i: usize| Length(20.0 * (1.0 + 1e-13 * i as f64));
-    chain.cross_section = Some([Profile::List((0..30).map(barely).collect()), Length(5.0).into()]);
+    let mut chain = straight.hamiltonian.lattice().clone();
+    let barely = |i: usize| [20.0 * (1.0 + 1e-13 * i as f64), 5.0];
+    chain.sections_nm = Some((0..30).map(barely).collect());
     let medium = Medium::new(&chain, None, Some(Magnetisation(8e5).into()));
     let terms = [r#"{"exchange": {"A": "13 pJ/m"}}"#, r#"{"demag": {}}"#];
     let build = |text: &&str| serde_json::from_str::<TermSpec>(text).unwrap().member().build(&medium).unwrap();
@@ -243,12 +245,13 @@ fn wire(sites: usize) -> Problem {
         cross_section: Some([Length(20.0), Length(5.0)].map(Into::into)),
         ..Chain::open(sites)
     };
+    let chain = chain.resolve().unwrap();
     let medium = Medium::new(&chain, None, Some(Magnetisation(8e5).into()));
     let terms = [r#"{"exchange": {"A": "13 pJ/m"}}"#, r#"{"demag": {}}"#];
     let build = |text: &&str| serde_json::from_str::<TermSpec>(text).unwrap().member().build(&medium).unwrap();
     let h = Hamiltonian::new(&chain, terms.iter().map(build).collect()).unwrap();
     let [a, b] = [Direction::X, Direction::X.reversed()].map(|d| Spins::uniform(sites, d));
-    Problem::new(chain, h, a, b)
+    Problem::new(h, a, b)
 }
 
 fn solved(problem: &Problem) -> Outcome {
@@ -336,6 +339,7 @@ fn random(r: &mut ChaCha8Rng, sites: usize) -> (Problem, String) {
         cross_section: Some([edge(r), edge(r)].map(Into::into)),
         ..Chain::open(sites)
     };
+    let chain = chain.resolve().unwrap();
     let medium = Medium::new(&chain, None, Some(Magnetisation(r.random_range(3e5..1.2e6)).into()));
     let far = if r.random_range(0..3) == 0 { "dipolar" } else { "demag" };
     let axis = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.2, 1.0]][r.random_range(0..3)];
@@ -348,7 +352,7 @@ fn random(r: &mut ChaCha8Rng, sites: usize) -> (Problem, String) {
     let h = Hamiltonian::new(&chain, texts.iter().map(build).collect()).unwrap();
     let up = Direction::new(axis).unwrap();
     let [a, b] = [up, up.reversed()].map(|d| Spins::uniform(sites, d));
-    (Problem::new(chain, h, a, b), format!("{sites} sites, ring {periodic}, {texts:?}"))
+    (Problem::new(h, a, b), format!("{sites} sites, ring {periodic}, {texts:?}"))
 }
 
 #[test]

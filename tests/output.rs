@@ -6,7 +6,7 @@ use spinneb::drive::{
 };
 use spinneb::files::disk;
 use spinneb::geometry::Direction;
-use spinneb::lattice::Chain;
+use spinneb::lattice::{Chain, Lattice};
 use spinneb::output::canvas::{Look, Style};
 use spinneb::output::{
     EnergyPath, EnergyPathPlot, Format, HistoryCsv, KINDS, PLOTS, PathCsv, Picture, PlotFile, ProfileCsv, ReportPage,
@@ -166,9 +166,18 @@ fn tiny() -> Outcome {
 }
 
 fn report(outcome: &Outcome) -> RunReport<'_> {
-    static CHAIN: LazyLock<Chain> = LazyLock::new(|| Chain::open(1));
-    let (inputs, chain, look) = (&[], &*CHAIN, Look::default());
-    RunReport { name: "tiny", version: "0.1.0", config_sha256: "abc", config_text: "{}", inputs, chain, look, outcome }
+    static LATTICE: LazyLock<Lattice> = LazyLock::new(|| Chain::open(1).resolve().unwrap());
+    let (inputs, lattice, look) = (&[], &*LATTICE, Look::default());
+    RunReport {
+        name: "tiny",
+        version: "0.1.0",
+        config_sha256: "abc",
+        config_text: "{}",
+        inputs,
+        lattice,
+        look,
+        outcome,
+    }
 }
 
 fn text(format: &dyn Format, outcome: &Outcome) -> String {

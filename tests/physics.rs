@@ -26,7 +26,7 @@ fn an_antiferromagnet_has_the_barrier_of_its_ferromagnetic_mirror() {
         let n = 30;
         let build = |sign: f64| {
             let mut build = if ring { Build::ring(n) } else { Build::open(n) };
-            let chain = build.chain.clone();
+            let chain = build.lattice.clone();
             build.terms = vec![Box::new(Exchange::uniform(&chain, &[sign * shells[0], shells[1]]))];
             build.easy(0.05).with(Dmi::uniform(&chain, sign * d, Direction::Y))
         };
@@ -44,7 +44,9 @@ fn the_same_chain_told_in_continuum_terms_has_the_same_barrier() {
         spacing: Some(Length(cell[0])),
         cross_section: Some([Length(cell[1]), Length(cell[2])].map(Into::into)),
         ..Chain::open(40)
-    };
+    }
+    .resolve()
+    .unwrap();
     let micro = [
         r#"{"exchange": {"A": "10 pJ/m"}}"#,
         r#"{"anisotropy": {"K": "0.4 MJ/m^3", "axis": [0, 0, 1]}}"#,
@@ -65,7 +67,7 @@ fn the_same_chain_told_in_continuum_terms_has_the_same_barrier() {
         let term = |t: &&str| serde_json::from_str::<TermSpec>(t).expect(t).member().build(&medium).expect(t);
         let h = Hamiltonian::new(&chain, texts.iter().map(term).collect()).expect("a chain");
         let up = Spins::uniform(40, Direction::Z);
-        forward(&solve(&Problem::new(chain.clone(), h, up, Spins::uniform(40, Direction::Z.reversed()))))
+        forward(&solve(&Problem::new(h, up, Spins::uniform(40, Direction::Z.reversed()))))
     };
     let si = barrier(&micro, Medium::new(&chain, None, Some(Magnetisation(1e6).into())));
     let texts: Vec<&str> = atomic.iter().map(String::as_str).collect();
@@ -136,7 +138,7 @@ fn random_chain(r: &mut ChaCha8Rng) -> (Problem, String) {
     let n = r.random_range(5..=60);
     let ring = r.random_range(0..3) == 0;
     let mut build = if ring { Build::ring(n) } else { Build::open(n) };
-    let chain = build.chain.clone();
+    let chain = build.lattice.clone();
     let antiferro = r.random_range(0..4) == 0 && (!ring || n % 2 == 0);
     let k: f64 = libm::exp(r.random_range(-4.6..-0.5));
     let mut exchange = Exchange::uniform(&chain, &[if antiferro { -1.0 } else { 1.0 }]);
@@ -144,13 +146,13 @@ fn random_chain(r: &mut ChaCha8Rng) -> (Problem, String) {
     let mut dmi = Dmi::uniform(&chain, 0.0, Direction::Y);
     let kind = r.random_range(0..6);
     if kind % 2 == 1 {
-        exchange.shells[0].iter_mut().for_each(|j| *j *= r.random_range(0.4..1.6));
+        exchange.families[0].mev.iter_mut().for_each(|j| *j *= r.random_range(0.4..1.6));
         easy.k.iter_mut().for_each(|k| *k *= r.random_range(0.3..1.7));
     }
     if kind >= 3 {
         let scale = 0.5 * 4.0 / std::f64::consts::PI * (0.5 * k).sqrt();
-        for i in 0..chain.bonds(1) {
-            dmi.d[i] = scale * r.random_range(0.0..1.0);
+        for i in 0..chain.bonds(1).len() {
+            dmi.families[0].mev[i] = scale * r.random_range(0.0..1.0);
         }
     }
     let mut field = [0.0; 3];

@@ -216,13 +216,14 @@ impl Dense {
 fn random_chain(r: &mut impl Rng, uniaxial: bool) -> (Problem, RateSettings) {
     let n = r.random_range(2..7);
     let chain = if n > 3 && r.random_bool(0.3) { Chain::ring(n) } else { Chain::open(n) };
-    let mut exchange = Exchange::uniform(&chain, &[1.0]);
+    let lattice = chain.resolve().unwrap();
+    let mut exchange = Exchange::uniform(&lattice, &[1.0]);
     let mut easy = Anisotropy::uniform(n, 0.0, Direction::Z);
     let mut hard = Anisotropy::uniform(n, 0.0, Direction::X);
-    exchange.shells[0][..chain.bonds(1)].iter_mut().for_each(|j| *j = r.random_range(0.5..1.5));
+    exchange.families[0].mev[..lattice.bonds(1).len()].iter_mut().for_each(|j| *j = r.random_range(0.5..1.5));
     easy.k.iter_mut().for_each(|k| *k = r.random_range(0.2..0.8));
     hard.k.iter_mut().for_each(|k| *k = -r.random_range(0.1..0.6));
-    let mut build = Build { chain, terms: vec![Box::new(exchange), Box::new(easy)] };
+    let mut build = Build { lattice, terms: vec![Box::new(exchange), Box::new(easy)] };
     if uniaxial {
         build = build.field([0.0, 0.0, r.random_range(-0.1..0.1)]);
     } else {
@@ -315,7 +316,7 @@ fn forward_and_backward_rates_are_in_detailed_balance() {
 #[test]
 fn saddles_that_symmetry_makes_alike_are_counted() {
     let count = |problem: Problem, kelvin: f64| {
-        let n = problem.chain.sites;
+        let n = problem.hamiltonian.sites();
         let outcome = solve(&with(problem, settings(n, 2.0, 0.1, kelvin)));
         let r = rate(&outcome, Way::Forward);
         (r.equivalents.count, r.equivalents.by.clone())
@@ -466,7 +467,7 @@ fn without_damping_a_conserved_moment_forbids_the_crossing() {
 #[test]
 fn a_néel_chain_of_no_total_moment_may_cross_without_damping() {
     let n = 6;
-    let chain = Chain::open(n);
+    let chain = Chain::open(n).resolve().unwrap();
     let terms: Vec<Box<dyn spinneb::energy::EnergyTerm>> =
         vec![Box::new(Exchange::uniform(&chain, &[-1.0])), Box::new(Anisotropy::uniform(n, 0.1, Direction::Z))];
     let h = Hamiltonian::new(&chain, terms).expect("a chain");
@@ -474,7 +475,7 @@ fn a_néel_chain_of_no_total_moment_may_cross_without_damping() {
         let v: Vec<[f64; 3]> = (0..n).map(|i| [0.0, 0.0, if i % 2 == 0 { s } else { -s }]).collect();
         Spins::from_vectors(&v).expect("unit vectors")
     };
-    let outcome = solve(&with(Problem::new(chain, h, state(1.0), state(-1.0)), settings(n, 2.0, 0.1, 5.0)));
+    let outcome = solve(&with(Problem::new(h, state(1.0), state(-1.0)), settings(n, 2.0, 0.1, 5.0)));
     let r = rate(&outcome, Way::Forward);
     assert!(r.htst.is_some() && r.langer.is_some(), "{:?}", r.refused);
 }

@@ -83,7 +83,7 @@ fn a_wall_hops_by_one_site() {
         let k = number(&case, "K");
         // 60 sites: the free ends are felt by less than 1e-16
         let build = Build::open(if k < 0.3 { 80 } else { 60 }).easy(k);
-        let middle = build.chain.sites as f64 / 2.0 - 0.5;
+        let middle = build.lattice.sites as f64 / 2.0 - 0.5;
         let width = (0.5 / k).sqrt();
         let (a, b) = (build.wall(middle, width, Direction::X), build.wall(middle + 1.0, width, Direction::X));
         let outcome = solve(build.problem(a, b));

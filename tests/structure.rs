@@ -60,7 +60,7 @@ fn a_wall_crosses_weak_and_strong_sites_one_after_the_other() {
 fn competing_neighbours_make_a_row_of_saddles() {
     for sites in [50, 100] {
         let mut build = Build::on(Chain::open(sites));
-        build.terms[0] = Box::new(Exchange::uniform(&build.chain, &[1.0, -0.2]));
+        build.terms[0] = Box::new(Exchange::uniform(&build.lattice, &[1.0, -0.2]));
         let outcome = certified("J2 = −0.2 J", &build.easy(0.05).reversal());
         let heights = heights(&outcome);
         // the chain is its own mirror, and so is the row

@@ -220,7 +220,7 @@ impl Corpus {
         };
         match load_text(&self.config, text) {
             Err(e) => named(e),
-            Ok(loaded) if loaded.chain().sites > LONGEST_CHAIN => Ok(false),
+            Ok(loaded) if loaded.lattice.sites > LONGEST_CHAIN => Ok(false),
             Ok(loaded) => loaded.problem().map_or_else(named, |_| Ok(true)),
         }
     }

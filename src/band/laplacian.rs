@@ -23,21 +23,19 @@ impl Laplacian {
     /// For a Hamiltonian with the stiffness scale `c` (meV).
     pub fn new(h: &Hamiltonian, c: f64) -> Laplacian {
         let blocks = h.constant_blocks();
-        let (sites, reach) = (h.sites(), h.reach());
-        let rim = if h.periodic() { reach } else { 0 };
-        let mut m = Banded::zeros(sites - rim, reach, rim);
+        let (sites, rim) = (h.sites(), h.lattice().rim(h.reach()));
+        let mut m = Banded::zeros(sites - rim, h.reach(), rim);
         let spread = blocks.sites().map(spread).fold(0.0, f64::max);
         m.shift(c.max(spread));
-        for (k, bonds) in blocks.bond.iter().enumerate() {
-            let n = k + 1;
-            for i in 0..if h.periodic() { sites } else { sites.saturating_sub(n) } {
+        for bonds in &blocks.bond {
+            for [i, next] in bonds.family.bonds() {
                 let j = -bonds.mean(i);
-                if j != 0.0 && !h.is_frozen(i) && !h.is_frozen((i + n) % sites) {
-                    m.add((i + n) % sites, i, -j);
+                if j != 0.0 && !h.is_frozen(i) && !h.is_frozen(next) {
+                    m.add(next, i, -j);
                 }
                 if j != 0.0 {
                     m.add(i, i, j.abs());
-                    m.add((i + n) % sites, (i + n) % sites, j.abs());
+                    m.add(next, next, j.abs());
                 }
             }
         }

@@ -253,7 +253,7 @@ mod tests {
 
     /// Chains with no symmetry axis, one and three.
     fn chains(sites: usize) -> Vec<Hamiltonian> {
-        let chain = Chain::open(sites);
+        let chain = Chain::open(sites).resolve().unwrap();
         let exchange = || Box::new(Exchange::uniform(&chain, &[1.0, 0.2])) as Box<dyn EnergyTerm>;
         let along = |axis| Box::new(Anisotropy::uniform(sites, 0.3, axis)) as Box<dyn EnergyTerm>;
         let all = [

@@ -7,6 +7,7 @@ use spinneb::config::physics::Physics;
 use spinneb::config::{Loaded, PartMaterial, expected_images, load, memory, needed_bytes};
 use spinneb::drive::{Images, Problem, Scales};
 use spinneb::rates::RateSettings;
+use spinneb::units::Length;
 use std::io::{self, Write};
 
 /// Checks all configs and prints what each would run.
@@ -84,14 +85,14 @@ fn material(loaded: &Loaded) -> String {
 }
 
 fn lattice(loaded: &Loaded) -> String {
-    let chain = loaded.chain();
-    let kind = if chain.periodic { "ring" } else { "open chain" };
-    let spacing = chain.spacing.map_or(String::new(), |a| format!(", {a} apart"));
-    let frozen = match chain.frozen.len() {
+    let lattice = &loaded.lattice;
+    let kind = if lattice.is_ring() { "ring" } else { "open chain" };
+    let spacing = lattice.spacing_nm.map_or(String::new(), |a| format!(", {} apart", Length(a)));
+    let frozen = match lattice.frozen.len() {
         0 => String::new(),
         _ => ", some frozen".to_string(),
     };
-    format!("{kind} of {} sites{spacing}{frozen}", chain.sites)
+    format!("{kind} of {} sites{spacing}{frozen}", lattice.sites)
 }
 
 fn wall_width(physics: &Physics) -> String {

@@ -138,14 +138,14 @@ fn look_of(arguments: &Plot, dir: &Path, stored: &mut StoredRun) -> Result<Look>
         return Err(Error::invalid(shown, message).into());
     }
     let config = load(&path, &[])?;
-    let chain = config.chain();
-    if let Some(sites) = stored.sites().filter(|sites| *sites != chain.sites) {
+    let lattice = &config.lattice;
+    if let Some(sites) = stored.sites().filter(|sites| *sites != lattice.sites) {
         let message =
-            format!("has {} sites, but the stored spins {sites}: the files are not of one result", chain.sites);
+            format!("has {} sites, but the stored spins {sites}: the files are not of one result", lattice.sites);
         return Err(Error::invalid(shown, message).into());
     }
-    stored.places = Places::of(chain);
-    stored.vacant = chain.is_vacant().map_err(|e| config.text.locate(e.within("lattice.chain")))?;
+    stored.places = Places::of(lattice);
+    stored.vacant = lattice.vacant.clone();
     let output = &config.config.output;
     let width = arguments.width.or_else(|| output.look().ok().filter(|_| output.width.is_some()).map(|l| l.width_mm()));
     Ok(Look::new(arguments.style.unwrap_or(output.style), width).map_err(flagged)?)

@@ -103,7 +103,7 @@ fn relax_one(arguments: &Relax, config: &Path) -> Result<u8> {
     let found = RelaxReport {
         name,
         version: env!("CARGO_PKG_VERSION"),
-        chain: &states.chain,
+        lattice: states.hamiltonian.lattice(),
         hamiltonian: h,
         states: &relaxed,
         same_minimum,

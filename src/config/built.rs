@@ -6,7 +6,7 @@ use crate::energy::{EnergyTerm, Hamiltonian, Medium, Part, TermSpec, symmetry_ax
 use crate::error::{Error, Result, both};
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, Vector, angle};
-use crate::lattice::{Chain, Lattice};
+use crate::lattice::Lattice;
 use crate::linalg::slab;
 use crate::output::RunReport;
 use crate::output::canvas::Look;
@@ -24,12 +24,10 @@ const SAME: f64 = 1e-9;
 /// Frozen spins closer than this agree, such as the tails of two walls (rad).
 const AGREE: f64 = 1e-3;
 
-/// A chain with its energy and its states, as a config has them.
+/// The energy of a lattice's spins and two states of these, as a config has them.
 #[derive(Debug)]
 pub struct States {
-    /// The chain.
-    pub chain: Chain,
-    /// Its energy.
+    /// The energy.
     pub hamiltonian: Hamiltonian,
     /// Its scales, before any state is relaxed.
     pub scales: Scales,
@@ -42,12 +40,6 @@ pub struct States {
 }
 
 impl Loaded {
-    /// Where the spins are.
-    pub fn chain(&self) -> &Chain {
-        let Lattice::Chain(chain) = &self.config.lattice;
-        chain
-    }
-
     /// How figures look.
     pub fn look(&self) -> Result<Look> {
         self.config.output.look().map_err(|e| self.text.locate(e.within("output")))
@@ -61,7 +53,7 @@ impl Loaded {
             config_sha256: &self.sha256,
             config_text: &self.as_run,
             inputs: &self.inputs,
-            chain: self.chain(),
+            lattice: &self.lattice,
             look: self.look()?,
             outcome,
         })
@@ -72,13 +64,13 @@ impl Loaded {
         let config = &self.config;
         let here = |e: Error| self.text.locate(e);
         let started = Instant::now();
-        let States { chain, hamiltonian, scales, initial, final_state, sense } = self.states(true)?;
+        let States { hamiltonian, scales, initial, final_state, sense } = self.states(true)?;
         let final_state = final_state.unwrap_or_else(|| initial.clone());
         if largest_angle(initial.as_slice(), final_state.as_slice()) < SAME {
             let message = "the initial and the final state are identical: there is no path between them";
             return Err(here(Error::invalid("final", message)));
         }
-        let mut problem = Problem::new(chain, hamiltonian, initial, final_state);
+        let mut problem = Problem::new(hamiltonian, initial, final_state);
         problem.sense = sense;
         problem.relax_ends = config.relax_ends;
         problem.images = config.path.images.0;
@@ -88,7 +80,7 @@ impl Loaded {
         problem.refine = config.saddle.refine;
         problem.certify = config.saddle.certify;
         problem.neb = config.neb.settings();
-        problem.rates = self.rates(&problem.chain)?;
+        problem.rates = self.rates(problem.hamiltonian.lattice())?;
         self.affordable(needed_bytes(&problem, &scales), Some(expected_images(&problem, &scales)))?;
         guess(&problem, &scales).map_err(here)?;
         let of_physics = physics::warnings(self, &problem.hamiltonian, &scales);
@@ -97,24 +89,20 @@ impl Loaded {
         Ok(problem)
     }
 
-    /// The chain, its energy and its states, the final one if it is wanted, with the same checks.
+    /// The energy and the states, the final one if it is wanted, with the same checks.
     pub fn states(&self, with_final: bool) -> Result<States> {
         let config = &self.config;
         let here = |e: Error| self.text.locate(e);
-        let chain = self.chain();
         self.look()?;
-        chain.validate().map_err(|e| here(e.within("lattice.chain")))?;
-        not_both(chain).map_err(|e| here(e.within("lattice.chain")))?;
         let specs = self.specs();
-        self.affordable(memory::hamiltonian_bytes(chain.sites, 1, specs.len()), None)?;
-        let part = self.part_of_sites(chain)?;
-        let chain = self.with_moments(chain, &part)?;
-        let terms = self.terms(&chain, self.divided(&chain, &part)?, specs)?;
-        let idle = idle_direction(&terms, chain.sites);
-        let chain = chain.with_vacancies_frozen(idle);
-        let hamiltonian = Hamiltonian::new(&chain, terms).map_err(here)?;
+        self.affordable(memory::hamiltonian_bytes(self.lattice.sites, 1, specs.len()), None)?;
+        let part = self.part_of_sites()?;
+        let lattice = self.with_moments(&part)?;
+        let terms = self.terms(&lattice, self.divided(&lattice, &part)?, specs)?;
+        let idle = idle_direction(&terms, lattice.sites);
+        let hamiltonian = Hamiltonian::new(&lattice.with_vacancies_frozen(idle), terms).map_err(here)?;
         let scales = Scales::of_terms(&hamiltonian);
-        let free = scales.states(&chain, &hamiltonian);
+        let free = scales.states(&hamiltonian);
         let within = |spec: &StateSpec, key: &str, e: Error| here(e.within(&format!("{key}.{}", spec.name())));
         let sense = config.initial.sense(&free).map_err(|e| within(&config.initial, "initial", e));
         let context = StateContext { sense: *sense.as_ref().unwrap_or(&free.sense), ..free };
@@ -122,12 +110,13 @@ impl Loaded {
         let initial = sense.and_then(|sense| Ok((sense, state(&config.initial, "initial")?)));
         let final_state = with_final.then(|| state(&config.final_state, "final")).transpose();
         let ((sense, initial), final_state) = both(initial, final_state)?;
-        let final_state = final_state.map(|state| frozen(&chain, &initial, state).map_err(here)).transpose()?;
-        Ok(States { chain, hamiltonian, scales, initial, final_state, sense })
+        let final_state =
+            final_state.map(|state| frozen(hamiltonian.lattice(), &initial, state).map_err(here)).transpose()?;
+        Ok(States { hamiltonian, scales, initial, final_state, sense })
     }
 
     /// What rates are asked for, with the moments of the sites.
-    fn rates(&self, chain: &Chain) -> Result<Option<RateSettings>> {
+    fn rates(&self, lattice: &Lattice) -> Result<Option<RateSettings>> {
         let Some(config) = &self.config.rates else { return Ok(None) };
         let none = |e: Error| match e {
             Error::Invalid { .. } => Error::invalid(
@@ -137,7 +126,7 @@ impl Loaded {
             ),
             other => other,
         };
-        let moments = self.medium(chain).moments_mub().map_err(|e| self.text.locate(none(e)))?;
+        let moments = self.medium(lattice).moments_mub().map_err(|e| self.text.locate(none(e)))?;
         if let Some(i) = moments.iter().position(|n| *n <= 0.0) {
             let message = format!("the moment of site {i} is 0, so it has no precession: a rate needs moments above 0");
             return Err(self.text.locate(Error::invalid("rates", message)));
@@ -146,16 +135,16 @@ impl Loaded {
     }
 
     /// Moments of all sites (μ_B), where the material has any.
-    pub(super) fn moments_mub(&self, chain: &Chain) -> Option<Vec<f64>> {
-        let chain = self.with_moments(chain, &self.part_of_sites(chain).ok()?).ok()?;
-        self.medium(&chain).moments_mub().ok()
+    pub(super) fn moments_mub(&self) -> Option<Vec<f64>> {
+        let lattice = self.with_moments(&self.part_of_sites().ok()?).ok()?;
+        self.medium(&lattice).moments_mub().ok()
     }
 
-    /// What a chain is made of; where there are several materials, the chain itself has their moments.
-    fn medium<'a>(&self, chain: &'a Chain) -> Medium<'a> {
+    /// What a lattice is made of; where there are several materials, the lattice itself has their moments.
+    fn medium<'a>(&self, lattice: &'a Lattice) -> Medium<'a> {
         match &self.parts[..] {
-            [one] => Medium::new(chain, one.material.moment.clone(), one.material.Ms.clone()),
-            _ => Medium::new(chain, None, None),
+            [one] => Medium::new(lattice, one.material.moment.clone(), one.material.Ms.clone()),
+            _ => Medium::new(lattice, None, None),
         }
     }
 
@@ -180,15 +169,15 @@ impl Loaded {
     }
 
     /// The materials' terms and the config's, with numbers a site.
-    fn terms(&self, chain: &Chain, parts: Vec<Part>, specs: Vec<Written>) -> Result<Vec<Box<dyn EnergyTerm>>> {
-        let whole = self.medium(chain);
+    fn terms(&self, lattice: &Lattice, parts: Vec<Part>, specs: Vec<Written>) -> Result<Vec<Box<dyn EnergyTerm>>> {
+        let whole = self.medium(lattice);
         let media: Vec<Medium> = parts.into_iter().map(|part| Medium { part: Some(part), ..whole.clone() }).collect();
         let (mut terms, mut wrong) = (Vec::new(), Vec::new());
         let mut largest = 0.0f64;
         for Written { spec, part, text, place } in specs {
             let medium = part.and_then(|k| media.get(k)).unwrap_or(&whole);
-            let built = shells_fit(spec, chain).and_then(|()| spec.member().build(medium)).and_then(|term| {
-                largest = largest.max(torque(term.as_ref(), chain.sites)?);
+            let built = spec.member().build(medium).and_then(|term| {
+                largest = largest.max(torque(term.as_ref(), lattice.sites)?);
                 Ok(term)
             });
             match built {
@@ -213,20 +202,8 @@ impl Loaded {
 
     /// Refuses what no memory can hold; `images` are the path's, where it has come to them.
     fn affordable(&self, bytes: f64, images: Option<usize>) -> Result<()> {
-        let Some(whose) = memory::exceeded(bytes) else { return Ok(()) };
-        let sites = self.chain().sites;
-        let automatic = self.config.path.images.0 == Images::Auto;
-        let (place, what, way_out) = match images {
-            None => ("lattice.chain.sites", format!("{sites} sites"), ""),
-            Some(n) if automatic => {
-                let what = format!("{sites} sites with the {n} images that an automatic path begins with");
-                ("lattice.chain.sites", what, ": give fewer as \"images\" of \"path\"")
-            }
-            Some(n) => ("path.images", format!("{sites} sites and {n} images"), ""),
-        };
-        let size = memory::shown(bytes);
-        let message = format!("{what} need about {size} of memory, more than {whose}{way_out}");
-        Err(self.text.locate(Error::invalid(place, message)))
+        let whose = images.map(|n| (n, self.config.path.images.0 == Images::Auto));
+        memory::affordable(bytes, self.lattice.sites, whose).map_err(|e| self.text.locate(e))
     }
 }
 
@@ -244,7 +221,7 @@ pub fn expected_images(problem: &Problem, scales: &Scales) -> usize {
         Images::Count(n) => n,
         Images::Auto => {
             let moving = moving_sites(&problem.initial, &problem.final_state);
-            FEWEST_IMAGES.max(scales.images_between(problem.chain.sites, moving) + 2)
+            FEWEST_IMAGES.max(scales.images_between(problem.hamiltonian.sites(), moving) + 2)
         }
     }
 }
@@ -256,19 +233,13 @@ pub fn needed_bytes(problem: &Problem, scales: &Scales) -> f64 {
         let state = long.exponentials(true).map(|e| e.cost());
         memory::far_bytes(h.sites(), state, rayon::current_num_threads())
     });
-    far + memory::run_bytes(h.sites(), expected_images(problem, scales), h.reach(), h.terms().len(), h.periodic())
-}
-
-/// No shell may reach beyond the chain.
-fn shells_fit(spec: &TermSpec, chain: &Chain) -> Result<()> {
-    let most = chain.sites.saturating_sub(1).max(1);
-    match spec {
-        TermSpec::Exchange(exchange) if exchange.J.as_ref().is_some_and(|j| j.len() > most) => {
-            let message = format!("shell {} reaches further than the chain of {} sites is long", most + 1, chain.sites);
-            Err(Error::invalid(format!("J[{most}]"), message))
-        }
-        _ => Ok(()),
-    }
+    far + memory::run_bytes(
+        h.sites(),
+        expected_images(problem, scales),
+        h.reach(),
+        h.terms().len(),
+        h.lattice().is_ring(),
+    )
 }
 
 /// Largest derivative of a term by a component (meV) where no two neighbours are alike; an error where it is absurd.
@@ -292,18 +263,6 @@ fn torque(term: &dyn EnergyTerm, sites: usize) -> Result<f64> {
     }
 }
 
-/// No site is vacant and frozen at once.
-fn not_both(chain: &Chain) -> Result<()> {
-    let vacant = chain.is_vacant()?;
-    for (k, f) in chain.frozen.iter().enumerate() {
-        if let Some(i) = f.sites.indices(chain.sites, "site")?.into_iter().find(|i| vacant[*i]) {
-            let message = format!("site {i} is vacant: there is no spin to freeze");
-            return Err(Error::invalid(format!("frozen[{k}].sites"), message));
-        }
-    }
-    Ok(())
-}
-
 /// Where the idle spins of vacant sites point: along the axis of symmetry, if there is one, which they must not break.
 fn idle_direction(terms: &[Box<dyn EnergyTerm>], sites: usize) -> Direction {
     let axis = symmetry_axes(terms, sites).into_iter().last();
@@ -311,31 +270,24 @@ fn idle_direction(terms: &[Box<dyn EnergyTerm>], sites: usize) -> Direction {
 }
 
 /// The final state with frozen spins just where the initial state has them; an error where it has them elsewhere.
-fn frozen(chain: &Chain, initial: &Spins, final_state: Spins) -> Result<Spins> {
-    if chain.frozen.is_empty() {
+fn frozen(lattice: &Lattice, initial: &Spins, final_state: Spins) -> Result<Spins> {
+    if lattice.frozen.is_empty() {
         return Ok(final_state);
     }
-    let (n, from) = (chain.sites, initial.as_slice());
+    let (n, from) = (lattice.sites, initial.as_slice());
     let mut m = final_state.as_slice().to_vec();
-    let mut entry: Vec<Option<usize>> = vec![None; chain.sites];
-    for (k, f) in chain.frozen.iter().enumerate() {
-        let place = format!("lattice.chain.frozen[{k}]");
-        for i in f.sites.indices(chain.sites, "site").map_err(|e| e.within(&format!("{place}.sites")))? {
-            if let Some(first) = entry[i].replace(k) {
-                return Err(Error::invalid(place, format!("site {i} is frozen already, in frozen[{first}]")));
-            }
-            let apart = angle(initial.get(i), final_state.get(i));
-            if apart > AGREE {
-                let message = format!(
-                    "site {i} is frozen, but the final state has it {:.3} degrees away from where the initial state has \
-                     it: give it a \"direction\" or make the two states agree there",
-                    apart.to_degrees()
-                );
-                return Err(Error::invalid(place, message));
-            }
-            for c in 0..3 {
-                m[c * n + i] = from[c * n + i];
-            }
+    for (k, i) in lattice.frozen.iter().enumerate().flat_map(|(k, f)| f.sites.iter().map(move |i| (k, *i))) {
+        let apart = angle(initial.get(i), final_state.get(i));
+        if apart > AGREE {
+            let message = format!(
+                "site {i} is frozen, but the final state has it {:.3} degrees away from where the initial state has it: give \
+                 it a \"direction\" or make the two states agree there",
+                apart.to_degrees()
+            );
+            return Err(Error::invalid(format!("lattice.chain.frozen[{k}]"), message));
+        }
+        for c in 0..3 {
+            m[c * n + i] = from[c * n + i];
         }
     }
     Ok(Spins::from_unit_components(&m))

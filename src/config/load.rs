@@ -5,7 +5,7 @@ use super::library;
 use super::material::{DEFAULT, MaterialChoice};
 use super::parts::PartMaterial;
 use super::text::{Text, apply_set, decode, nearest};
-use super::{Config, Name};
+use super::{Config, Name, memory};
 use crate::error::{Error, Result, both};
 use crate::files::open_file;
 use crate::lattice::Lattice;
@@ -30,6 +30,8 @@ pub struct Loaded {
     pub name: String,
     /// Its material, or one for each region, that of all other sites first.
     pub parts: Vec<PartMaterial>,
+    /// Where the spins are.
+    pub lattice: Lattice,
     /// The config as run: with `--set` carried out, the material and the name written out, keys in order. It runs by itself.
     pub as_run: String,
     /// SHA-256 of [`as_run`](Self::as_run) in hexadecimal.
@@ -87,11 +89,10 @@ pub fn load_text(path: &Path, text: String) -> Result<Loaded> {
 fn load_from(path: &Path, text: Text, source: Option<PathBuf>) -> Result<Loaded> {
     let mut config: Config = text.parse().map_err(|e| not_a(&text, "config", e))?;
     let name = name(path, &config).map_err(|e| text.locate(e));
-    let Lattice::Chain(chain) = &mut config.lattice;
-    let regions = chain.resolve_regions().map_err(|e| text.locate(e.within("lattice.chain")));
     let parts = materials(path, &config, &text);
     let inputs = Inputs::read(&mut config, path.parent().unwrap_or(Path::new(""))).map_err(|e| text.locate(e));
-    let ((name, parts), (inputs, ())) = both(both(name, parts), both(inputs, regions))?;
+    let ((name, parts), inputs) = both(both(name, parts), inputs)?;
+    let lattice = lattice(&config).map_err(|e| text.locate(e))?;
     let as_run = as_run(&text, &parts, &name, &inputs)?;
     let sha256 = Sha256::digest(as_run.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect();
     let own = parts
@@ -101,7 +102,7 @@ fn load_from(path: &Path, text: Text, source: Option<PathBuf>) -> Result<Loaded>
         .chain(inputs.read.iter().map(PathBuf::as_path));
     let made_from = source.iter().cloned().chain(own.filter_map(known_file)).collect();
     let Inputs { files: inputs, warnings, .. } = inputs;
-    Ok(Loaded { text, config, name, parts, as_run, sha256, inputs, warnings, source, made_from })
+    Ok(Loaded { text, config, name, parts, lattice, as_run, sha256, inputs, warnings, source, made_from })
 }
 
 /// The error, unless the text is another kind of file than the wanted one: then what that is and what takes it.
@@ -121,6 +122,13 @@ pub(super) fn not_a(text: &Text, wanted: &str, error: Error) -> Error {
     };
     let message = format!("this is {kind}, not a {wanted}: {way_out}");
     if kind == format!("a {wanted}") { error } else { text.locate(Error::invalid("", message)) }
+}
+
+/// The lattice of a config, if memory can hold what is on it.
+fn lattice(config: &Config) -> Result<Lattice> {
+    let sites = config.lattice.sites().map_err(|e| e.within("lattice"))?;
+    memory::affordable(memory::hamiltonian_bytes(sites, 1, 1), sites, None)?;
+    config.lattice.resolve().map_err(|e| e.within("lattice"))
 }
 
 /// The materials of a config, that of sites in no region first.

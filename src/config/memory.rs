@@ -1,5 +1,6 @@
 //! How much memory a run needs, estimated before anything is allocated.
 
+use crate::error::{Error, Result};
 use std::fs;
 use std::path::Path;
 
@@ -37,6 +38,22 @@ pub fn hamiltonian_bytes(sites: usize, reach: usize, terms: usize) -> f64 {
 /// What a run of `images` images needs (bytes).
 pub fn run_bytes(sites: usize, images: usize, reach: usize, terms: usize, periodic: bool) -> f64 {
     hamiltonian_bytes(sites, reach, terms) + images as f64 * image_bytes(sites, reach, periodic)
+}
+
+/// Refuses what no memory can hold (bytes), of so many sites; and of the path's images, where it has come to them: how many, and
+/// whether an automatic path begins with them.
+pub fn affordable(bytes: f64, sites: usize, images: Option<(usize, bool)>) -> Result<()> {
+    let Some(whose) = exceeded(bytes) else { return Ok(()) };
+    let (place, what, way_out) = match images {
+        None => ("lattice.chain.sites", format!("{sites} sites"), ""),
+        Some((n, true)) => {
+            let what = format!("{sites} sites with the {n} images that an automatic path begins with");
+            ("lattice.chain.sites", what, ": give fewer as \"images\" of \"path\"")
+        }
+        Some((n, false)) => ("path.images", format!("{sites} sites and {n} images"), ""),
+    };
+    let message = format!("{what} need about {} of memory, more than {whose}{way_out}", shown(bytes));
+    Err(Error::invalid(place, message))
 }
 
 /// Who does not give so many bytes, in words: the machine, the limits of the process (`ulimit -v`, `-d`) or its control group

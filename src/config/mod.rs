@@ -40,7 +40,7 @@ pub use schema::{Key, SCHEMA_FILE, keys, schema};
 pub use text::Text;
 
 use crate::energy::TermSpec;
-use crate::lattice::Lattice;
+use crate::lattice::LatticeSpec;
 use crate::state::StateSpec;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -61,7 +61,7 @@ pub struct Config {
     /// What the chain is made of.
     pub material: MaterialChoice,
     /// Where the spins are.
-    pub lattice: Lattice,
+    pub lattice: LatticeSpec,
     /// Terms added to the material's.
     #[serde(default)]
     pub energy: Vec<TermSpec>,

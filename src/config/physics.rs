@@ -12,7 +12,6 @@ use crate::energy::magnetostatics::MU_0_MU_B_SQUARED;
 use crate::energy::{EnergyTerm, Hamiltonian, TermSpec};
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Vector, vector};
-use crate::lattice::Chain;
 use crate::linalg::eigenvalues_symmetric;
 
 /// A wall of less than this many sites feels every one of them.
@@ -42,17 +41,17 @@ pub struct Physics {
 impl Physics {
     /// Of a problem.
     pub fn of(loaded: &Loaded, problem: &Problem, scales: &Scales) -> Physics {
-        let (h, chain) = (&problem.hamiltonian, loaded.chain());
+        let (h, lattice) = (&problem.hamiltonian, &loaded.lattice);
         let width = wall_width_sites(scales, floor_mev(h));
-        let spacing = chain.spacing.map(|a| a.0);
+        let spacing = lattice.spacing_nm;
         let energy = width.map(|_| 2.0 * (scales.exchange_mev * scales.stiffness_mev).sqrt());
         Physics {
-            exchange_length_nm: exchange_length_nm(loaded, chain, scales),
+            exchange_length_nm: exchange_length_nm(loaded, scales),
             wall_width_sites: width,
             wall_width_nm: width.and_then(|w| Some(w * spacing?)),
             wall_energy_mev: energy,
             // 1 meV/nm² is 0.1602… mJ/m²
-            wall_energy_mj_per_m2: energy.and_then(|e| Some(e * 1e-1 * 1.602176634 / chain.section_nm2()?)),
+            wall_energy_mj_per_m2: energy.and_then(|e| Some(e * 1e-1 * 1.602176634 / lattice.middle_section_nm2()?)),
             site_barriers_mev: site_barriers(h),
             terms_mev: by_torque(h),
             warnings: warnings(loaded, h, scales),
@@ -63,16 +62,14 @@ impl Physics {
 /// What is too coarse, in words: cells of a continuum against the exchange length and the width of a wall. A chain of atoms is as
 /// discrete as it is: a narrow wall there is physics.
 pub fn warnings(loaded: &Loaded, h: &Hamiltonian, scales: &Scales) -> Vec<String> {
-    let chain = loaded.chain();
-    let Some(cell) = chain.spacing.filter(|_| is_continuum(loaded)) else { return Vec::new() };
+    let Some(cell_nm) = loaded.lattice.spacing_nm.filter(|_| is_continuum(loaded)) else { return Vec::new() };
     let mut warnings = Vec::new();
-    if let Some(length) = exchange_length_nm(loaded, chain, scales)
-        && cell.0 > 0.5 * length
+    if let Some(length) = exchange_length_nm(loaded, scales)
+        && cell_nm > 0.5 * length
     {
         warnings.push(format!(
-            "cells of {} nm are longer than half the exchange length of {length:.2} nm: halve the spacing and see whether \
-             the barrier changes",
-            cell.0
+            "cells of {cell_nm} nm are longer than half the exchange length of {length:.2} nm: halve the spacing and see whether \
+             the barrier changes"
         ));
     }
     if let Some(width) = wall_width_sites(scales, floor_mev(h)).filter(|w| *w < NARROW) {
@@ -107,9 +104,9 @@ fn floor_mev(h: &Hamiltonian) -> f64 {
 }
 
 /// √(2A/μ₀Ms²) with A = J a/2S and Ms = μ/aS, of the middle cell.
-fn exchange_length_nm(loaded: &Loaded, chain: &Chain, scales: &Scales) -> Option<f64> {
-    let (a, section) = (chain.spacing?.0, chain.section_nm2()?);
-    let mut moments = loaded.moments_mub(chain)?;
+fn exchange_length_nm(loaded: &Loaded, scales: &Scales) -> Option<f64> {
+    let (a, section) = (loaded.lattice.spacing_nm?, loaded.lattice.middle_section_nm2()?);
+    let mut moments = loaded.moments_mub()?;
     moments.sort_by(f64::total_cmp);
     let moment = moments.get(moments.len() / 2).copied().filter(|m| *m > 0.0)?;
     let length = (scales.exchange_mev * a * a * a * section / (MU_0_MU_B_SQUARED * moment * moment)).sqrt();

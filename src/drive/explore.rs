@@ -86,8 +86,9 @@ pub fn natural_guesses(
     for axis in rotation_axes(problem, a, b) {
         guesses.push((GuessSpec::Rotation(Rotation { axis: Some(axis) }), None));
     }
-    if problem.chain.sites > 1 {
-        let edges = if problem.chain.periodic { [Edge::Center, Edge::Left] } else { [Edge::Left, Edge::Right] };
+    let lattice = problem.hamiltonian.lattice();
+    if lattice.sites > 1 {
+        let edges = if lattice.is_ring() { [Edge::Center, Edge::Left] } else { [Edge::Left, Edge::Right] };
         for from in edges {
             let noise = NoiseSpec { amplitude: Angle(NOISE), seed: 5 };
             // the axis of a wall from the left is that of the context already

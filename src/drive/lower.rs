@@ -82,7 +82,7 @@ fn turned_walls(h: Evaluator, m: &[f64], most: f64) -> Vec<Vec<f64>> {
     let mut all = Vec::new();
     for axis in h.symmetry_axes_at(m) {
         let Ok(direction) = Direction::new(axis) else { continue };
-        let walls = walls(m, axis, h.periodic());
+        let walls = walls(m, axis, h.lattice().is_ring());
         if walls.len() < 2 || walls.len() > MOST_WALLS {
             continue;
         }

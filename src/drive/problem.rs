@@ -3,7 +3,6 @@
 use super::Scales;
 use crate::control::Control;
 use crate::energy::{Evaluator, Hamiltonian};
-use crate::lattice::Chain;
 use crate::optimise::{Implicit, OptimiserSpec};
 use crate::path::guess::{GuessSpec, NoiseSpec};
 use crate::rates::RateSettings;
@@ -11,12 +10,10 @@ use crate::record::Fingerprint;
 use crate::spins::Spins;
 use crate::state::{Sense, StateContext};
 
-/// Two states of a chain, and how to look for the path between them.
+/// Two states of a lattice, and how to look for the path between them.
 #[derive(Debug)]
 pub struct Problem {
-    /// The chain.
-    pub chain: Chain,
-    /// Its energy.
+    /// The energy of the spins, and where they are.
     pub hamiltonian: Hamiltonian,
     /// What counts and stops its evaluations.
     pub control: Control,
@@ -52,10 +49,9 @@ pub struct Problem {
 
 impl Problem {
     /// With everything but the physics at its default.
-    pub fn new(chain: Chain, hamiltonian: Hamiltonian, initial: Spins, final_state: Spins) -> Problem {
+    pub fn new(hamiltonian: Hamiltonian, initial: Spins, final_state: Spins) -> Problem {
         let neb = NebSettings::default();
         Problem {
-            chain,
             hamiltonian,
             control: Control::default(),
             initial,
@@ -84,7 +80,7 @@ impl Problem {
 
     /// What states on the way need to know.
     pub fn states(&self, scales: &Scales) -> StateContext<'_> {
-        StateContext { sense: self.sense, ..scales.states(&self.chain, &self.hamiltonian) }
+        StateContext { sense: self.sense, ..scales.states(&self.hamiltonian) }
     }
 
     /// What tells it from other problems: its energies, states and settings.

@@ -143,7 +143,7 @@ impl<'a, 'o> Run<'a, 'o> {
 
     fn finish(mut self) -> Result<Outcome> {
         let (a, b) = (self.ends[0].spins.as_slice(), self.ends[1].spins.as_slice());
-        if distance(a, b) < 1e-6 * (self.problem.chain.sites as f64).sqrt() {
+        if distance(a, b) < 1e-6 * (self.problem.hamiltonian.sites() as f64).sqrt() {
             return Ok(report::same_minimum(self.prepared()));
         }
         if let Some(flat) = self.turned_minimum()? {
@@ -514,7 +514,7 @@ impl<'a, 'o> Run<'a, 'o> {
         let make = |images: usize| -> Result<Path> {
             let mut path = guess.member().path(a, b, images, &context)?;
             if let Some(noise) = noise {
-                path = add_noise(&path, noise, context.states.chain);
+                path = add_noise(&path, noise, context.states.lattice);
             }
             Ok(match smoothing {
                 Some(strength) => smooth(&path, strength),
@@ -522,7 +522,7 @@ impl<'a, 'o> Run<'a, 'o> {
             })
         };
         let coarsest = match self.problem.images {
-            Images::Auto => self.scales.images_between(self.problem.chain.sites, moving_sites(a, b)) + 2,
+            Images::Auto => self.scales.images_between(self.problem.hamiltonian.sites(), moving_sites(a, b)) + 2,
             Images::Count(n) => image_levels(n, |n| make(n).is_ok_and(|p| p.largest_rotation() <= COARSEST))[0],
         };
         let band = Band::new(self.problem.evaluator(), make(coarsest)?);

@@ -2,7 +2,6 @@
 
 use crate::energy::{Evaluator, Hamiltonian};
 use crate::field::Components;
-use crate::lattice::Chain;
 use crate::linalg::{eigenvalues_symmetric, slab};
 use crate::saddle::State;
 use crate::state::StateContext;
@@ -41,10 +40,10 @@ impl Scales {
         Scales { stiffness_mev: c, exchange_mev: exchange, wall_width_sites: width }
     }
 
-    /// What states of a chain need to know.
-    pub fn states<'a>(&self, chain: &'a Chain, h: &'a Hamiltonian) -> StateContext<'a> {
-        let (wall_width_sites, exchange_mev) = (self.wall_width_sites, self.exchange_mev);
-        StateContext { chain, wall_width_sites, exchange_mev, hamiltonian: Some(h), sense: None }
+    /// What states need to know.
+    pub fn states<'a>(&self, h: &'a Hamiltonian) -> StateContext<'a> {
+        let context = StateContext::new(h.lattice(), self.wall_width_sites);
+        StateContext { exchange_mev: self.exchange_mev, hamiltonian: Some(h), ..context }
     }
 
     /// Largest rotation of a spin (rad) when a wall moves by half a site.

@@ -1,6 +1,7 @@
-//! The Euclidean Hessian of a short-ranged chain as 3 × 3 blocks: one a site, one a bond of each shell.
+//! The Euclidean Hessian of short-ranged terms as 3 × 3 blocks: one a site, one a bond of each family.
 
 use crate::geometry::{Vector, vector};
+use crate::lattice::{BondFamily, Lattice};
 
 /// A 3 × 3 matrix, row by row.
 pub type Block = [Vector; 3];
@@ -10,21 +11,24 @@ pub type Block = [Vector; 3];
 pub struct Blocks {
     /// Diagonal blocks, symmetric: xx, yy, zz, yz, zx and xy of all sites.
     pub site: [Vec<f64>; 6],
-    /// Shell n − 1 couples every site i (rows) to site i + n (columns); the transposes are understood.
+    /// By family, in the order of [`Lattice::families`]: each couples every site (rows) to its partner a shift on (columns); the
+    /// transposes are understood.
     pub bond: Vec<Bonds>,
 }
 
-/// The couplings of one shell, a multiple of the unit matrix and the rest of each.
+/// The couplings of one family, a multiple of the unit matrix and the rest of each.
 #[derive(Clone, Debug)]
 pub struct Bonds {
-    /// s of s·1, for every bond.
+    /// The bonds.
+    pub family: BondFamily,
+    /// s of s·1, for the bond of every site.
     pub isotropic: Vec<f64>,
-    /// What is not isotropic, for every bond; empty where no term has any.
+    /// What is not isotropic, for the bond of every site; empty where no term has any.
     pub rest: Vec<Block>,
 }
 
 impl Bonds {
-    /// Adds a block to bond i.
+    /// Adds a block to the bond of site i.
     pub fn add(&mut self, i: usize, block: Block) {
         if self.rest.is_empty() {
             self.rest = vec![[[0.0; 3]; 3]; self.isotropic.len()];
@@ -34,7 +38,7 @@ impl Bonds {
         }
     }
 
-    /// The block of bond i times v.
+    /// The block of the bond of site i times v.
     #[inline(always)]
     pub fn multiply(&self, i: usize, v: Vector) -> Vector {
         let isotropic = vector::scale(self.isotropic[i], v);
@@ -49,10 +53,13 @@ impl Bonds {
 }
 
 impl Blocks {
-    /// Zero blocks for shells 1 … `reach`; every shell has one (possibly unused) bond a site.
-    pub fn zeros(sites: usize, reach: usize) -> Blocks {
-        let bonds = Bonds { isotropic: vec![0.0; sites], rest: Vec::new() };
-        Blocks { site: [(); 6].map(|()| vec![0.0; sites]), bond: vec![bonds; reach] }
+    /// Zero blocks for shells 1 … `shells`; every family has one (possibly unused) bond a site.
+    pub fn zeros(lattice: &Lattice, shells: usize) -> Blocks {
+        let bonds = |family| Bonds { family, isotropic: vec![0.0; lattice.sites], rest: Vec::new() };
+        Blocks {
+            site: [(); 6].map(|()| vec![0.0; lattice.sites]),
+            bond: lattice.families(shells).into_iter().map(bonds).collect(),
+        }
     }
 
     /// Adds s·1 to a site's block.

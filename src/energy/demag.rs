@@ -12,7 +12,6 @@ use super::EnergyTerm;
 use super::magnetostatics::{Magnetostatics, Row, Shape};
 use super::spec::{Medium, TermBuilder};
 use crate::error::{Error, Result};
-use crate::geometry::Direction;
 use crate::registry::Described;
 use serde::Deserialize;
 
@@ -35,9 +34,9 @@ impl Described for DemagSpec {
 
 impl TermBuilder for DemagSpec {
     fn build(&self, medium: &Medium) -> Result<Box<dyn EnergyTerm>> {
-        let sections = medium.sections_nm()?;
-        let spacing = medium.spacing_nm()?;
-        for edges in &sections {
+        let sections = medium.lattice.known_sections_nm()?;
+        let spacing = medium.lattice.known_spacing_nm()?;
+        for edges in sections {
             if edges.iter().any(|edge| !(1.0 / SLENDER..=SLENDER).contains(&(edge / spacing))) {
                 let [width, thickness] = edges;
                 let message = format!(
@@ -47,8 +46,8 @@ impl TermBuilder for DemagSpec {
                 return Err(Error::invalid("", message));
             }
         }
-        let direction = medium.chain.direction.unwrap_or(Direction::X);
-        let (moments, periodic) = (medium.acting_moments_mub()?, medium.chain.periodic);
+        let direction = medium.lattice.direction();
+        let (moments, periodic) = (medium.acting_moments_mub()?, medium.lattice.is_ring());
         let [width, thickness] = sections[0];
         if sections.iter().all(|s| *s == sections[0]) {
             let shape = Shape::Cells { width: width / spacing, thickness: thickness / spacing };

@@ -9,7 +9,6 @@ use super::EnergyTerm;
 use super::magnetostatics::{Magnetostatics, Row, Shape};
 use super::spec::{Medium, TermBuilder};
 use crate::error::{Error, Result};
-use crate::geometry::Direction;
 use crate::registry::Described;
 use serde::Deserialize;
 
@@ -26,7 +25,7 @@ impl Described for DipolarSpec {
 
 impl TermBuilder for DipolarSpec {
     fn build(&self, medium: &Medium) -> Result<Box<dyn EnergyTerm>> {
-        let Some(spacing) = medium.chain.spacing.map(|a| a.0) else {
+        let Some(spacing) = medium.lattice.spacing_nm else {
             return Err(Error::invalid(
                 "",
                 "dipoles need their distance: give the lattice a \"spacing\" (\"0.25 nm\")",
@@ -35,8 +34,8 @@ impl TermBuilder for DipolarSpec {
         let row = Row {
             shape: Shape::Dipoles,
             volume_nm3: spacing * spacing * spacing,
-            periodic: medium.chain.periodic,
-            direction: medium.chain.direction.unwrap_or(Direction::X),
+            periodic: medium.lattice.is_ring(),
+            direction: medium.lattice.direction(),
         };
         Ok(Box::new(Magnetostatics::new(DipolarSpec::NAME, &row, medium.acting_moments_mub()?)))
     }

@@ -1,18 +1,19 @@
 //! Dzyaloshinskii–Moriya interaction of nearest neighbours.
 //!
 //! ```text
-//! E = + Σ_i D d̂·(m_i × m_{i+1})               every bond once
-//! ∂E/∂m_i = D (m_{i+1} × d̂),   ∂E/∂m_{i+1} = D (d̂ × m_i)
+//! E = + Σ_i D d̂·(m_i × m_j)                   every bond i–j once
+//! ∂E/∂m_i = D (m_j × d̂),   ∂E/∂m_j = D (d̂ × m_i)
 //! ```
-//! With D > 0 the lower turning sense is that in which m_i × m_{i+1} points against d̂.
+//! With D > 0 the lower turning sense is that in which m_i × m_j points against d̂.
 
 use super::EnergyTerm;
 use super::blocks::{Blocks, cross_block};
+use super::couplings::Couplings;
 use super::spec::{Medium, TermBuilder};
 use crate::error::Result;
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, Vector, vector};
-use crate::lattice::{Chain, Selection};
+use crate::lattice::{Lattice, Segment, Selection, at, moved};
 use crate::profile::Profile;
 use crate::registry::Described;
 use crate::units::BondEnergy;
@@ -43,41 +44,51 @@ impl Described for DmiSpec {
 
 impl TermBuilder for DmiSpec {
     fn build(&self, medium: &Medium) -> Result<Box<dyn EnergyTerm>> {
-        let d = medium.on_bonds(&self.D, 1, self.bonds.as_ref(), "D", |d, i| medium.bond_energy_mev(d, i))?;
-        Ok(Box::new(Dmi { direction: self.direction.vector(), d }))
+        let families =
+            medium.on_bonds(&self.D, 1, self.bonds.as_ref(), "D", |d, sites| medium.bond_energy_mev(d, sites))?;
+        Ok(Box::new(Dmi { direction: self.direction.vector(), families }))
     }
 }
 
-/// Bond energies D (meV) along one direction; `d[i]` joins sites i and i + 1, 0 where there is no bond.
+/// Bond energies D (meV) along one direction.
 #[derive(Clone, Debug)]
 pub struct Dmi {
     /// Unit vector d̂.
     pub direction: Vector,
-    /// D of each bond.
-    pub d: Vec<f64>,
+    /// D of each family of bonds of nearest neighbours, in the order of [`Lattice::families`].
+    pub families: Vec<Couplings>,
 }
 
 impl Dmi {
     /// The same D (meV) on all bonds.
-    pub fn uniform(chain: &Chain, d: f64, direction: Direction) -> Dmi {
-        let d = (0..chain.sites).map(|i| if i < chain.bonds(1) { d } else { 0.0 }).collect();
-        Dmi { direction: direction.vector(), d }
+    pub fn uniform(lattice: &Lattice, d: f64, direction: Direction) -> Dmi {
+        Dmi { direction: direction.vector(), families: Couplings::uniform(lattice, 1, d) }
     }
 
-    /// Σ over the two bonds of a site: D_i (m_{i+1} × d̂) − D_{i−1} (m_{i−1} × d̂).
-    #[inline(always)]
-    fn slope(&self, dp: f64, dm: f64, p: Vector, q: Vector) -> Vector {
-        let w = [dp * p[0] - dm * q[0], dp * p[1] - dm * q[1], dp * p[2] - dm * q[2]];
-        vector::cross(w, self.direction)
+    /// D_i (m_j × d̂) − D_k (m_k × d̂) of a site i near a border, with its partner j a shift on and k a shift back.
+    fn edge(&self, d: &[f64], segment: &Segment, m: &Components, i: usize) -> Vector {
+        let [next, previous] = [segment.next, segment.previous].map(|n| n.map(|n| at(i, n)));
+        let p = next.map_or([0.0; 3], |j| vector::scale(d[i], m.get(j)));
+        let q = previous.map_or([0.0; 3], |k| vector::scale(d[k], m.get(k)));
+        vector::cross(vector::sub(p, q), self.direction)
     }
 }
 
-/// The run of sites from `lo` on whose two neighbours need no wrapping.
+/// A run of sites whose partners are `step` sites ahead and as many behind.
 #[multiversion(targets("x86_64+avx2"))]
-fn add_run(term: &Dmi, lo: usize, m: Components, gx: &mut [f64], gy: &mut [f64], gz: &mut [f64], density: &mut [f64]) {
+fn add_run(
+    (d, [ex, ey, ez]): (&[f64], Vector),
+    (sites, step): (Range<usize>, isize),
+    m: Components,
+    gx: &mut [f64],
+    gy: &mut [f64],
+    gz: &mut [f64],
+    density: &mut [f64],
+) {
     let n = gx.len();
-    let (here, next, previous) = (m.range(lo..lo + n), m.range(lo + 1..lo + 1 + n), m.range(lo - 1..lo - 1 + n));
-    let (dp, dm, [ex, ey, ez]) = (&term.d[lo..lo + n], &term.d[lo - 1..lo - 1 + n], term.direction);
+    let (ahead, behind) = (moved(&sites, step), moved(&sites, -step));
+    let (dp, dm) = (&d[sites.clone()][..n], &d[behind.clone()][..n]);
+    let (here, next, previous) = (m.range(sites), m.range(ahead), m.range(behind));
     let (gy, gz, density) = (&mut gy[..n], &mut gz[..n], &mut density[..n]);
     for i in 0..n {
         let (px, py, pz) = (dp[i] * next.x[i], dp[i] * next.y[i], dp[i] * next.z[i]);
@@ -100,33 +111,38 @@ impl EnergyTerm for Dmi {
     }
 
     fn add_gradient(&self, m: Components, mut g: ComponentsMut, density: &mut [f64], range: Range<usize>) {
-        let (first, last, n) = (range.start, range.end, m.sites());
-        let lo = first.max(1).min(last);
-        let hi = last.min(n - 1).max(lo);
-        for i in (first..lo).chain(hi..last) {
-            let (previous, next) = ((i + n - 1) % n, (i + 1) % n);
-            g.add(i - first, self.slope(self.d[i], self.d[previous], m.get(next), m.get(previous)));
-            density[i - first] += self.d[i] * vector::dot(self.direction, vector::cross(m.get(i), m.get(next)));
-        }
-        let run = lo - first..hi - first;
-        if !run.is_empty() {
-            let (gx, gy, gz) = (&mut g.x[run.clone()], &mut g.y[run.clone()], &mut g.z[run.clone()]);
-            add_run(self, lo, m, gx, gy, gz, &mut density[run]);
+        let first = range.start;
+        for Couplings { family, mev: d } in &self.families {
+            for segment in family.segments(range.clone()) {
+                let (sites, run) = (segment.sites.clone(), moved(&segment.sites, -(first as isize)));
+                if let Some(n) = segment.even() {
+                    let (gx, gy, gz) = (&mut g.x[run.clone()], &mut g.y[run.clone()], &mut g.z[run.clone()]);
+                    add_run((d, self.direction), (sites, n), m, gx, gy, gz, &mut density[run]);
+                    continue;
+                }
+                for i in sites {
+                    g.add(i - first, self.edge(d, &segment, &m, i));
+                    if let Some(next) = segment.next {
+                        let turn = vector::cross(m.get(i), m.get(at(i, next)));
+                        density[i - first] += d[i] * vector::dot(self.direction, turn);
+                    }
+                }
+            }
         }
     }
 
     fn add_hessian_product(&self, _: Components, v: Components, mut out: ComponentsMut) {
-        let n = v.sites();
-        for i in 0..n {
-            let (previous, next) = ((i + n - 1) % n, (i + 1) % n);
-            out.add(i, self.slope(self.d[i], self.d[previous], v.get(next), v.get(previous)));
+        for Couplings { family, mev: d } in &self.families {
+            for segment in family.segments(0..v.sites()) {
+                segment.sites.clone().for_each(|i| out.add(i, self.edge(d, &segment, &v, i)));
+            }
         }
     }
 
     fn add_blocks(&self, _: Components, blocks: &mut Blocks) {
-        for (i, &d) in self.d.iter().enumerate() {
-            if d != 0.0 {
-                blocks.bond[0].add(i, cross_block(vector::scale(d, self.direction)));
+        for (k, couplings) in self.families.iter().enumerate() {
+            for ([i, _], d) in couplings.bonds() {
+                blocks.bond[k].add(i, cross_block(vector::scale(d, self.direction)));
             }
         }
     }
@@ -144,11 +160,12 @@ impl EnergyTerm for Dmi {
 mod tests {
     use super::*;
     use crate::energy::density_of;
+    use crate::lattice::Chain;
 
     #[test]
     fn a_right_handed_quarter_turn_about_d_costs_plus_d() {
         let m = [1.0, 0.0, 0.0, 1.0, 0.0, 0.0];
-        let term = Dmi { direction: [0.0, 0.0, 1.0], d: vec![2.0, 0.0] };
+        let term = Dmi::uniform(&Chain::open(2).resolve().unwrap(), 2.0, Direction::Z);
         assert_eq!(density_of(&term, &m), [2.0, 0.0]);
     }
 }

@@ -1,20 +1,21 @@
 //! Heisenberg exchange with any number of neighbour shells.
 //!
 //! ```text
-//! E = − Σ_n Σ_i J_n m_i·m_{i+n}          every bond once; J > 0 ferromagnetic, J < 0 antiferromagnetic
-//!   = − Σ |J| + Σ ½|J| |m_i − sgn(J) m_{i+n}|²
+//! E = − Σ_n Σ_i J_n m_i·m_j              every bond i–j of shell n once; J > 0 ferromagnetic, J < 0 antiferromagnetic
+//!   = − Σ |J| + Σ ½|J| |m_i − sgn(J) m_j|²
 //! ∂E/∂m_i = |J| (m_i − sgn(J) m_j)       (a multiple of m_i apart, which spheres do not feel)
 //! ```
-//! From a continuum stiffness: J = 2 A S/a, with the cross-section S of the bond (see [`Medium`]) and the spacing a. From an energy
+//! From a continuum stiffness: J = 2 A S/a, with the cross-section S of the bond (see [`Lattice::bond_section_nm2`]) and the spacing a. From an energy
 //! an area, as interlayer exchange and RKKY are measured: J = J_area S.
 
 use super::EnergyTerm;
 use super::blocks::Blocks;
+use super::couplings::Couplings;
 use super::spec::{Medium, TermBuilder};
 use crate::error::{Error, Result};
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Vector, vector};
-use crate::lattice::{Chain, Selection};
+use crate::lattice::{Lattice, Segment, Selection, at, moved};
 use crate::profile::Profile;
 use crate::registry::Described;
 use crate::units::{Energy, ExchangeStiffness, SurfaceEnergy};
@@ -50,8 +51,8 @@ impl Described for ExchangeSpec {
 }
 
 impl ExchangeSpec {
-    /// Energies (meV) by shell and bond.
-    pub fn shells(&self, medium: &Medium) -> Result<Vec<Vec<f64>>> {
+    /// Energies shell by shell.
+    pub fn shells(&self, medium: &Medium) -> Result<Vec<Vec<Couplings>>> {
         let bonds = self.bonds.as_ref();
         Ok(match (&self.J, &self.A, &self.J_area) {
             (Some(j), None, None) if !j.is_empty() => {
@@ -64,10 +65,10 @@ impl ExchangeSpec {
                 return Err(Error::invalid("J", "the list is empty: give one energy a neighbour shell, [\"10 meV\"]"));
             }
             (None, Some(a), None) => {
-                vec![medium.on_bonds(a, 1, bonds, "A", |a, i| medium.bond_from_stiffness_mev(a, i))?]
+                vec![medium.on_bonds(a, 1, bonds, "A", |a, sites| medium.bond_from_stiffness_mev(a, sites))?]
             }
             (None, None, Some(j)) => {
-                vec![medium.on_bonds(j, 1, bonds, "J_area", |j, i| medium.bond_from_area_mev(j, i))?]
+                vec![medium.on_bonds(j, 1, bonds, "J_area", |j, sites| medium.bond_from_area_mev(j, sites))?]
             }
             (None, None, None) => {
                 let message =
@@ -87,23 +88,23 @@ impl ExchangeSpec {
 
 impl TermBuilder for ExchangeSpec {
     fn build(&self, medium: &Medium) -> Result<Box<dyn EnergyTerm>> {
-        Ok(Box::new(Exchange { shells: self.shells(medium)? }))
+        Ok(Box::new(Exchange { families: self.shells(medium)?.concat() }))
     }
 }
 
-/// Exchange energies: `shells[n − 1][i]` (meV) joins sites i and i + n, 0 where there is no bond.
+/// Exchange energies.
 #[derive(Clone, Debug)]
 pub struct Exchange {
-    /// One list a shell, one entry a site.
-    pub shells: Vec<Vec<f64>>,
+    /// Those of each family of bonds, in the order of [`Lattice::families`].
+    pub families: Vec<Couplings>,
 }
 
-/// One component's share of one shell, on the run of sites from `lo` on whose partners i ± n need no wrapping.
+/// One component's share of one family, on a run of sites whose partners are as far ahead as behind.
 #[multiversion(targets("x86_64+avx2"))]
-fn add_run(n: usize, lo: usize, j: &[f64], x: &[f64], g: &mut [f64], density: &mut [f64]) {
-    let hi = lo + g.len();
-    let (here, next, previous) = (&x[lo..hi], &x[lo + n..hi + n], &x[lo - n..hi - n]);
-    let (jp, jm, density) = (&j[lo..hi], &j[lo - n..hi - n], &mut density[..g.len()]);
+fn add_run(sites: Range<usize>, n: isize, j: &[f64], x: &[f64], g: &mut [f64], density: &mut [f64]) {
+    let (ahead, behind) = (moved(&sites, n), moved(&sites, -n));
+    let (jp, jm, density) = (&j[sites.clone()], &j[behind.clone()], &mut density[..g.len()]);
+    let (here, next, previous) = (&x[sites], &x[ahead], &x[behind]);
     for k in 0..g.len() {
         let up = here[k] - 1f64.copysign(jp[k]) * next[k];
         let down = here[k] - 1f64.copysign(jm[k]) * previous[k];
@@ -114,10 +115,9 @@ fn add_run(n: usize, lo: usize, j: &[f64], x: &[f64], g: &mut [f64], density: &m
 
 impl Exchange {
     /// The same energies on all bonds: `j[n − 1]` (meV) for shell n.
-    pub fn uniform(chain: &Chain, j: &[f64]) -> Exchange {
-        let shell =
-            |(k, j): (usize, &f64)| (0..chain.sites).map(|i| if i < chain.bonds(k + 1) { *j } else { 0.0 }).collect();
-        Exchange { shells: j.iter().enumerate().map(shell).collect() }
+    pub fn uniform(lattice: &Lattice, j: &[f64]) -> Exchange {
+        let families = j.iter().enumerate().flat_map(|(k, j)| Couplings::uniform(lattice, k + 1, *j));
+        Exchange { families: families.collect() }
     }
 
     /// m_i − sgn(J) m_j.
@@ -126,17 +126,15 @@ impl Exchange {
         vector::sub(m.get(a), vector::scale(s, m.get(b)))
     }
 
-    /// Gradient and energy of one site near an end, where partners wrap or are missing.
-    fn edge(j: &[f64], n: usize, m: &Components, i: usize) -> (Vector, f64) {
-        let sites = j.len();
-        let (next, previous) = ((i + n) % sites, (i + sites - n % sites) % sites);
+    /// Gradient and energy of one site near a border, where partners are over it or missing.
+    fn edge(j: &[f64], segment: &Segment, m: &Components, i: usize) -> (Vector, f64) {
         let (mut g, mut e) = ([0.0; 3], 0.0);
-        if j[i] != 0.0 {
-            let d = Exchange::deviation(m, j[i], i, next);
+        if let Some(next) = segment.next.filter(|_| j[i] != 0.0) {
+            let d = Exchange::deviation(m, j[i], i, at(i, next));
             e = 0.5 * j[i].abs() * vector::dot(d, d);
             g = vector::scale(j[i].abs(), d);
         }
-        if j[previous] != 0.0 {
+        if let Some(previous) = segment.previous.map(|n| at(i, n)).filter(|k| j[*k] != 0.0) {
             let d = Exchange::deviation(m, j[previous], i, previous);
             g = vector::add(g, vector::scale(j[previous].abs(), d));
         }
@@ -150,58 +148,49 @@ impl EnergyTerm for Exchange {
     }
 
     fn reference_mev(&self) -> f64 {
-        -self.shells.iter().flatten().map(|j| j.abs()).sum::<f64>()
+        -self.families.iter().flat_map(|c| &c.mev).map(|j| j.abs()).sum::<f64>()
     }
 
     fn add_gradient(&self, m: Components, mut g: ComponentsMut, density: &mut [f64], range: Range<usize>) {
-        let (first, last) = (range.start, range.end);
-        for (k, j) in self.shells.iter().enumerate() {
-            let (n, sites) = (k + 1, j.len());
-            let lo = first.max(n).min(last);
-            let hi = last.min(sites.saturating_sub(n)).max(lo);
-            for i in (first..lo).chain(hi..last) {
-                let (v, e) = Exchange::edge(j, n, &m, i);
-                g.add(i - first, v);
-                density[i - first] += e;
-            }
-            let run = lo - first..hi - first;
-            if !run.is_empty() {
-                add_run(n, lo, j, m.x, &mut g.x[run.clone()], &mut density[run.clone()]);
-                add_run(n, lo, j, m.y, &mut g.y[run.clone()], &mut density[run.clone()]);
-                add_run(n, lo, j, m.z, &mut g.z[run.clone()], &mut density[run]);
+        let first = range.start;
+        for Couplings { family, mev: j } in &self.families {
+            for segment in family.segments(range.clone()) {
+                let (sites, run) = (segment.sites.clone(), moved(&segment.sites, -(first as isize)));
+                if let Some(n) = segment.even() {
+                    add_run(sites.clone(), n, j, m.x, &mut g.x[run.clone()], &mut density[run.clone()]);
+                    add_run(sites.clone(), n, j, m.y, &mut g.y[run.clone()], &mut density[run.clone()]);
+                    add_run(sites, n, j, m.z, &mut g.z[run.clone()], &mut density[run]);
+                    continue;
+                }
+                for i in sites {
+                    let (v, e) = Exchange::edge(j, &segment, &m, i);
+                    g.add(i - first, v);
+                    density[i - first] += e;
+                }
             }
         }
     }
 
     fn add_hessian_product(&self, _: Components, v: Components, mut out: ComponentsMut) {
-        for (k, j) in self.shells.iter().enumerate() {
-            let (n, sites) = (k + 1, j.len());
-            for i in 0..sites {
-                if j[i] != 0.0 {
-                    let next = (i + n) % sites;
-                    let d = vector::scale(j[i].abs(), Exchange::deviation(&v, j[i], i, next));
-                    out.add(i, d);
-                    out.add(next, vector::scale(-1f64.copysign(j[i]), d));
-                }
-            }
+        for ([i, next], j) in self.families.iter().flat_map(Couplings::bonds) {
+            let d = vector::scale(j.abs(), Exchange::deviation(&v, j, i, next));
+            out.add(i, d);
+            out.add(next, vector::scale(-1f64.copysign(j), d));
         }
     }
 
     fn add_blocks(&self, _: Components, blocks: &mut Blocks) {
-        for (k, j) in self.shells.iter().enumerate() {
-            let (n, sites) = (k + 1, j.len());
-            for i in 0..sites {
-                if j[i] != 0.0 {
-                    blocks.add_isotropic(i, j[i].abs());
-                    blocks.add_isotropic((i + n) % sites, j[i].abs());
-                    blocks.bond[k].isotropic[i] -= j[i];
-                }
+        for (k, couplings) in self.families.iter().enumerate() {
+            for ([i, next], j) in couplings.bonds() {
+                blocks.add_isotropic(i, j.abs());
+                blocks.add_isotropic(next, j.abs());
+                blocks.bond[k].isotropic[i] -= j;
             }
         }
     }
 
     fn reach(&self) -> usize {
-        self.shells.len()
+        self.families.last().map_or(0, |c| c.family.shell)
     }
 
     fn axes(&self) -> Vec<Vector> {
@@ -213,14 +202,16 @@ impl EnergyTerm for Exchange {
 mod tests {
     use super::*;
     use crate::energy::density_of;
+    use crate::lattice::Chain;
 
     #[test]
     fn two_spins_at_right_angles_cost_the_bond_energy_and_an_antiferromagnet_prefers_opposite_ones() {
         let m = [1.0, 0.0, 0.0, 1.0, 0.0, 0.0];
-        let term = Exchange { shells: vec![vec![3.0, 0.0]] };
+        let pair = Chain::open(2).resolve().unwrap();
+        let term = Exchange::uniform(&pair, &[3.0]);
         assert_eq!((term.reference_mev(), density_of(&term, &m)), (-3.0, vec![3.0, 0.0]));
         let opposite = [0.0, 0.0, 0.0, 0.0, 1.0, -1.0];
-        assert_eq!(density_of(&Exchange { shells: vec![vec![-3.0, 0.0]] }, &opposite), [0.0; 2]);
+        assert_eq!(density_of(&Exchange::uniform(&pair, &[-3.0]), &opposite), [0.0; 2]);
     }
 
     #[test]
@@ -230,7 +221,8 @@ mod tests {
             r#"{"sites": 3, "spacing": "1 nm", "cross_section": [["10 nm", "10 nm", "30 nm"], "4 nm"]}"#,
         )
         .unwrap();
-        let medium = Medium::new(&chain, None, None);
+        let lattice = chain.resolve().unwrap();
+        let medium = Medium::new(&lattice, None, None);
         let coupling = |bond: usize| {
             let spec = read(&format!(r#"{{"J_area": "-5 mJ/m^2", "bonds": [{bond}]}}"#));
             -spec.build(&medium).unwrap().reference_mev()
@@ -240,7 +232,8 @@ mod tests {
         assert!((coupling(0) - 40.0 * density).abs() < 1e-9, "{}", coupling(0));
         assert!((coupling(1) - 60.0 * density).abs() < 1e-9, "{}", coupling(1));
         let bare = Chain { cross_section: None, ..chain.clone() };
-        let medium = Medium::new(&bare, None, None);
+        let lattice = bare.resolve().unwrap();
+        let medium = Medium::new(&lattice, None, None);
         let said = read(r#"{"J_area": "5 mJ/m^2"}"#).build(&medium).unwrap_err().to_string();
         assert!(said.starts_with("J_area") && said.contains("cross_section"), "{said}");
     }

@@ -1,10 +1,10 @@
-//! The sum of the terms, on a chain.
+//! The sum of the terms, on a lattice.
 
 use super::{Blocks, EnergyTerm, Magnetostatics, symmetry_axes};
 use crate::error::{Error, Result};
 use crate::field::{Components, ComponentsMut, TILE, project_row, tiles};
 use crate::geometry::{Direction, Vector, vector};
-use crate::lattice::Chain;
+use crate::lattice::Lattice;
 use crate::linalg::slab;
 use crate::spins::Spins;
 use rayon::prelude::*;
@@ -17,11 +17,11 @@ const ROW: usize = 64;
 /// Tiles of a long chain that are worth waking a thread for.
 const TILES: usize = 16;
 
-/// The energy of a chain: named terms, their sum, its derivatives and its symmetry.
+/// The energy of the spins of a lattice: named terms, their sum, its derivatives and its symmetry.
 #[derive(Debug)]
 pub struct Hamiltonian {
+    lattice: Lattice,
     sites: usize,
-    periodic: bool,
     frozen: Vec<bool>,
     has_frozen: bool,
     terms: Vec<Box<dyn EnergyTerm>>,
@@ -34,52 +34,40 @@ pub struct Hamiltonian {
 }
 
 impl Hamiltonian {
-    /// The sum of `terms` on `chain`.
-    pub fn new(chain: &Chain, terms: Vec<Box<dyn EnergyTerm>>) -> Result<Hamiltonian> {
-        chain.validate()?;
-        let mut frozen = vec![false; chain.sites];
-        for f in &chain.frozen {
-            for i in f.sites.indices(chain.sites, "site")? {
-                frozen[i] = true;
-            }
-        }
+    /// The sum of `terms` on `lattice`.
+    pub fn new(lattice: &Lattice, terms: Vec<Box<dyn EnergyTerm>>) -> Result<Hamiltonian> {
         let mut long = terms.iter().enumerate().filter(|(_, t)| t.long_range().is_some());
         let (long, second) = (long.next().map(|(k, _)| k), long.next());
         if let (Some(first), Some((_, second))) = (long, second) {
             return Err(twice(terms[first].name(), second.name()));
         }
-        let reach = terms.iter().map(|t| t.reach()).max().unwrap_or(0).min(chain.sites - 1);
-        let axes = symmetry_axes(&terms, chain.sites);
+        let (sites, frozen) = (lattice.sites, lattice.is_frozen());
+        let reach = terms.iter().map(|t| t.reach()).max().unwrap_or(0).min(sites - 1);
         let mut h = Hamiltonian {
-            sites: chain.sites,
-            periodic: chain.periodic,
+            lattice: lattice.clone(),
+            sites,
             has_frozen: frozen.contains(&true),
             frozen,
+            axes: symmetry_axes(&terms, sites),
+            blocks: constant_blocks(lattice, &terms, reach),
             terms,
             long,
-            blocks: Blocks::zeros(0, 0),
             reach,
             stiffness: 0.0,
-            axes,
         };
-        h.blocks = h.blocks_of(|t| t.is_quadratic(), Components::new(&vec![0.0; 3 * h.sites]));
         let diagonal = |b: super::blocks::Block| b[0][0].abs() + b[1][1].abs() + b[2][2].abs();
         h.stiffness = h.blocks.sites().map(diagonal).fold(1e-280, f64::max);
         for axis in [Direction::X, Direction::Y, Direction::Z] {
-            let mut g = vec![0.0; 3 * h.sites];
-            h.energy_gradient(Spins::uniform(h.sites, axis).as_slice(), &mut g);
+            let mut g = vec![0.0; 3 * sites];
+            h.energy_gradient(Spins::uniform(sites, axis).as_slice(), &mut g);
             h.stiffness = h.stiffness.max(slab::max_abs(&g));
         }
         Ok(h)
     }
 
-    fn blocks_of(&self, wanted: impl Fn(&dyn EnergyTerm) -> bool, m: Components) -> Blocks {
-        let mut blocks = Blocks::zeros(self.sites, self.terms.iter().map(|t| t.reach()).max().unwrap_or(0));
-        for t in self.terms.iter().filter(|t| wanted(t.as_ref())) {
-            t.add_blocks(m, &mut blocks);
-        }
-        blocks.bond.truncate(self.reach);
-        blocks
+    /// Where the spins are.
+    pub fn lattice(&self) -> &Lattice {
+        &self.lattice
     }
 
     /// Number of sites.
@@ -87,12 +75,8 @@ impl Hamiltonian {
         self.sites
     }
 
-    /// A ring?
-    pub fn periodic(&self) -> bool {
-        self.periodic
-    }
-
-    /// How many sites away the furthest partner is that has a block of its own; a long-ranged term goes on from there.
+    /// How many shells of neighbours have blocks; a long-ranged term goes on from there. In a chain that is how many sites away the
+    /// furthest partner with a block is.
     pub fn reach(&self) -> usize {
         self.reach
     }
@@ -317,6 +301,16 @@ impl Hamiltonian {
         }
         Some(blocks)
     }
+}
+
+/// The blocks of the quadratic terms, of all shells up to `reach`.
+fn constant_blocks(lattice: &Lattice, terms: &[Box<dyn EnergyTerm>], reach: usize) -> Blocks {
+    let mut blocks = Blocks::zeros(lattice, terms.iter().map(|t| t.reach()).max().unwrap_or(0));
+    for t in terms.iter().filter(|t| t.is_quadratic()) {
+        t.add_blocks(Components::new(&vec![0.0; 3 * lattice.sites]), &mut blocks);
+    }
+    blocks.bond.retain(|bonds| bonds.family.shell <= reach);
+    blocks
 }
 
 /// Two terms that count the same forces.

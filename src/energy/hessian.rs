@@ -1,11 +1,11 @@
-//! The Riemannian Hessian of a chain in orthonormal tangent coordinates, as a banded matrix.
+//! The Riemannian Hessian in orthonormal tangent coordinates, as a banded matrix.
 //!
 //! ```text
 //! H = Uᵀ A U − diag(m_i·g_i) ⊗ 1₂        A = ∂²E/∂m∂m, g = ∂E/∂m, U the 3N × 2N matrix of tangent bases
 //! ```
 //! (Absil, Mahony, Trumpf, LNCS 8085, 361 (2013), doi:10.1007/978-3-642-40020-9_39.) Unknown 2i + a is the component of site i
-//! along its basis vector a; shells 1 … r give the half-bandwidth 2r + 1, and the last r sites of a ring are the rim. What a
-//! long-ranged term adds is in [`far`].
+//! along its basis vector a; shells 1 … r of a chain give the half-bandwidth 2r + 1, and the last r sites of a ring are the rim,
+//! see [`Lattice::rim`](crate::lattice::Lattice::rim). What a long-ranged term adds is in [`far`].
 
 use super::blocks::{Blocks, Bonds, multiply};
 use super::hamiltonian::LONG;
@@ -283,12 +283,8 @@ impl<'a> Assembly<'a> {
         matrix: &mut Banded,
     ) -> Assembly<'a> {
         let dense = h.long_range().is_some_and(|long| long.exponentials(precise).is_none());
-        let rim = match (dense, h.periodic()) {
-            (true, _) => h.sites(),
-            (false, true) => h.reach(),
-            (false, false) => 0,
-        };
-        let width = if dense { 1 } else { 2 * h.reach() + 1 };
+        let rim = if dense { h.sites() } else { h.lattice().rim(h.reach()) };
+        let width = if rim == h.sites() { 1 } else { 2 * h.reach() + 1 };
         let plain = if h.has_frozen() { 0 } else { (h.sites() - rim).saturating_sub(h.reach()) };
         matrix.reset(2 * (h.sites() - rim), width, 2 * rim, 2 * plain);
         let own = h.varying_blocks(Components::new(m));
@@ -319,9 +315,7 @@ impl<'a> Assembly<'a> {
 
     /// Adds all that [`write_rows`](Self::write_rows) has not written, whatever rows it was given.
     pub fn finish(&self, basis: &TangentBasis, matrix: &mut Banded) {
-        for i in self.plain..self.h.sites() {
-            self.parts(basis).add_site(i, matrix);
-        }
+        self.parts(basis).add_rest(self.plain, matrix);
         if let Some(long) = self.h.long_range() {
             far::add(self.h, long, basis, self.precise, matrix);
         }
@@ -415,8 +409,8 @@ impl Parts<'_> {
         [[vector::dot(e, ap), vector::dot(f, ap)], [vector::dot(e, aq), vector::dot(f, aq)]]
     }
 
-    /// Writes the columns of sites all of whose later partners come after them in the band: the entries from the diagonal
-    /// down, row after row of sites.
+    /// Writes the columns of sites all of whose later partners come after them in the band, as in a chain, whose family k leads
+    /// k + 1 sites on: the entries from the diagonal down, row after row of sites.
     fn write_plain(&self, sites: Range<usize>, columns: &mut [f64]) {
         let mut entries = [[0.0; ROW]; 4];
         let size = columns.len() / sites.len();
@@ -440,19 +434,21 @@ impl Parts<'_> {
         }
     }
 
-    /// Adds a site and the bonds that start there, wherever their partners are.
-    fn add_site(&self, i: usize, matrix: &mut Banded) {
-        let (sites, h) = (self.h.sites(), self.h);
-        let (ee, fe, ff) = match h.is_frozen(i) {
-            true => (h.stiffness_mev() + self.shift, 0.0, h.stiffness_mev() + self.shift),
-            false => self.diagonal(i),
-        };
-        matrix.add(2 * i, 2 * i, ee);
-        matrix.add(2 * i + 1, 2 * i, fe);
-        matrix.add(2 * i + 1, 2 * i + 1, ff);
-        for (k, bonds) in self.blocks.bond.iter().enumerate() {
-            let (n, j) = (k + 1, (i + k + 1) % sites);
-            if (i + n < sites || h.periodic()) && !h.is_frozen(i) && !h.is_frozen(j) {
+    /// Adds the sites from `first` on and the bonds that start there, wherever their partners are.
+    fn add_rest(&self, first: usize, matrix: &mut Banded) {
+        let (sites, h) = (first..self.h.sites(), self.h);
+        for i in sites.clone() {
+            let (ee, fe, ff) = match h.is_frozen(i) {
+                true => (h.stiffness_mev() + self.shift, 0.0, h.stiffness_mev() + self.shift),
+                false => self.diagonal(i),
+            };
+            matrix.add(2 * i, 2 * i, ee);
+            matrix.add(2 * i + 1, 2 * i, fe);
+            matrix.add(2 * i + 1, 2 * i + 1, ff);
+        }
+        for bonds in &self.blocks.bond {
+            let free = bonds.family.bonds_of(sites.clone()).filter(|[i, j]| !h.is_frozen(*i) && !h.is_frozen(*j));
+            for [i, j] in free {
                 for (b, row) in self.coupling(bonds, i, j).iter().enumerate() {
                     matrix.add(2 * j + b, 2 * i, row[0]);
                     matrix.add(2 * j + b, 2 * i + 1, row[1]);

@@ -8,6 +8,7 @@
 
 mod anisotropy;
 mod blocks;
+mod couplings;
 mod cubic_anisotropy;
 mod demag;
 mod dipolar;
@@ -24,6 +25,7 @@ mod zeeman;
 
 pub use anisotropy::{Anisotropy, AnisotropySpec};
 pub use blocks::{Blocks, Bonds};
+pub use couplings::Couplings;
 pub use cubic_anisotropy::{CubicAnisotropy, CubicAnisotropySpec};
 pub use demag::DemagSpec;
 pub use dipolar::DipolarSpec;
@@ -55,10 +57,10 @@ fn add_density(term: &dyn EnergyTerm, m: &[f64], density: &mut [f64]) {
     term.add_gradient(Components::new(m), ComponentsMut::new(&mut gradient), density, 0..m.len() / 3);
 }
 
-/// One contribution to the energy of a chain of N classical unit spins.
+/// One contribution to the energy of N classical unit spins.
 ///
 /// A term counts its energy from a reference state of its own: E = [`reference_mev`](Self::reference_mev) + Σ density.
-/// Densities are written as squares of deviations (½J|m_i − m_j|² for −J m_i·m_j), so that small energies of long chains are
+/// Densities are written as squares of deviations (½J|m_i − m_j|² for −J m_i·m_j), so that small energies of many spins are
 /// not differences of large ones.
 pub trait EnergyTerm: Debug + Send + Sync {
     /// The name it has in configs and results.
@@ -68,7 +70,7 @@ pub trait EnergyTerm: Debug + Send + Sync {
     fn reference_mev(&self) -> f64;
 
     /// Adds ∂E/∂m (meV) on the sites of `range` to `g`, as if the components were free, and each site's share of the energy
-    /// above the reference (meV) to `density`; a bond's energy belongs to its lower site. Both cover just `range`.
+    /// above the reference (meV) to `density`; a bond's energy belongs to the site that its family counts it at. Both cover just `range`.
     fn add_gradient(&self, m: Components, g: ComponentsMut, density: &mut [f64], range: Range<usize>);
 
     /// Adds (∂²E/∂m∂m) v (meV) to `out`.
@@ -77,7 +79,7 @@ pub trait EnergyTerm: Debug + Send + Sync {
     /// Adds the 3 × 3 blocks of ∂²E/∂m∂m (meV).
     fn add_blocks(&self, m: Components, blocks: &mut Blocks);
 
-    /// How many sites away the furthest partner is (0: on-site).
+    /// How many shells of neighbours have blocks (0: on-site).
     fn reach(&self) -> usize;
 
     /// Whether ∂²E/∂m∂m does not depend on m.

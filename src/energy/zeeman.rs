@@ -42,7 +42,7 @@ impl TermBuilder for ZeemanSpec {
         let strength = vector::norm(field);
         let direction = vector::unit(field).unwrap_or([0.0, 0.0, 1.0]);
         let moments = medium.moments_mub()?;
-        let mut term = Zeeman { direction, b: vec![0.0; medium.chain.sites] };
+        let mut term = Zeeman { direction, b: vec![0.0; medium.lattice.sites] };
         for i in medium.sites(self.sites.as_ref())? {
             term.b[i] = moments[i] * MU_B_MEV_PER_T * strength;
         }
@@ -120,7 +120,8 @@ mod tests {
         let mut chain = Chain::open(3);
         chain.moments =
             vec![SiteMoment { sites: Selection::List(vec![1]), moment: Some(Moment(4.0).into()), Ms: None }];
-        let medium = Medium::new(&chain, Some(Moment(2.0).into()), None);
+        let lattice = chain.resolve().unwrap();
+        let medium = Medium::new(&lattice, Some(Moment(2.0).into()), None);
         assert_eq!(medium.moments_mub().unwrap(), [2.0, 4.0, 2.0]);
         let spec: ZeemanSpec = serde_json::from_str(r#"{"B": ["0 T", "0 T", "1 T"]}"#).unwrap();
         let term = spec.build(&medium).unwrap();

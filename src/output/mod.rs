@@ -56,7 +56,7 @@ pub use summary::{BothWays, Head, Number, Summary, SummaryJson};
 use crate::drive::Outcome;
 use crate::error::Result;
 use crate::files::{OvfData, disk};
-use crate::lattice::Chain;
+use crate::lattice::Lattice;
 use rayon::prelude::*;
 
 /// Everything that a format may know about a run.
@@ -73,7 +73,7 @@ pub struct RunReport<'a> {
     /// Files of spins that the config names, as they are kept with the result.
     pub inputs: &'a [disk::File],
     /// The chain.
-    pub chain: &'a Chain,
+    pub lattice: &'a Lattice,
     /// How figures look.
     pub look: canvas::Look,
     /// What was found.

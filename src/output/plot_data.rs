@@ -4,7 +4,7 @@ use super::csv::column_name;
 use super::rates_summary::{PassageEntry, TransitionEntry, transitions};
 use super::{EnergyPath, RunReport};
 use crate::drive::HistoryRow;
-use crate::lattice::Chain;
+use crate::lattice::Lattice;
 use crate::path::Path;
 use crate::rates::Way;
 
@@ -42,10 +42,9 @@ pub struct Places {
 
 impl Places {
     /// Of a chain with a spacing.
-    pub fn of(chain: &Chain) -> Option<Places> {
-        let spacing_nm = chain.spacing?.0;
-        let first_nm = if chain.cross_section.is_some() { 0.5 * spacing_nm } else { 0.0 };
-        Some(Places { first_nm, spacing_nm })
+    pub fn of(lattice: &Lattice) -> Option<Places> {
+        let spacing_nm = lattice.spacing_nm?;
+        Some(Places { first_nm: lattice.first() * spacing_nm, spacing_nm })
     }
 }
 
@@ -84,8 +83,8 @@ impl<'a> PlotData<'a> {
             terms_mev: outcome.images.terms_mev.iter().map(|(name, e)| (column_name(name), above_first(e))).collect(),
             terms_profile_mev: outcome.profile_terms_mev.iter().map(|(_, mev)| mev.clone()).collect(),
             path: Some(&outcome.path),
-            vacant: run.chain.is_vacant().unwrap_or_default(),
-            places: Places::of(run.chain),
+            vacant: run.lattice.vacant.clone(),
+            places: Places::of(run.lattice),
             history: outcome.history.clone(),
             lifetimes: transitions.iter().map(Lifetimes::of).collect(),
         }

@@ -8,7 +8,7 @@ use crate::energy::Hamiltonian;
 use crate::error::{Error, Result};
 use crate::files::{self, Array, OvfData, Segment};
 use crate::geometry::Vector;
-use crate::lattice::Chain;
+use crate::lattice::Lattice;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -23,7 +23,7 @@ pub struct RelaxReport<'a> {
     /// Version of the program.
     pub version: &'a str,
     /// The chain.
-    pub chain: &'a Chain,
+    pub lattice: &'a Lattice,
     /// Its energy.
     pub hamiltonian: &'a Hamiltonian,
     /// The states with their names, `initial` and perhaps `final`.
@@ -186,12 +186,12 @@ fn ovf(data: OvfData, report: &RelaxReport, which: &str, spins: &[Vector]) -> Ve
     let energy = report.states.iter().find(|(name, _)| *name == which).map(|(_, s)| s.minimum.energy_mev);
     let energy = energy.map_or(String::new(), |e| format!(", energy {e:?} meV"));
     let description = format!("{}: relaxed {which} state{energy}", report.name);
-    files::write_ovf(data, &mesh(report.chain), &[Segment { description: &description, spins }])
+    files::write_ovf(data, &mesh(report.lattice), &[Segment { description: &description, spins }])
 }
 
 fn vtp(report: &RelaxReport, _: &str, spins: &[Vector]) -> Result<Vec<u8>> {
-    let (positions, unit) = positions(report.chain, spins.len());
-    Ok(files::write_vtp(&positions, report.chain.periodic, spins, unit))
+    let (positions, unit) = positions(report.lattice);
+    Ok(files::write_vtp(&positions, report.lattice.is_ring(), spins, unit))
 }
 
 fn mean(spins: &[Vector]) -> Vector {

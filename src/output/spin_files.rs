@@ -4,8 +4,8 @@ use super::disk::File;
 use super::{Format, RunReport, csv};
 use crate::error::{Error, Result};
 use crate::files::{self, Array, Mesh, OvfData, Segment};
-use crate::geometry::{Direction, Vector, vector};
-use crate::lattice::Chain;
+use crate::geometry::Vector;
+use crate::lattice::Lattice;
 
 /// `path.npz`: spins (image, site, xyz) and the columns of `path.csv`.
 #[derive(Clone, Copy, Debug)]
@@ -153,8 +153,8 @@ impl Format for Vtk {
 
     fn companions(&self, run: &RunReport) -> Result<Vec<File>> {
         let path = &run.outcome.path;
-        let (positions, unit) = positions(run.chain, path.sites());
-        let closed = run.chain.periodic;
+        let (positions, unit) = positions(run.lattice);
+        let closed = run.lattice.is_ring();
         let image = |k: usize| files::write_vtp(&positions, closed, &path.spins(k).vectors(), unit);
         Ok((0..path.images()).map(|k| File { name: numbered("vtk", k, "vtp"), bytes: image(k) }).collect())
     }
@@ -175,7 +175,7 @@ fn numbered(folder: &str, k: usize, ending: &str) -> String {
 fn ovf(data: OvfData, run: &RunReport, images: Vec<(String, Vec<Vector>)>) -> Vec<u8> {
     let segments: Vec<Segment> =
         images.iter().map(|(description, spins)| Segment { description, spins: spins.as_slice() }).collect();
-    files::write_ovf(data, &mesh(run.chain), &segments)
+    files::write_ovf(data, &mesh(run.lattice), &segments)
 }
 
 /// One image as a file of its own: text, which every reader of OVF reads, with all digits.
@@ -192,46 +192,39 @@ fn image_description(run: &RunReport, k: usize) -> String {
     }
 }
 
-/// Where the first site stands, in spacings from the origin: atoms begin there, and so does the first cell of a continuum, whose
-/// center is half a cell further on.
-fn first(chain: &Chain) -> f64 {
-    if chain.cross_section.is_some() { 0.5 } else { 0.0 }
-}
-
-/// Cells in m, or in sites where the chain has no length; their centers are where [`positions`] has the sites.
-pub(super) fn mesh(chain: &Chain) -> Mesh {
-    let (step, unit) = match chain.spacing {
+/// Cells in m, or in sites where the lattice has no length; their centers are where [`positions`] has the sites.
+pub(super) fn mesh(lattice: &Lattice) -> Mesh {
+    let (step, unit) = match lattice.spacing_nm {
         Some(a) => {
             // OVF knows one size of cells: the largest, where they differ
             let larger = |p: [f64; 2], q: [f64; 2]| [p[0].max(q[0]), p[1].max(q[1])];
-            let [width, thickness] =
-                (0..chain.sites).filter_map(|i| chain.section_nm(i)).reduce(larger).unwrap_or([a.0; 2]);
-            ([a.0, width, thickness].map(|nm| nm * 1e-9), "m")
+            let sections = lattice.sections_nm.iter().flatten().copied();
+            let [width, thickness] = sections.reduce(larger).unwrap_or([a; 2]);
+            ([a, width, thickness].map(|nm| nm * 1e-9), "m")
         }
         None => ([1.0; 3], "site"),
     };
-    Mesh { base: [first(chain) * step[0], 0.0, 0.0], step, unit }
+    Mesh { base: [lattice.first() * step[0], 0.0, 0.0], step, unit }
 }
 
 /// Where the sites are, and the unit of that.
-pub(super) fn positions(chain: &Chain, sites: usize) -> (Vec<Vector>, &'static str) {
-    let along = chain.direction.unwrap_or(Direction::X).vector();
-    let (step, unit) = chain.spacing.map_or((1.0, "sites"), |a| (a.0, "nm"));
-    ((0..sites).map(|i| vector::scale(step * (first(chain) + i as f64), along)).collect(), unit)
+pub(super) fn positions(lattice: &Lattice) -> (Vec<Vector>, &'static str) {
+    ((0..lattice.sites).map(|i| lattice.position(i)).collect(), lattice.unit())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lattice::Chain;
 
     fn numbers(text: &str) -> Vec<f64> {
         text.split_whitespace().map(|word| word.parse().unwrap()).collect()
     }
 
     /// The centers that an OVF file gives its cells, in nm where it is in m, and where each cell begins and ends.
-    fn ovf_cells(chain: &Chain) -> Vec<[f64; 3]> {
-        let spins = vec![[0.0, 0.0, 1.0]; chain.sites];
-        let bytes = files::write_ovf(OvfData::Text, &mesh(chain), &[Segment { description: "cells", spins: &spins }]);
+    fn ovf_cells(lattice: &Lattice) -> Vec<[f64; 3]> {
+        let spins = vec![[0.0, 0.0, 1.0]; lattice.sites];
+        let bytes = files::write_ovf(OvfData::Text, &mesh(lattice), &[Segment { description: "cells", spins: &spins }]);
         let text = String::from_utf8(bytes).unwrap();
         let value = |key: &str| {
             let line = text.lines().find_map(|l| l.strip_prefix(&format!("# {key}: "))).unwrap();
@@ -248,10 +241,10 @@ mod tests {
         (0..nodes as usize).map(|i| [scale * (base + i as f64 * step), 0.0, 0.0]).collect()
     }
 
-    fn vtp_points(chain: &Chain) -> Vec<[f64; 3]> {
-        let (positions, unit) = positions(chain, chain.sites);
-        let spins = vec![[0.0, 0.0, 1.0]; chain.sites];
-        let text = String::from_utf8(files::write_vtp(&positions, chain.periodic, &spins, unit)).unwrap();
+    fn vtp_points(lattice: &Lattice) -> Vec<[f64; 3]> {
+        let (positions, unit) = positions(lattice);
+        let spins = vec![[0.0, 0.0, 1.0]; lattice.sites];
+        let text = String::from_utf8(files::write_vtp(&positions, lattice.is_ring(), &spins, unit)).unwrap();
         let (_, from) = text.split_once("<Points>").unwrap();
         let (_, from) = from.split_once("format=\"ascii\">").unwrap();
         let (points, _) = from.split_once("</DataArray>").unwrap();
@@ -260,7 +253,7 @@ mod tests {
 
     #[test]
     fn vtk_and_ovf_have_every_site_at_the_same_place() {
-        let chain = |text: &str| serde_json::from_str::<Chain>(text).unwrap();
+        let chain = |text: &str| serde_json::from_str::<Chain>(text).unwrap().resolve().unwrap();
         for (text, first, step) in [
             (r#"{"sites": 5}"#, 0.0, 1.0),
             (r#"{"sites": 5, "spacing": "0.25 nm"}"#, 0.0, 0.25),

@@ -119,7 +119,7 @@ impl Linearised<'_> {
     /// Where a site stands in the band.
     fn place(&self, site: usize) -> usize {
         let n = self.sites();
-        match self.h.periodic() {
+        match self.h.lattice().is_ring() {
             false => site,
             true if site < n.div_ceil(2) => 2 * site,
             true => 2 * (n - 1 - site) + 1,
@@ -139,7 +139,7 @@ impl Linearised<'_> {
     /// H, in the order of the band.
     fn hessian(&self) -> General {
         let (n, reach) = (self.sites(), self.h.reach());
-        let spread = match (self.joins_all(), self.h.periodic()) {
+        let spread = match (self.joins_all(), self.h.lattice().is_ring()) {
             (true, _) => n - 1,
             (false, true) => 2 * reach,
             (false, false) => reach,
@@ -177,7 +177,7 @@ impl Linearised<'_> {
 
     /// Sites within reach of a site, itself included; all of them where a term joins all pairs.
     fn partners(&self, i: usize) -> impl Iterator<Item = usize> {
-        let (n, reach, periodic, all) = (self.sites(), self.h.reach(), self.h.periodic(), self.joins_all());
+        let (n, reach, periodic, all) = (self.sites(), self.h.reach(), self.h.lattice().is_ring(), self.joins_all());
         let within = move |k: usize| {
             let shifted = i + k;
             match periodic {

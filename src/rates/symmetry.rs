@@ -100,7 +100,7 @@ pub fn equivalent_saddles(
 
 /// Whether a ring's shift by one site leaves the energy and the moments as they are.
 pub(super) fn is_translation_symmetric(h: &Hamiltonian, moments: &[f64]) -> bool {
-    h.periodic() && !h.has_frozen() && moments.iter().all(|n| *n == moments[0]) && {
+    h.lattice().is_ring() && !h.has_frozen() && moments.iter().all(|n| *n == moments[0]) && {
         let m = sample(h.sites());
         keeps_energy(h, h.energy_mev(&m), &shifted(&m, 1))
     }

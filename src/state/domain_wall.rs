@@ -89,7 +89,7 @@ impl DomainWall {
 impl StateBuilder for DomainWall {
     fn vectors(&self, context: &StateContext) -> Result<Vec<Vector>> {
         let width = self.width.unwrap_or(context.wall_width_sites);
-        let fractions = fractions("wall", self.center, width, context.chain.sites)?;
+        let fractions = fractions("wall", self.center, width, context.lattice.sites)?;
         let ways = self.turn(context)?;
         Ok(fractions.into_iter().map(|f| at(&ways, f)).collect())
     }

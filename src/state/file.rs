@@ -51,7 +51,7 @@ impl StateBuilder for File {
             None => files::open(Path::new(""), &self.path, self.sha256.as_deref())?,
         };
         let image = stored.image(self.segment)?;
-        let (found, sites) = (image.len(), context.chain.sites);
+        let (found, sites) = (image.len(), context.lattice.sites);
         match found == sites {
             true => Ok(image.to_vec()),
             false => Err(Error::invalid(

@@ -23,7 +23,7 @@ pub use vectors::Vectors;
 use crate::energy::Hamiltonian;
 use crate::error::Result;
 use crate::geometry::{Vector, vector};
-use crate::lattice::Chain;
+use crate::lattice::Lattice;
 use crate::registry::family;
 use crate::spins::Spins;
 
@@ -43,8 +43,8 @@ family! {
 /// What a state needs to know to become spins.
 #[derive(Clone, Copy, Debug)]
 pub struct StateContext<'a> {
-    /// The chain.
-    pub chain: &'a Chain,
+    /// Where the spins are.
+    pub lattice: &'a Lattice,
     /// Width δ of a domain wall in sites, for walls without a width of their own.
     pub wall_width_sites: f64,
     /// Exchange a bond (meV), without sign, for solitons without a width of their own; 0 where it is not known.
@@ -57,9 +57,9 @@ pub struct StateContext<'a> {
 }
 
 impl<'a> StateContext<'a> {
-    /// Of a chain whose energy is not known.
-    pub fn new(chain: &'a Chain, wall_width_sites: f64) -> StateContext<'a> {
-        StateContext { chain, wall_width_sites, exchange_mev: 0.0, hamiltonian: None, sense: None }
+    /// Of a lattice whose energy is not known.
+    pub fn new(lattice: &'a Lattice, wall_width_sites: f64) -> StateContext<'a> {
+        StateContext { lattice, wall_width_sites, exchange_mev: 0.0, hamiltonian: None, sense: None }
     }
 
     /// Of these senses the one to take.
@@ -110,11 +110,9 @@ impl StateSpec {
                 *v = vector::scale(-1.0, *v);
             }
         }
-        for f in &context.chain.frozen {
+        for f in &context.lattice.frozen {
             if let Some(direction) = f.direction {
-                for i in f.sites.indices(context.chain.sites, "site")? {
-                    vectors[i] = direction.vector();
-                }
+                f.sites.iter().for_each(|i| vectors[*i] = direction.vector());
             }
         }
         Spins::from_vectors(&vectors)

@@ -27,7 +27,7 @@ impl Described for Random {
 
 impl StateBuilder for Random {
     fn vectors(&self, context: &StateContext) -> Result<Vec<Vector>> {
-        Ok(Spins::random(context.chain.sites, self.seed).vectors())
+        Ok(Spins::random(context.lattice.sites, self.seed).vectors())
     }
 
     fn staggered(&self) -> bool {

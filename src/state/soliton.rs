@@ -108,7 +108,7 @@ impl StateBuilder for Soliton {
             return Err(along_a_domain("soliton"));
         }
         let t = vector::unit_or(across, d);
-        let turned = fractions("soliton", self.center, self.width(context, t)?, context.chain.sites)?;
+        let turned = fractions("soliton", self.center, self.width(context, t)?, context.lattice.sites)?;
         Ok(turned.into_iter().map(|f| self.spin(t, TAU * f)).collect())
     }
 
@@ -120,7 +120,7 @@ impl StateBuilder for Soliton {
         if self.through.is_some() {
             return Vec::new();
         }
-        let along = context.chain.direction.unwrap_or(Direction::X).vector();
+        let along = context.lattice.direction().vector();
         let d = self.surroundings();
         let [u, minus_u, v, minus_v] = Sense::across(d, d, along);
         vec![v, minus_v, u, minus_u]

@@ -53,7 +53,7 @@ impl StateBuilder for Spiral {
             let (sin, cos) = libm::sincos(phase + TAU * ((i as f64 / self.period) % 1.0));
             vector::add(vector::scale(cos, u), vector::scale(sin, w))
         };
-        Ok((0..context.chain.sites).map(at).collect())
+        Ok((0..context.lattice.sites).map(at).collect())
     }
 
     fn staggered(&self) -> bool {

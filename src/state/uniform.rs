@@ -26,7 +26,7 @@ impl Described for Uniform {
 
 impl StateBuilder for Uniform {
     fn vectors(&self, context: &StateContext) -> Result<Vec<Vector>> {
-        Ok(vec![self.direction.vector(); context.chain.sites])
+        Ok(vec![self.direction.vector(); context.lattice.sites])
     }
 
     fn staggered(&self) -> bool {

@@ -27,10 +27,10 @@ impl Described for Vectors {
 
 impl StateBuilder for Vectors {
     fn vectors(&self, context: &StateContext) -> Result<Vec<Vector>> {
-        if self.spins.len() != context.chain.sites {
+        if self.spins.len() != context.lattice.sites {
             return Err(Error::invalid(
                 "",
-                format!("found {} vectors for {} sites", self.spins.len(), context.chain.sites),
+                format!("found {} vectors for {} sites", self.spins.len(), context.lattice.sites),
             ));
         }
         Ok(self.spins.iter().map(|d| d.vector()).collect())

@@ -4,13 +4,13 @@
 use spinneb::drive::{Outcome, Problem, Silent, run};
 use spinneb::energy::{Anisotropy, Dmi, EnergyTerm, Exchange, Hamiltonian, Zeeman};
 use spinneb::geometry::Direction;
-use spinneb::lattice::{Chain, Frozen, Selection};
+use spinneb::lattice::{Chain, Frozen, Lattice, Selection};
 use spinneb::spins::Spins;
 use spinneb::state::{DomainWall, StateContext, StateSpec};
 
 /// A chain with J = 1 meV bonds and what else is put on it.
 pub struct Build {
-    pub chain: Chain,
+    pub lattice: Lattice,
     pub terms: Vec<Box<dyn EnergyTerm>>,
 }
 
@@ -24,9 +24,9 @@ impl Build {
     }
 
     pub fn on(chain: Chain) -> Build {
-        let bonds = if chain.sites > 1 { vec![1.0] } else { vec![0.0] };
-        let exchange: Box<dyn EnergyTerm> = Box::new(Exchange::uniform(&chain, &bonds));
-        Build { terms: vec![exchange], chain }
+        let lattice = chain.resolve().expect("a valid chain");
+        let exchange: Box<dyn EnergyTerm> = Box::new(Exchange::uniform(&lattice, &[1.0]));
+        Build { terms: vec![exchange], lattice }
     }
 
     /// `sites` free sites between a frozen +z on the left (site 0) and a frozen −z on the right.
@@ -42,40 +42,40 @@ impl Build {
     }
 
     pub fn easy(self, k: f64) -> Build {
-        let n = self.chain.sites;
+        let n = self.lattice.sites;
         self.with(Anisotropy::uniform(n, k, Direction::Z))
     }
 
     pub fn hard(self, k: f64) -> Build {
-        let n = self.chain.sites;
+        let n = self.lattice.sites;
         self.with(Anisotropy::uniform(n, -k, Direction::X))
     }
 
     pub fn field(self, b: [f64; 3]) -> Build {
-        let n = self.chain.sites;
+        let n = self.lattice.sites;
         self.with(Zeeman::uniform(n, b))
     }
 
     pub fn dmi(self, d: f64, direction: Direction) -> Build {
-        let term = Dmi::uniform(&self.chain, d, direction);
+        let term = Dmi::uniform(&self.lattice, d, direction);
         self.with(term)
     }
 
     /// Adds K on one site.
     pub fn defect(self, site: usize, k: f64) -> Build {
-        let mut term = Anisotropy::uniform(self.chain.sites, 0.0, Direction::Z);
+        let mut term = Anisotropy::uniform(self.lattice.sites, 0.0, Direction::Z);
         term.k[site] = k;
         self.with(term)
     }
 
     pub fn problem(self, initial: Spins, final_state: Spins) -> Problem {
-        let h = Hamiltonian::new(&self.chain, self.terms).expect("a valid chain");
-        Problem::new(self.chain, h, initial, final_state)
+        let h = Hamiltonian::new(&self.lattice, self.terms).expect("a valid chain");
+        Problem::new(h, initial, final_state)
     }
 
     /// All up to all down.
     pub fn reversal(self) -> Problem {
-        let n = self.chain.sites;
+        let n = self.lattice.sites;
         self.problem(Spins::uniform(n, Direction::Z), Spins::uniform(n, Direction::Z.reversed()))
     }
 
@@ -89,7 +89,7 @@ impl Build {
             through: Some(through),
             staggered: false,
         };
-        let context = StateContext::new(&self.chain, width);
+        let context = StateContext::new(&self.lattice, width);
         StateSpec::DomainWall(wall).build(&context).expect("a wall")
     }
 }

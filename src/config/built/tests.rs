@@ -209,7 +209,7 @@ fn refusal(config: &Value) -> String {
 fn energies(problem: &Problem) -> Vec<f64> {
     let state = |seed: u64| -> Spins {
         let spec: StateSpec = serde_json::from_value(json!({"random": {"seed": seed}})).unwrap();
-        spec.build(&StateContext::new(&problem.chain, 1.0)).unwrap()
+        spec.build(&StateContext::new(problem.hamiltonian.lattice(), 1.0)).unwrap()
     };
     (0..5).map(|seed| problem.hamiltonian.energy_mev(state(seed).as_slice())).collect()
 }
@@ -262,7 +262,7 @@ fn library_materials_share_a_chain_and_its_magnetostatics_and_the_config_as_run_
     config["lattice"]["chain"]["cross_section"] = json!(["20 nm", "5 nm"]);
     config["energy"] = json!([{"demag": {}}]);
     let loaded = load_text(Path::new("two.json"), config.to_string()).unwrap();
-    let moments = loaded.moments_mub(loaded.chain()).unwrap();
+    let moments = loaded.moments_mub().unwrap();
     let ratio = moments[12] / moments[11];
     let ms = |key: &str| crate::config::library::find(key).unwrap().unwrap().material.Ms.unwrap().written()[0].0;
     assert!((ratio - ms("fept") / ms("permalloy")).abs() < 1e-12, "{ratio}");

@@ -41,7 +41,7 @@ fn a_grid_takes_every_value_with_every_other_in_the_order_of_the_file() {
     assert_eq!(names, [a, b, c, "sites_5__K_0.1meV", "sites_5__K_0.2meV", "sites_5__K_0.3meV"]);
     for (k, sites, mev) in [(0, 3, 0.1), (4, 5, 0.2)] {
         let loaded = sweep.load_point(k).unwrap();
-        assert_eq!((loaded.name.as_str(), loaded.chain().sites), (names[k], sites));
+        assert_eq!((loaded.name.as_str(), loaded.lattice.sites), (names[k], sites));
         let problem = sweep.problem(k, &loaded).unwrap();
         let energies = problem.hamiltonian.energies_mev(problem.initial.as_slice());
         assert_eq!(energies[1], ("anisotropy", -mev * sites as f64));

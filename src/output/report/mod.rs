@@ -129,7 +129,7 @@ struct Spins {
 }
 
 fn data(run: &RunReport) -> Result<Data> {
-    let (outcome, chain) = (run.outcome, run.chain);
+    let (outcome, lattice) = (run.outcome, run.lattice);
     let (t, path) = (&outcome.images, &outcome.path);
     let shown = Shown::of(outcome);
     let of = |name: &str, values: &[f64]| column(name, shown.images.iter().filter_map(|k| values.get(*k).copied()));
@@ -138,8 +138,6 @@ fn data(run: &RunReport) -> Result<Data> {
         let above: Vec<f64> = energy.iter().map(|e| e - start).collect();
         Ok(Term { name: name.clone(), above_initial_meV: of(name, &above)? })
     });
-    let vacant = chain.is_vacant()?;
-    let frozen = chain.frozen.iter().map(|f| f.sites.indices(chain.sites, "site")).collect::<Result<Vec<_>>>()?;
     Ok(Data {
         summary: summary(run)?,
         barrier_told: told(outcome),
@@ -148,11 +146,11 @@ fn data(run: &RunReport) -> Result<Data> {
         material: material(run.config_text),
         sites: path.sites(),
         images: path.images(),
-        periodic: chain.periodic,
-        spacing_nm: chain.spacing.map(|a| a.0),
-        direction: chain.direction.map_or([1.0, 0.0, 0.0], |d| d.vector()),
-        vacant: shown.sites.iter().copied().filter(|i| vacant.get(*i) == Some(&true)).collect(),
-        frozen: shown.among(frozen.into_iter().flatten()),
+        periodic: lattice.is_ring(),
+        spacing_nm: lattice.spacing_nm,
+        direction: lattice.direction().vector(),
+        vacant: shown.sites.iter().copied().filter(|i| lattice.vacant.get(*i) == Some(&true)).collect(),
+        frozen: shown.among(lattice.frozen.iter().flat_map(|f| &f.sites).copied()),
         reaction_coordinate_rad: of("reaction_coordinate_rad", &t.reaction_coordinate_rad)?,
         energy_above_initial_meV: of("energy_above_initial_meV", &t.above_initial_mev)?,
         max_perpendicular_torque_meV: of("max_perpendicular_torque_meV", &t.max_perpendicular_torque_mev)?,

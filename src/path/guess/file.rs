@@ -2,7 +2,7 @@
 //! distances along the geodesics through them. The file's first and last image give way to the two ends; frozen spins stay.
 
 use super::waypoints::through;
-use super::{FirstGuess, GuessContext, frozen};
+use super::{FirstGuess, GuessContext};
 use crate::error::{Error, Result};
 use crate::field::ComponentsMut;
 use crate::files::{self, Stored};
@@ -59,7 +59,7 @@ impl FirstGuess for PathFile {
             let message = format!("{} holds {count} of the at least 3 images of a path", stored.file);
             return Err(Error::invalid("path", message));
         }
-        let frozen = frozen(context.states.chain);
+        let frozen = context.states.lattice.is_frozen();
         let held = |image: &Vec<Vector>| -> Result<Spins> {
             let mut m = Spins::from_vectors(image)?.as_slice().to_vec();
             let mut out = ComponentsMut::new(&mut m);

@@ -26,7 +26,6 @@ pub use waypoints::Waypoints;
 use super::Path;
 use crate::error::Result;
 use crate::geometry::Direction;
-use crate::lattice::Chain;
 use crate::registry::family;
 use crate::spins::Spins;
 use crate::state::StateContext;
@@ -46,7 +45,7 @@ family! {
 /// What a first path may need to know.
 #[derive(Clone, Copy, Debug)]
 pub struct GuessContext<'a> {
-    /// The chain and its wall width.
+    /// The lattice and the width of a wall there.
     pub states: StateContext<'a>,
     /// Axis about which opposite spins turn, where the guess names none.
     pub default_axis: Direction,
@@ -56,15 +55,4 @@ pub struct GuessContext<'a> {
 pub trait FirstGuess {
     /// A path of `images` images (at least two) from a to b, states of the same chain; both are kept exactly.
     fn path(&self, a: &Spins, b: &Spins, images: usize, context: &GuessContext) -> Result<Path>;
-}
-
-/// Which sites are frozen.
-fn frozen(chain: &Chain) -> Vec<bool> {
-    let mut frozen = vec![false; chain.sites];
-    for f in &chain.frozen {
-        for i in f.sites.indices(chain.sites, "site").unwrap_or_default() {
-            frozen[i] = true;
-        }
-    }
-    frozen
 }

@@ -8,7 +8,7 @@
 use super::clock::fraction;
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Vector, exp, vector};
-use crate::lattice::Chain;
+use crate::lattice::Lattice;
 use crate::path::Path;
 use crate::units::Angle;
 use rand::{RngExt, SeedableRng};
@@ -31,7 +31,7 @@ pub struct NoiseSpec {
 }
 
 /// The path with noise on all images but the ends; frozen spins stay.
-pub fn add_noise(path: &Path, noise: &NoiseSpec, chain: &Chain) -> Path {
+pub fn add_noise(path: &Path, noise: &NoiseSpec, lattice: &Lattice) -> Path {
     let mut r = rand_chacha::ChaCha8Rng::seed_from_u64(noise.seed);
     let mut gaussian = || {
         let (u, v): (f64, f64) = (r.random_range(f64::MIN_POSITIVE..1.0), r.random_range(0.0..TAU));
@@ -39,7 +39,7 @@ pub fn add_noise(path: &Path, noise: &NoiseSpec, chain: &Chain) -> Path {
     };
     let weights: Vec<Vector> = (0..MODES).map(|_| [0; 3].map(|_| noise.amplitude.0 * gaussian())).collect();
     let n = path.sites();
-    let frozen = super::frozen(chain);
+    let frozen = lattice.is_frozen();
     let field: Vec<Vector> = (0..n)
         .into_par_iter()
         .map(|i| {

@@ -9,7 +9,7 @@
 //! turn about the axis for opposite spins. A half turn is right-handed about the axis. Frozen spins stay.
 
 use super::clock::{fraction, next_axis, ways};
-use super::{FirstGuess, GuessContext, frozen};
+use super::{FirstGuess, GuessContext};
 use crate::error::Result;
 use crate::field::ComponentsMut;
 use crate::geometry::{Direction, Quaternion, Vector, vector};
@@ -109,7 +109,7 @@ fn best_rotation(pairs: &[(Vector, Vector)], axis: Direction) -> (Direction, f64
 
 impl FirstGuess for Rotation {
     fn path(&self, a: &Spins, b: &Spins, images: usize, context: &GuessContext) -> Result<Path> {
-        let frozen = frozen(context.states.chain);
+        let frozen = context.states.lattice.is_frozen();
         let free: Vec<(Vector, Vector)> =
             (0..a.sites()).filter(|i| !frozen[*i]).map(|i| (a.get(i), b.get(i))).collect();
         let (axis, angle) = match self.axis {

@@ -1,7 +1,7 @@
 //! Geodesics through given states, images at equal distances along them; frozen spins stay on the way.
 
 use super::clock::{Way, fraction, ways};
-use super::{FirstGuess, GuessContext, frozen};
+use super::{FirstGuess, GuessContext};
 use crate::error::Result;
 use crate::field::ComponentsMut;
 use crate::geometry::Direction;
@@ -30,7 +30,7 @@ impl Described for Waypoints {
 
 impl FirstGuess for Waypoints {
     fn path(&self, a: &Spins, b: &Spins, images: usize, context: &GuessContext) -> Result<Path> {
-        let frozen = frozen(context.states.chain);
+        let frozen = context.states.lattice.is_frozen();
         let mut stops = vec![a.clone()];
         for (k, state) in self.states.iter().enumerate() {
             let at_stop =

@@ -1,0 +1,34 @@
+//! Strengths of the bonds of one family.
+
+use crate::lattice::{BondFamily, Lattice};
+
+/// What joins each site to its partner a shift on (meV), site by site; 0 where there is no bond.
+#[derive(Clone, Debug)]
+pub struct Couplings {
+    /// The bonds.
+    pub family: BondFamily,
+    /// One strength a site.
+    pub mev: Vec<f64>,
+}
+
+impl Couplings {
+    /// None yet, on the families of a shell.
+    pub fn none(lattice: &Lattice, shell: usize) -> Vec<Couplings> {
+        let families = lattice.shell(shell).into_iter();
+        families.map(|family| Couplings { family, mev: vec![0.0; lattice.sites] }).collect()
+    }
+
+    /// The same strength (meV) on all bonds of a shell.
+    pub fn uniform(lattice: &Lattice, shell: usize, mev: f64) -> Vec<Couplings> {
+        let mut all = Couplings::none(lattice, shell);
+        for Couplings { family, mev: strengths } in &mut all {
+            family.bonds().for_each(|[i, _]| strengths[i] = mev);
+        }
+        all
+    }
+
+    /// Every bond that is not zero: both sites, and its strength (meV).
+    pub fn bonds(&self) -> impl Iterator<Item = ([usize; 2], f64)> + '_ {
+        self.family.bonds().map(|sites| (sites, self.mev[sites[0]])).filter(|(_, mev)| *mev != 0.0)
+    }
+}

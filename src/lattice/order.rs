@@ -1,0 +1,42 @@
+//! In which order sites are eliminated: partners near each other, so that a matrix keeps a narrow band.
+
+use super::Lattice;
+
+impl Lattice {
+    /// Where every site stands in the order of elimination: as they are counted; of a ring folded, 0, N − 1, 1, N − 2, …, so that
+    /// all partners within r sites of each other stand within 2r.
+    pub fn places(&self) -> Vec<usize> {
+        let n = self.sites;
+        let folded = |i: usize| if i < n.div_ceil(2) { 2 * i } else { 2 * (n - 1 - i) + 1 };
+        (0..n).map(|i| if self.is_ring() { folded(i) } else { i }).collect()
+    }
+
+    /// How many of the last sites a matrix in the order of counting keeps as its rim, coupled to all others, where bonds reach
+    /// over so many shells: none of an open chain, those that close a ring, and all of any other lattice.
+    pub fn rim(&self, shells: usize) -> usize {
+        match (self.grid.is_row(), self.grid.periodic[0]) {
+            (true, false) => 0,
+            (true, true) => shells,
+            _ => self.sites,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::lattice::Chain;
+
+    #[test]
+    fn a_folded_ring_keeps_partners_together_and_every_place_has_one_site() {
+        for n in [3, 4, 9, 10] {
+            let ring = Chain::ring(n).resolve().unwrap();
+            let places = ring.places();
+            assert_eq!((places[0], places[n - 1], places[1]), (0, 1, 2));
+            let mut all = places.clone();
+            all.sort_unstable();
+            assert!(all.iter().enumerate().all(|(k, place)| k == *place));
+            assert!(ring.bonds(1).iter().all(|b| places[b.sites[0]].abs_diff(places[b.sites[1]]) <= 2));
+            assert!(Chain::open(n).resolve().unwrap().places().is_sorted());
+        }
+    }
+}
