@@ -5,7 +5,7 @@
 //! ```
 //! A saddle with one negative mode has one eigenvalue with a positive real part, and it is real: det M(σ) changes its sign at
 //! σ = λ₊ alone (σ > 0). Inverse iteration x ← M(σ)⁻¹ B x gives λ ≈ σ − 1/μ, μ the growth of x, and the next shift; the sign of the
-//! determinant, free with each factorisation, keeps it in a bracket. A ring is folded (0, N−1, 1, N−2, …) to make it a band.
+//! determinant, free with each factorisation, keeps it in a bracket. In the lattice's order of elimination the matrix is a band.
 
 use super::Unstable;
 use crate::energy::Hamiltonian;
@@ -19,6 +19,8 @@ const ROUNDS: usize = 200;
 struct Linearised<'a> {
     h: &'a Hamiltonian,
     saddle: &'a State,
+    /// Where each site stands in the band.
+    places: Vec<usize>,
     /// 1/Γ of each site, in units of 1/max Γ.
     slowness: Vec<f64>,
     damping: f64,
@@ -34,7 +36,7 @@ pub fn growth_rate(
 ) -> Option<f64> {
     let scale = gyration.iter().fold(0.0f64, |s, g| s.max(*g));
     let slowness = gyration.iter().map(|g| scale / g).collect();
-    let lin = Linearised { h, saddle, slowness, damping };
+    let lin = Linearised { h, saddle, places: h.lattice().places(), slowness, damping };
     lin.eigenvalue(&unstable.mode, unstable.eigenvalue_mev).map(|rate| scale * rate)
 }
 
@@ -111,18 +113,11 @@ impl Linearised<'_> {
         self.h.sites()
     }
 
-    /// Whether a term joins all pairs of sites, so that the band is all of the matrix.
-    fn joins_all(&self) -> bool {
-        self.h.long_range().is_some()
-    }
-
-    /// Where a site stands in the band.
-    fn place(&self, site: usize) -> usize {
-        let n = self.sites();
-        match self.h.lattice().is_ring() {
-            false => site,
-            true if site < n.div_ceil(2) => 2 * site,
-            true => 2 * (n - 1 - site) + 1,
+    /// All pairs of sites that are coupled, each once.
+    fn pairs(&self) -> Box<dyn Iterator<Item = [usize; 2]> + '_> {
+        match self.h.long_range() {
+            Some(_) => Box::new((0..self.sites()).flat_map(|i| (0..i).map(move |j| [i, j]))),
+            None => Box::new(self.h.constant_blocks().bond.iter().flat_map(|bonds| bonds.family.bonds())),
         }
     }
 
@@ -130,7 +125,7 @@ impl Linearised<'_> {
     fn placed(&self, x: &[f64]) -> Vec<f64> {
         let mut y = vec![0.0; x.len()];
         for i in 0..self.sites() {
-            let p = self.place(i);
+            let p = self.places[i];
             (y[2 * p], y[2 * p + 1]) = (x[2 * i], x[2 * i + 1]);
         }
         y
@@ -138,27 +133,22 @@ impl Linearised<'_> {
 
     /// H, in the order of the band.
     fn hessian(&self) -> General {
-        let (n, reach) = (self.sites(), self.h.reach());
-        let spread = match (self.joins_all(), self.h.lattice().is_ring()) {
-            (true, _) => n - 1,
-            (false, true) => 2 * reach,
-            (false, false) => reach,
-        };
+        let n = self.sites();
+        let spread = self.pairs().map(|[i, j]| self.places[i].abs_diff(self.places[j])).max().unwrap_or(0);
         let mut matrix = General::zeros(2 * n, 2 * spread + 1);
-        for i in 0..n {
-            let p = self.place(i);
-            for j in self.partners(i) {
-                let q = self.place(j);
-                for a in 0..2 {
-                    for b in 0..2 {
-                        let v = self.saddle.hessian.get(2 * i + a, 2 * j + b);
-                        if v != 0.0 {
-                            matrix.add(2 * p + a, 2 * q + b, v);
-                        }
-                    }
+        let mut add = |i: usize, j: usize| {
+            for (a, b) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                let v = self.saddle.hessian.get(2 * i + a, 2 * j + b);
+                if v != 0.0 {
+                    matrix.add(2 * self.places[i] + a, 2 * self.places[j] + b, v);
                 }
             }
-        }
+        };
+        (0..n).for_each(|i| add(i, i));
+        self.pairs().for_each(|[i, j]| {
+            add(i, j);
+            add(j, i);
+        });
         matrix
     }
 
@@ -166,7 +156,7 @@ impl Linearised<'_> {
     fn shifted(&self, hessian: &General, sigma: f64) -> General {
         let mut matrix = hessian.clone();
         for i in 0..self.sites() {
-            let (p, s) = (2 * self.place(i), sigma * self.slowness[i]);
+            let (p, s) = (2 * self.places[i], sigma * self.slowness[i]);
             matrix.add(p, p, s * self.damping);
             matrix.add(p + 1, p + 1, s * self.damping);
             matrix.add(p, p + 1, s);
@@ -175,25 +165,11 @@ impl Linearised<'_> {
         matrix
     }
 
-    /// Sites within reach of a site, itself included; all of them where a term joins all pairs.
-    fn partners(&self, i: usize) -> impl Iterator<Item = usize> {
-        let (n, reach, periodic, all) = (self.sites(), self.h.reach(), self.h.lattice().is_ring(), self.joins_all());
-        let within = move |k: usize| {
-            let shifted = i + k;
-            match periodic {
-                _ if all => Some(k),
-                true => Some((shifted + n - reach) % n),
-                false => shifted.checked_sub(reach).filter(|j| *j < n),
-            }
-        };
-        (0..if all { n } else { 2 * reach + 1 }).filter_map(within)
-    }
-
     /// B x, in the order of the band.
     fn weighted(&self, x: &[f64]) -> Vec<f64> {
         let mut y = vec![0.0; x.len()];
         for i in 0..self.sites() {
-            let (p, s) = (2 * self.place(i), self.slowness[i]);
+            let (p, s) = (2 * self.places[i], self.slowness[i]);
             y[p] = s * (self.damping * x[p] + x[p + 1]);
             y[p + 1] = s * (self.damping * x[p + 1] - x[p]);
         }

@@ -1,12 +1,13 @@
-//! Saddles that the symmetry of the chain makes of one: each is a way out of its own.
+//! Saddles that the symmetry of the lattice makes of one: each is a way out of its own.
 //!
-//! Tried are the mirror image of the chain, the shifts of a ring, and changes of sign of the spins' x, y and z, alone and
+//! Tried are the mirror images of the lattice, the shifts of a ring, and changes of sign of the spins' x, y and z, alone and
 //! together. An operation counts where it leaves the energy, the moments, the frozen sites and both minima as they are and moves
 //! the saddle, rotations about a symmetry axis (and shifts, where they are zero modes) apart: those are in the volume of zero modes.
 
 use crate::energy::Hamiltonian;
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, Vector, rotate, vector};
+use crate::lattice::{Lattice, SiteSymmetry};
 use crate::spins::Spins;
 
 /// Spins of two states that are the same differ by less (rad).
@@ -21,22 +22,21 @@ pub struct Equivalents {
     pub by: String,
 }
 
-/// An operation on a chain of spins: sites mirrored or not, then signs on the components.
-#[derive(Clone, Copy)]
-struct Operation {
-    mirrored: bool,
+/// An operation on the spins of a lattice: sites mirrored or not, then signs on the components.
+struct Operation<'a> {
+    mirror: &'a SiteSymmetry,
     signs: Vector,
 }
 
-impl Operation {
-    fn all() -> impl Iterator<Item = Operation> {
+impl Operation<'_> {
+    fn all(mirrors: &[SiteSymmetry]) -> impl Iterator<Item = Operation<'_>> {
         let signs = |k: u32| [0, 1, 2].map(|c| if k >> c & 1 == 1 { -1.0 } else { 1.0 });
-        (0..16).map(move |k| Operation { mirrored: k & 8 != 0, signs: signs(k & 7) })
+        mirrors.iter().flat_map(move |mirror| (0..8).map(move |k| Operation { mirror, signs: signs(k) }))
     }
 
     fn apply(&self, m: &[f64]) -> Vec<f64> {
         let n = m.len() / 3;
-        let at = |c: usize, i: usize| self.signs[c] * m[c * n + if self.mirrored { n - 1 - i } else { i }];
+        let at = |c: usize, i: usize| self.signs[c] * m[c * n + self.mirror.sites[i]];
         (0..3 * n).map(|k| at(k / n, k % n)).collect()
     }
 
@@ -44,9 +44,10 @@ impl Operation {
         let named = [("x", 0), ("y", 1), ("z", 2)];
         let flipped: Vec<&str> = named.iter().filter(|(_, c)| self.signs[*c] < 0.0).map(|(name, _)| *name).collect();
         let spins = format!("m_{} → −m_{}", flipped.join(""), flipped.join(""));
-        match (self.mirrored, flipped.is_empty()) {
-            (true, true) => "mirrored chain".into(),
-            (true, false) => format!("mirrored chain with {spins}"),
+        let mirrored = &self.mirror.name;
+        match (mirrored.is_empty(), flipped.is_empty()) {
+            (false, true) => mirrored.clone(),
+            (false, false) => format!("{mirrored} with {spins}"),
             _ => spins,
         }
     }
@@ -65,13 +66,14 @@ pub fn equivalent_saddles(
     if axes.len() > 1 {
         return Equivalents { count: 1, by: "not sought: the energy has no axis".into() };
     }
-    let shifts = is_translation_symmetric(h, moments) && minima.iter().all(|m| period(m) == 1);
+    let (ring, mirrors) = (h.lattice(), h.lattice().mirrors());
+    let shifts = is_translation_symmetric(h, moments) && minima.iter().all(|m| period(ring, m) == 1);
     let sample = sample(h.sites());
     let energy_mev = h.energy_mev(&sample);
     let mut kept: Vec<Vec<f64>> = vec![saddle.to_vec()];
-    let off = if shifts_are_free { SAME + 0.6 * largest_step(saddle) } else { SAME };
+    let off = if shifts_are_free { SAME + 0.6 * largest_step(ring, saddle) } else { SAME };
     let mut by = Vec::new();
-    for operation in Operation::all().skip(1) {
+    for operation in Operation::all(&mirrors).skip(1) {
         let still = |m: &[f64]| same(&operation.apply(m), m, &axes, SAME);
         if !still(minima[0])
             || !still(minima[1])
@@ -80,7 +82,7 @@ pub fn equivalent_saddles(
             continue;
         }
         let image = operation.apply(saddle);
-        let known = |k: &Vec<f64>| same(k, &image, &axes, off) || (shifts && is_shifted(k, &image, &axes, off));
+        let known = |k: &Vec<f64>| same(k, &image, &axes, off) || (shifts && is_shifted(ring, k, &image, &axes, off));
         if !kept.iter().any(known) {
             by.push(operation.words());
             kept.push(image);
@@ -88,7 +90,7 @@ pub fn equivalent_saddles(
     }
     let mut count = kept.len();
     if shifts && !shifts_are_free {
-        let places = period(saddle);
+        let places = period(ring, saddle);
         count *= places;
         if places > 1 {
             by.push(format!("{places} shifts of the ring"));
@@ -102,14 +104,15 @@ pub fn equivalent_saddles(
 pub(super) fn is_translation_symmetric(h: &Hamiltonian, moments: &[f64]) -> bool {
     h.lattice().is_ring() && !h.has_frozen() && moments.iter().all(|n| *n == moments[0]) && {
         let m = sample(h.sites());
-        keeps_energy(h, h.energy_mev(&m), &shifted(&m, 1))
+        keeps_energy(h, h.energy_mev(&m), &shifted(h.lattice(), &m, 1))
     }
 }
 
 /// After how many sites a ring's state repeats.
-pub(super) fn period(m: &[f64]) -> usize {
+pub(super) fn period(ring: &Lattice, m: &[f64]) -> usize {
     let n = m.len() / 3;
-    (1..n).filter(|p| n.is_multiple_of(*p)).find(|p| agree(m, m, SAME, |i| (i + p) % n)).unwrap_or(n)
+    let repeats = |p: &usize| agree(m, m, SAME, |i| ring.along_ring(i, *p as isize));
+    (1..n).filter(|p| n.is_multiple_of(*p)).find(repeats).unwrap_or(n)
 }
 
 /// A state without any symmetry: what leaves its energy as it is leaves all energies so.
@@ -141,16 +144,16 @@ fn keeps_energy(h: &Hamiltonian, energy_mev: f64, m: &[f64]) -> bool {
     (energy_mev - h.energy_mev(m)).abs() <= 1e-12 * h.stiffness_mev() * (h.sites() as f64)
 }
 
-fn shifted(m: &[f64], by: usize) -> Vec<f64> {
+fn shifted(ring: &Lattice, m: &[f64], by: usize) -> Vec<f64> {
     let n = m.len() / 3;
-    (0..3 * n).map(|k| m[k / n * n + (k % n + by) % n]).collect()
+    (0..3 * n).map(|k| m[k / n * n + ring.along_ring(k % n, by as isize)]).collect()
 }
 
 /// How much neighbours of a ring differ at most (rad): a state that slides freely may stand half a site beside its image.
-fn largest_step(m: &[f64]) -> f64 {
+fn largest_step(ring: &Lattice, m: &[f64]) -> f64 {
     let c = Components::new(m);
     let n = c.sites();
-    (0..n).map(|i| vector::norm(vector::sub(c.get((i + 1) % n), c.get(i)))).fold(0.0, f64::max)
+    (0..n).map(|i| vector::norm(vector::sub(c.get(ring.along_ring(i, 1)), c.get(i)))).fold(0.0, f64::max)
 }
 
 /// Whether a[place(i)] and b[i] are less than `off` (rad) apart for all i.
@@ -168,15 +171,15 @@ fn same(a: &[f64], b: &[f64], axes: &[Vector], off: f64) -> bool {
 }
 
 /// Whether a shift of a, turned about the axis, is b.
-fn is_shifted(a: &[f64], b: &[f64], axes: &[Vector], off: f64) -> bool {
+fn is_shifted(ring: &Lattice, a: &[f64], b: &[f64], axes: &[Vector], off: f64) -> bool {
     let n = a.len() / 3;
     if axes.is_empty() {
-        return (1..n).any(|k| agree(a, b, off, |i| (i + k) % n));
+        return (1..n).any(|k| agree(a, b, off, |i| ring.along_ring(i, k as isize)));
     }
     // along the axis nothing turns: only where that part agrees is the whole compared
     let along = |m: &[f64], i: usize| vector::dot(Components::new(m).get(i), axes[0]);
-    let fits = |k: usize| (0..n).all(|i| (along(a, (i + k) % n) - along(b, i)).abs() < off);
-    (1..n).any(|k| fits(k) && same(&shifted(a, k), b, axes, off))
+    let fits = |k: usize| (0..n).all(|i| (along(a, ring.along_ring(i, k as isize)) - along(b, i)).abs() < off);
+    (1..n).any(|k| fits(k) && same(&shifted(ring, a, k), b, axes, off))
 }
 
 /// a, turned about the axis to where it is nearest to b.

@@ -14,6 +14,7 @@ use super::unstable::nearest_mode;
 use crate::energy::Hamiltonian;
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Vector, vector};
+use crate::lattice::Lattice;
 use crate::linalg::{eigen_symmetric, slab};
 use crate::saddle::{State, remove};
 use serde::{Deserialize, Serialize};
@@ -100,7 +101,7 @@ fn translation(h: &Hamiltonian, state: &State, moments: &[f64], thermal_mev: f64
     if !h.lattice().is_ring() || h.sites() < 7 || !is_translation_symmetric(h, moments) {
         return None;
     }
-    let mut along = state.basis.coordinates(&derivative(&state.m));
+    let mut along = state.basis.coordinates(&derivative(h.lattice(), &state.m));
     let whole = slab::norm(&along);
     remove(&mut along, &state.zeros);
     let size = slab::norm(&along);
@@ -111,20 +112,20 @@ fn translation(h: &Hamiltonian, state: &State, moments: &[f64], thermal_mev: f64
     let (eigenvalue_mev, mode) = nearest_mode(state, along.clone(), &state.zeros)?;
     let pinning_mev = eigenvalue_mev.abs() * size * size / (2.0 * PI * PI);
     let free = slab::dot(&mode, &along).abs() > IS_TRANSLATION && pinning_mev < PINNING * thermal_mev;
-    let volume = period(&state.m) as f64 * size;
+    let volume = period(h.lattice(), &state.m) as f64 * size;
     free.then_some((ZeroMode { kind: ZeroKind::Translation, modes: vec![mode], volume }, eigenvalue_mev))
 }
 
 /// dm/dx on a ring (3N numbers a site), to sixth order in the distance of two sites.
-fn derivative(m: &[f64]) -> Vec<f64> {
+fn derivative(ring: &Lattice, m: &[f64]) -> Vec<f64> {
     let m = Components::new(m);
     let n = m.sites();
     let mut d = vec![0.0; 3 * n];
     for i in 0..n {
         let mut sum = [0.0; 3];
         for (k, weight) in [(1, 45.0), (2, -9.0), (3, 1.0)] {
-            let difference = vector::sub(m.get((i + k) % n), m.get((i + n - k) % n));
-            sum = vector::add(sum, vector::scale(weight / 60.0, difference));
+            let [ahead, behind] = [k, -k].map(|by| m.get(ring.along_ring(i, by)));
+            sum = vector::add(sum, vector::scale(weight / 60.0, vector::sub(ahead, behind)));
         }
         ComponentsMut::new(&mut d).set(i, sum);
     }
@@ -149,7 +150,7 @@ mod tests {
                 _ => 0.0,
             })
             .collect();
-        assert!((slab::norm(&derivative(&m)) - k * (n as f64).sqrt()).abs() < 1e-8);
+        assert!((slab::norm(&derivative(&Chain::ring(n).resolve().unwrap(), &m)) - k * (n as f64).sqrt()).abs() < 1e-8);
     }
 
     #[test]
