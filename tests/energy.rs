@@ -81,7 +81,8 @@ fn every_entry_parses_into_the_member_of_its_name() {
 fn the_gradient_is_the_slope_of_the_energy_and_the_hessian_the_slope_of_the_gradient() {
     for text in fragments() {
         for (sites, periodic) in [(1, false), (2, false), (8, false), (9, true)] {
-            if sites < 8 && (text.contains("bonds") || text.contains("sites")) {
+            let longer_than_the_chain = text.contains("exchange") && text.contains(", \"");
+            if sites < 8 && (text.contains("bonds") || text.contains("sites") || longer_than_the_chain) {
                 continue;
             }
             let chain = chain(sites, periodic).resolve().unwrap();

@@ -7,6 +7,8 @@
 //! its file and name it in [`TermSpec`].
 
 mod anisotropy;
+#[cfg(test)]
+mod any_lattice;
 mod blocks;
 mod couplings;
 mod cubic_anisotropy;

@@ -5,6 +5,7 @@
 
 use super::grid::Shift;
 use super::{Grid, Lattice};
+use crate::error::{Error, Result};
 use crate::geometry::vector;
 use std::ops::Range;
 
@@ -143,11 +144,7 @@ impl Lattice {
 
     /// The families of one shell.
     pub fn shell(&self, shell: usize) -> Vec<BondFamily> {
-        let shifts = match self.grid.is_row() {
-            true => vec![[shell as isize, 0, 0]],
-            false => self.shifts(shell).pop().unwrap_or_default(),
-        };
-        shifts.into_iter().map(|shift| BondFamily::new(&self.grid, shell, shift)).collect()
+        self.shifts_of(shell).into_iter().map(|shift| BondFamily::new(&self.grid, shell, shift)).collect()
     }
 
     /// The bonds of a shell, as they are counted: family after family, by ascending site. In a row bond i is that of site i.
@@ -157,6 +154,33 @@ impl Lattice {
             bonds.bonds().map(|sites| Bond { family, sites }).collect()
         };
         families.iter().enumerate().flat_map(of).collect()
+    }
+
+    /// Refuses a shell that reaches further than the lattice does, or that wraps onto itself.
+    pub fn admits(&self, shell: usize) -> Result<()> {
+        let (sites, row, Grid { size, periodic }) = (self.sites, self.grid.is_row(), self.grid);
+        let shifts = self.shifts_of(shell);
+        let wraps = |s: &Shift| (0..3).any(|d| periodic[d] && s[d] != 0 && 2 * s[d].unsigned_abs() >= size[d]);
+        let message = match shifts.iter().any(wraps) {
+            true if row => {
+                let most = (sites - 1) / 2;
+                format!("shell {shell} wraps onto itself in a ring of {sites} sites: at most {most} shells fit")
+            }
+            true => format!("shell {shell} wraps onto itself in a lattice of {size:?} cells"),
+            false if row && shell > 1.max(sites - 1) => {
+                format!("shell {shell} reaches further than the chain of {sites} sites is long")
+            }
+            false if shifts.is_empty() => format!("shell {shell} reaches further than the lattice of {size:?} cells"),
+            false => return Ok(()),
+        };
+        Err(Error::invalid("", message))
+    }
+
+    fn shifts_of(&self, shell: usize) -> Vec<Shift> {
+        match self.grid.is_row() {
+            true => vec![[shell as isize, 0, 0]],
+            false => self.shifts(shell).pop().unwrap_or_default(),
+        }
     }
 
     /// The shifts of the shells 1 … `shells`, by distance; in a row the distance is the number of cells.

@@ -192,18 +192,6 @@ impl Chain {
 }
 
 impl Lattice {
-    /// Refuses a shell that reaches further than a chain is long, or that wraps onto itself in a ring.
-    pub fn admits(&self, shell: usize) -> Result<()> {
-        let sites = self.sites;
-        let most = if self.is_ring() { (sites - 1) / 2 } else { sites.saturating_sub(1).max(1) };
-        let message = match self.is_ring() {
-            _ if shell <= most => return Ok(()),
-            true => format!("shell {shell} wraps onto itself in a ring of {sites} sites: at most {most} shells fit"),
-            false => format!("shell {shell} reaches further than the chain of {sites} sites is long"),
-        };
-        Err(Error::invalid("", message))
-    }
-
     fn chosen(&self, selection: &Selection) -> Result<Vec<usize>> {
         selection.sites(self.sites, &self.regions)
     }
