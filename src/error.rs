@@ -44,7 +44,7 @@ pub enum Error {
     /// A computation that cannot go on (says why).
     #[error("{0}")]
     Numerical(String),
-    /// Someone asked it to stop ([`Hamiltonian::obey`](crate::energy::Hamiltonian::obey)); what was found so far is incomplete.
+    /// Someone asked it to stop ([`Control`](crate::control::Control)); what was found so far is incomplete.
     #[error("stopped as asked, before the end")]
     Stopped,
 }

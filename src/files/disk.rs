@@ -1,7 +1,7 @@
 //! The one place that writes files: each appears whole or not at all, and no symbolic link is followed or replaced.
 //!
 //! All files of a result are first written under temporary names in the same folder, flushed to the disk and closed; a full disk
-//! therefore leaves an older result as it was. Only then the new files take their names ([`folder`](super::folder)).
+//! therefore leaves an older result as it was. Only then the new files take their names ([`folder`](crate::output::folder)).
 
 use super::open_file;
 use crate::error::{Error, Result};
