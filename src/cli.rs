@@ -5,6 +5,7 @@ pub mod collect;
 mod jobs;
 pub mod list;
 pub mod plot;
+mod points;
 pub mod progress;
 pub mod rate;
 pub mod relax;
@@ -12,6 +13,8 @@ pub mod run;
 pub mod signals;
 pub mod start;
 pub mod sweep;
+mod threads;
+mod write;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use spinneb::config::rates;

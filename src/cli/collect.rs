@@ -1,6 +1,6 @@
 //! `collect`: the results of a sweep as one table and one figure.
 
-use super::sweep::{checked, folder};
+use super::points::{checked, folder};
 use super::{UNFINISHED, USAGE, note};
 use anyhow::Result;
 use clap::Args;

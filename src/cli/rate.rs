@@ -1,6 +1,8 @@
 //! `rate`: lifetimes of results that are there already.
 
-use super::run::{Earlier, Progress, names, start_threads, write};
+use super::progress::Progress;
+use super::threads::start_threads;
+use super::write::{Earlier, names, write};
 use super::{Rate, UNFINISHED, USAGE, note, report, worse};
 use anyhow::Result;
 use serde_json::json;

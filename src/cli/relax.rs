@@ -1,6 +1,6 @@
 //! `relax`: the ends of a path by themselves, what they relax to and whether that is a minimum.
 
-use super::run::start_threads;
+use super::threads::start_threads;
 use super::{UNFINISHED, note, report, worse};
 use anyhow::Result;
 use clap::Args;

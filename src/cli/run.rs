@@ -2,24 +2,23 @@
 
 pub(super) use super::progress::Progress;
 use super::signals::Signals;
+use super::threads::start_threads;
+use super::write::{Earlier, names, write};
 use super::{Run, UNFINISHED, USAGE, note, report, worse};
-use anyhow::{Context, Result};
+use anyhow::Result;
 use serde_json::{Value, json};
 use spinneb::config::{Loaded, load};
-use spinneb::drive::{self, Outcome};
+use spinneb::drive;
 use spinneb::error::Error;
 use spinneb::files::disk::{self, File};
-use spinneb::output::folder::{self, Destination, Intent, NewResult};
+use spinneb::output::folder::{self, Destination, Intent};
 use spinneb::output::{
-    Group, INPUTS, Kind, StoppedRun, Summary, discard_partial, file_names, is_partial_left, partial_files,
-    render_files, write_partial,
+    StoppedRun, Summary, discard_partial, file_names, is_partial_left, partial_files, write_partial,
 };
 use spinneb::record::{Checkpoint, Lock};
 use std::collections::HashMap;
 use std::io::{self, Write};
-use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
-use std::thread::available_parallelism;
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
@@ -58,32 +57,6 @@ pub fn run(arguments: &Run) -> Result<u8> {
         }
     }
     Ok(code)
-}
-
-/// Most threads a core: beyond, they only wait for each other.
-const MOST_THREADS: usize = 16;
-
-/// Refuses more threads, so many at a time in each of so many processes, than the machine's cores can be of use to.
-pub(super) fn check_threads(jobs: usize, threads: usize) -> Result<()> {
-    let cores = available_parallelism().map_or(1, NonZeroUsize::get);
-    let most = MOST_THREADS * cores;
-    if jobs.saturating_mul(threads) <= most {
-        return Ok(());
-    }
-    let found = if jobs == 1 { format!("{threads}") } else { format!("{threads} for each of {jobs} points at a time") };
-    let words = format!(
-        "found {found}, but this machine has {cores} cores: at most {MOST_THREADS} threads a core, {most} in all, are started; \
-         leave it out for one thread a core"
-    );
-    Err(Error::invalid("--threads", words).into())
-}
-
-/// As many threads as asked for, else one for each core. This one is among them: it does not wait for the others to begin.
-pub(super) fn start_threads(count: Option<NonZeroUsize>) -> Result<()> {
-    let count = count.map_or(0, NonZeroUsize::get);
-    check_threads(1, count)?;
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(count).use_current_thread();
-    pool.build_global().context("the threads cannot be started")
 }
 
 /// Where the results of a config go.
@@ -223,24 +196,6 @@ fn source(loaded: &Loaded) -> Option<String> {
     loaded.source.as_ref().map(|path| path.to_string_lossy().into_owned())
 }
 
-/// Which kinds of files the config asks for.
-fn wanted(loaded: &Loaded) -> impl Fn(&Kind) -> bool {
-    let output = &loaded.config.output;
-    let named = |list: &[String], kind: &Kind| list.iter().any(|name| name == kind.name);
-    move |kind| match kind.group {
-        Group::Always => true,
-        Group::Formats | Group::OnRequest => named(&output.formats, kind),
-        Group::Plots => named(&output.plots, kind),
-    }
-}
-
-/// Names of all files that the config's result may have.
-pub(super) fn names(loaded: &Loaded) -> Vec<String> {
-    let folder = format!("{INPUTS}/");
-    let names = file_names(wanted(loaded)).into_iter().filter(|name| *name != folder);
-    names.chain(loaded.inputs.iter().map(|file| file.name.clone())).collect()
-}
-
 /// The files of the result that are known before the work.
 fn known_files(loaded: &Loaded) -> Vec<File> {
     let config = File { name: "config.json".into(), bytes: loaded.as_run.clone().into_bytes() };
@@ -294,29 +249,6 @@ fn leave_partial(
     let report = outcome.as_ref().map(|outcome| loaded.report(outcome)).transpose()?;
     let files = partial_files(&stopped, report.as_ref())?;
     Ok(write_partial(directory, &files)?)
-}
-
-/// What happens with an earlier result, and the source of the new one.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Earlier<'a> {
-    /// It is kept beside the new one.
-    IsKept(Option<&'a str>),
-    /// The new one takes its place.
-    GivesWay(Option<&'a str>),
-}
-
-/// Writes the files of a result; where an earlier one is kept.
-pub(super) fn write(
-    loaded: &Loaded,
-    outcome: &Outcome,
-    directory: &Path,
-    earlier: Earlier,
-    force: bool,
-) -> spinneb::error::Result<Option<PathBuf>> {
-    let files = render_files(&loaded.report(outcome)?, wanted(loaded))?;
-    let (Earlier::IsKept(source) | Earlier::GivesWay(source)) = earlier;
-    let keep_earlier = matches!(earlier, Earlier::IsKept(_));
-    folder::write_result(directory, &NewResult { files: &files, source, keep_earlier, force })
 }
 
 /// What is said about the result in a folder: its line on standard output, or one of JSON there; the exit code.

@@ -5,16 +5,17 @@
 
 use super::collect::{self, json_line, states};
 use super::jobs::{Ended, run_all};
-use super::run::{check_threads, run_one, start_threads};
+use super::points::{checked, folder};
+use super::run::run_one;
 use super::signals::Signals;
-use super::{Run, UNFINISHED, USAGE, note, report, worse};
+use super::threads::{check_threads, start_threads};
+use super::{Run, UNFINISHED, USAGE, note, worse};
 use anyhow::{Context, Result};
 use clap::Args;
 use rayon::prelude::*;
 use spinneb::config::Loaded;
 use spinneb::config::sweep::Sweep;
 use spinneb::drive::Doubt;
-use spinneb::error::Error;
 use spinneb::output::sweep::{IndexedPoint, PointState, SweepIndex, look};
 use std::io::{self, Write};
 use std::num::NonZeroUsize;
@@ -22,7 +23,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::thread::available_parallelism;
 
-/// Most errors, and most points, that are told one by one.
+/// Most points that are told one by one.
 const TOLD: usize = 20;
 
 /// The arguments of `sweep`.
@@ -119,41 +120,6 @@ pub fn sweep(arguments: &Arguments) -> Result<u8> {
         return Ok(USAGE);
     }
     all(arguments, &index, &dir, &before)
-}
-
-/// Where the results of a sweep go.
-pub(super) fn folder(out: Option<&Path>, sweep: &Sweep) -> PathBuf {
-    out.map_or_else(|| Path::new("results").join(&sweep.name), Path::to_path_buf)
-}
-
-/// What the sweep consists of, with all points checked; nothing if one of them is wrong, which is said. The physics of each is
-/// built too where it is about to run.
-pub(super) fn checked(sweep: &Sweep, build: bool) -> Result<Option<SweepIndex>> {
-    let hash = |point: usize| -> spinneb::error::Result<String> {
-        let loaded = sweep.load_point(point)?;
-        if build {
-            sweep.problem(point, &loaded)?;
-        }
-        Ok(loaded.sha256)
-    };
-    let found: Vec<_> = (0..sweep.len()).into_par_iter().map(hash).collect();
-    let mut hashes = Vec::new();
-    let mut errors: Vec<Error> = Vec::new();
-    for one in found {
-        match one {
-            Ok(hash) => hashes.push(hash),
-            // points that share a value share what is wrong with it
-            Err(error) if errors.iter().any(|e| e.to_string() == error.to_string()) => {}
-            Err(error) => errors.push(error),
-        }
-    }
-    let more = errors.len().saturating_sub(TOLD);
-    let any = !errors.is_empty();
-    errors.into_iter().take(TOLD).for_each(|error| _ = report(&error.into()));
-    if more > 0 {
-        note(&format!("error: and {more} more"));
-    }
-    Ok((!any).then(|| sweep.index(hashes)))
 }
 
 /// One point, as `run` runs a config.

@@ -7,13 +7,13 @@
 
 use super::json::Step;
 use super::strict::Strict;
-use super::text::nearest;
 use crate::energy::TermSpec;
 use crate::optimise::OptimiserSpec;
 use crate::path::guess::GuessSpec;
 use crate::registry::Entry;
 use crate::state::StateSpec;
 use crate::units;
+use crate::words::nearest;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use serde_path_to_error::Segment;

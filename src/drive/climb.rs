@@ -1,8 +1,8 @@
 //! From a band's top to a refined saddle, and away from saddles of higher index.
 
-use super::minimum::{turned, turns};
-use super::stored::recorded;
+use super::recorded::recorded;
 use super::top::Top;
+use super::turns::{turned, turns};
 use crate::band::Band;
 use crate::energy::Evaluator;
 use crate::error::Result;

@@ -8,10 +8,11 @@
 
 use super::Doubt;
 use super::climb::{Found, ZOOMS, zoomed};
-use super::minimum::{Link, Minimum, turned, turns};
+use super::minimum::{Link, Minimum};
+use super::recorded::recorded;
 use super::relaxation::{Goal, Relaxation};
-use super::stored::recorded;
 use super::top::{Top, direction, highest, tops};
+use super::turns::{turned, turns};
 use crate::band::Band;
 use crate::energy::Evaluator;
 use crate::error::Result;

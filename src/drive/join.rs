@@ -4,9 +4,10 @@
 //! A band over many minima relaxes slowly, because its images have to share themselves among them. A stretch between a saddle
 //! and a minimum has neither on the way: it starts as the descent itself and is monotone.
 
-use super::minimum::{Link, turned, turns};
+use super::minimum::Link;
+use super::recorded::recorded;
 use super::relaxation::{Goal, Relaxation};
-use super::stored::recorded;
+use super::turns::{turned, turns};
 use super::{Images, NebSettings, Scales, Silent};
 use crate::band::{Band, Laplacian};
 use crate::energy::Evaluator;

@@ -7,7 +7,7 @@
 
 use super::climb::Found;
 use super::minimum::Link;
-use super::stored::recorded;
+use super::recorded::recorded;
 use super::top::Top;
 use crate::energy::Evaluator;
 use crate::error::Result;

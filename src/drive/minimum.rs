@@ -3,15 +3,13 @@
 use super::Doubt;
 use super::climb::Found;
 use super::ends::relax_to_minimum;
-use super::stored::recorded;
+use super::recorded::recorded;
+use super::turns::{turned, turns};
 use crate::energy::Evaluator;
 use crate::error::Result;
-use crate::geometry::Direction;
 use crate::linalg::slab;
-use crate::path::guess::best_turn;
 use crate::path::largest_angle;
 use crate::saddle::{Spectrum, State, descend};
-use crate::sphere::rotate_sites;
 use crate::spins::Spins;
 use crate::threads::both;
 use serde::{Deserialize, Serialize};
@@ -87,33 +85,6 @@ impl Minimum {
         let turn = turns(h, &other.spins, &self.spins);
         !turn.is_empty() && largest_angle(a, turned(&other.spins, &turn).as_slice()) < SAME
     }
-}
-
-/// Turns about the symmetry axes, one after the other, that bring a state nearest to another. None without symmetry axes.
-pub fn turns(h: Evaluator, from: &Spins, to: &Spins) -> Vec<(Direction, f64)> {
-    let axes = h.symmetry_axes_at(to.as_slice());
-    let axes: Vec<Direction> = axes.iter().filter_map(|axis| Direction::new(*axis).ok()).collect();
-    let mut now = from.clone();
-    let mut turns = Vec::new();
-    for _ in 0..if axes.len() > 1 { 4 } else { 1 } {
-        for axis in &axes {
-            let (angle, _) = best_turn(&now, to, *axis);
-            now = rotated(&now, *axis, angle);
-            turns.push((*axis, angle));
-        }
-    }
-    turns
-}
-
-/// A state after turns.
-pub fn turned(spins: &Spins, turns: &[(Direction, f64)]) -> Spins {
-    turns.iter().fold(spins.clone(), |s, (axis, angle)| if *angle == 0.0 { s } else { rotated(&s, *axis, *angle) })
-}
-
-fn rotated(spins: &Spins, axis: Direction, angle: f64) -> Spins {
-    let mut m = spins.as_slice().to_vec();
-    rotate_sites(&mut m, 0..spins.sites(), axis, angle);
-    Spins::from_unit_components(&m)
 }
 
 /// The direction (3N) in which a saddle falls: the valley that its search followed, or, where that is a mixture of soft modes,

@@ -14,6 +14,7 @@ mod outcome;
 mod places;
 mod problem;
 mod rates;
+mod recorded;
 mod relaxation;
 mod relaxed;
 mod report;
@@ -22,6 +23,7 @@ mod scales;
 mod stop;
 mod stored;
 mod top;
+mod turns;
 mod verdict;
 
 pub use doubt::{Doubt, PathEnd};

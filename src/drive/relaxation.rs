@@ -1,7 +1,8 @@
 //! The loop that relaxes a band: evaluate, judge, move; it counts and says why it stopped.
 
 use super::outcome::HistoryRow;
-use super::stored::{Stored, are_counts, are_finite};
+use super::recorded::Stored;
+use super::stored::{are_counts, are_finite};
 use super::{NebSettings, Observer, Scales, Stop};
 use crate::band::{Band, Laplacian, Sweep, align_rotations};
 use crate::energy::Evaluator;

@@ -5,46 +5,18 @@ use super::climb::Found;
 use super::ends::{Relaxed, WayDown};
 use super::minimum::{Link, Minimum};
 use super::outcome::HistoryRow;
+use super::recorded::Stored;
 use super::top::Top;
 use super::{Scales, Stop};
 use crate::energy::Evaluator;
-use crate::error::Result;
 use crate::path::Path;
 use crate::saddle::{Refined, Spectrum, State};
 use crate::spins::{Spins, are_unit};
-use serde::Serialize;
-use serde::de::DeserializeOwned;
 
 /// Most of anything that is counted: sums of such counts do not overflow.
 const MOST: usize = (u32::MAX >> 1) as usize;
 /// Largest size of a number that is computed with.
 const LARGEST: f64 = 1e100;
-
-/// A result that can be stored.
-pub trait Stored: Serialize + DeserializeOwned {
-    /// It as it was when it was stored; nothing where it cannot be a result for this energy.
-    fn restored(self, h: Evaluator) -> Option<Self>;
-}
-
-/// The result of `compute`, or what an interrupted run had as its result of this kind for this input.
-pub fn recorded<T: Stored>(
-    h: Evaluator,
-    kind: &str,
-    input: &[&[f64]],
-    compute: impl FnOnce() -> Result<T>,
-) -> Result<T> {
-    let call = h.call(kind, |print| input.iter().fold(print, |print, row| print.row(row)));
-    call.obey(|| None::<T>)?;
-    if let Some(found) = call.answer(|found: T| found.restored(h)) {
-        return Ok(found);
-    }
-    let found = compute();
-    // what a stopped computation returns is no result
-    call.obey(|| None::<T>)?;
-    let found = found?;
-    call.finish(|| &found);
-    Ok(found)
-}
 
 /// Numbers that are some, and whose squares are.
 pub fn are_finite(numbers: &[f64]) -> bool {

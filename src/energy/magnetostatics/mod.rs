@@ -12,6 +12,7 @@ mod exponentials;
 mod kernel;
 mod newell;
 mod pairs;
+mod section;
 mod series;
 mod term;
 
@@ -19,6 +20,7 @@ pub use convolution::Convolution;
 pub use exponentials::Exponentials;
 pub use kernel::{Kernel, Shape};
 pub use newell::{cell_tensor, pair_tensor};
-pub use pairs::{Pairs, Section};
+pub use pairs::Pairs;
+pub use section::Section;
 pub use series::{Multipoles, Series, hurwitz_zeta};
 pub use term::{MU_0_MU_B_SQUARED, Magnetostatics, Row};

@@ -7,15 +7,13 @@
 //! f is Newell's (see [`super::newell`]); for equal cells G = N/V. Distant pairs have the multipole series of both sections.
 //! The sums are direct, O(N²), and the Hessian is dense.
 
+use super::Section;
 use super::kernel::with_images;
 use super::newell::pair_tensor;
 use super::series::{Multipoles, Series};
 use crate::linalg::slab;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
-
-/// Width and thickness of a cell, in units of the spacing.
-pub type Section = [f64; 2];
 
 /// The diagonal tensors of all pairs of sites, in the row's own axes.
 #[derive(Clone, Debug)]

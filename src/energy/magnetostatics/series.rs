@@ -9,7 +9,7 @@
 //! Expanding the integrand in powers of u gives Σ_k c_k/n^(2k+3), convergent where n is greater than a cell's diagonal; c₀ is
 //! the dipole. The images of a ring of N cells add up to Hurwitz zeta functions, Σ_p (n + pN)^(−s) = N^(−s) ζ(s, n/N).
 
-use super::pairs::Section;
+use super::section::Section;
 
 /// Terms of the series.
 const TERMS: usize = 14;

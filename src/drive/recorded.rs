@@ -1,0 +1,32 @@
+//! Computations whose results are recorded, or taken from the record of an interrupted run.
+
+use crate::energy::Evaluator;
+use crate::error::Result;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+/// A result that can be stored.
+pub trait Stored: Serialize + DeserializeOwned {
+    /// It as it was when it was stored; nothing where it cannot be a result for this energy.
+    fn restored(self, h: Evaluator) -> Option<Self>;
+}
+
+/// The result of `compute`, or what an interrupted run had as its result of this kind for this input.
+pub fn recorded<T: Stored>(
+    h: Evaluator,
+    kind: &str,
+    input: &[&[f64]],
+    compute: impl FnOnce() -> Result<T>,
+) -> Result<T> {
+    let call = h.call(kind, |print| input.iter().fold(print, |print, row| print.row(row)));
+    call.obey(|| None::<T>)?;
+    if let Some(found) = call.answer(|found: T| found.restored(h)) {
+        return Ok(found);
+    }
+    let found = compute();
+    // what a stopped computation returns is no result
+    call.obey(|| None::<T>)?;
+    let found = found?;
+    call.finish(|| &found);
+    Ok(found)
+}
