@@ -5,8 +5,8 @@ use super::Band;
 use crate::energy::{Assembly, TangentBasis};
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::Vector;
+use crate::linalg::orthonormal;
 use crate::linalg::{Banded, Ldl, eigenvalues_symmetric, slab, solve_dense};
-use crate::saddle::orthonormal;
 use std::mem::take;
 
 /// μ never falls below this part of c.
@@ -303,7 +303,7 @@ mod tests {
                     columns.extend(h.symmetry_axes().iter().map(|axis| basis.rotation(*axis)));
                     let columns = orthonormal(columns, 1e-9);
                     assert_eq!(room.columns, columns.len());
-                    crate::saddle::remove(&mut image, &columns);
+                    crate::linalg::remove(&mut image, &columns);
                     assert!(slab::max_abs(&image) < 1e-11, "{sites} {k}: {}", slab::max_abs(&image));
                     for (j, c) in columns.iter().enumerate() {
                         let asked = if j == 0 { band.local_shift(k) } else { 0.0 };

@@ -17,9 +17,8 @@
 
 use super::angle::angle;
 use super::direction::Direction;
-use super::lerp::lerp;
 use super::midpoint::{midpoint, quarter_turn};
-use super::vector::{Vector, add, cross, norm, scale, sub, unit_or};
+use super::vector::{Vector, add, cross, lerp, norm, scale, sub, unit_or};
 
 /// The recurrence starts afresh after this many points: so it stays within 5e-14 of the formula.
 const RESTART: usize = 16;

@@ -11,18 +11,7 @@
 use super::arc::Arc;
 use super::direction::Direction;
 use super::midpoint::is_short;
-use super::vector::{Vector, add, scale, unit_or};
-
-/// (1−t) a + t b: not a unit vector. It is here to compare with; a spin must not be moved this way.
-///
-/// ```
-/// use spinneb::geometry::lerp;
-/// assert_eq!(lerp([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], 0.5), [0.5, 0.5, 0.0]); // of length 0.71
-/// ```
-#[inline]
-pub fn lerp(a: Vector, b: Vector, t: f64) -> Vector {
-    add(scale(1.0 - t, a), scale(t, b))
-}
+use super::vector::{Vector, add, lerp, scale, unit_or};
 
 /// The normalised lerp for t from 0 to 1: exact at the ends, a unit vector everywhere, on the same arc as slerp.
 /// Between opposite ends it rests at a up to the middle, where it is the middle of the slerp about `axis`, then at b.

@@ -29,13 +29,13 @@ pub use direction::Direction;
 pub(crate) use exp_log::exp_short;
 pub use exp_log::{exp, log, log_about};
 pub use filter::low_pass;
-pub use lerp::{lerp, nlerp};
+pub use lerp::nlerp;
 pub use midpoint::midpoint;
 pub use quaternion::Quaternion;
 pub use rotate::rotate;
 pub use slerp::{rotation_axis, slerp};
 pub use transport::{transport, transport_about};
-pub use vector::Vector;
+pub use vector::{Vector, lerp};
 pub use velocity::{angular_velocity, unevenness};
 pub use waypoints::Waypoints;
 

@@ -71,6 +71,17 @@ pub fn with_length_of(a: Vector, model: Vector) -> Vector {
     if found > 0.0 && wanted.is_finite() { scale((wanted / found).sqrt(), a) } else { a }
 }
 
+/// (1−t) a + t b: not a unit vector. It is here to compare with; a spin must not be moved this way.
+///
+/// ```
+/// use spinneb::geometry::lerp;
+/// assert_eq!(lerp([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], 0.5), [0.5, 0.5, 0.0]); // of length 0.71
+/// ```
+#[inline]
+pub fn lerp(a: Vector, b: Vector, t: f64) -> Vector {
+    add(scale(1.0 - t, a), scale(t, b))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

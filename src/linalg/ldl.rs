@@ -3,6 +3,7 @@
 //!
 //! Open chains of short reach are eliminated from both ends at once (see `twisted`).
 
+use super::pivot::guarded;
 use super::{Banded, TailLdl, slab, twisted};
 use multiversion::multiversion;
 
@@ -191,12 +192,6 @@ fn eliminate_corner(corner: &mut [f64], b: usize, floor: f64) {
             corner[r * b + j] = l;
         }
     }
-}
-
-/// A pivot, or what stands for it if it is smaller than the floor.
-#[inline(always)]
-pub(super) fn guarded(d: f64, floor: f64) -> f64 {
-    if d.abs() < floor { if d < 0.0 { -floor } else { floor } } else { d }
 }
 
 /// Forward and backward substitution of any shape.

@@ -8,7 +8,7 @@
 //! as the iteration goes on, and nothing below the last eigenvalue can be missed: the lowest bracket that holds more eigenvalues
 //! than were found in it comes next. Parlett, "The Symmetric Eigenvalue Problem", SIAM 1998, doi:10.1137/1.9781611971163, §§3.3, 4.6.
 
-use super::lowest::{APART, Mode, rayleigh_ritz};
+use super::ritz::{APART, Mode, rayleigh_ritz};
 use super::{Banded, Ldl, slab};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

@@ -11,6 +11,7 @@
 //! the 2 × 2 pivots D_i are those of A's (Sylvester). The recursion is that of Chandrasekaran et al., SIAM J. Matrix Anal.
 //! Appl. 27, 341 (2005), doi:10.1137/S0895479802405884, for sequentially semiseparable matrices.
 
+use super::pivot::guarded;
 use super::{Banded, eigen_symmetric};
 use multiversion::multiversion;
 
@@ -233,8 +234,7 @@ fn advance(p: &mut [f64], phi: &[f64], v: &[f64], w: &[f64], c: &[f64], pc: &mut
 /// The inverse and the eigenvalues of [d₀ d₁; d₁ d₂], eigenvalues of less than `floor` replaced by ±floor.
 fn guarded_inverse(d: [f64; 3], floor: f64) -> ([f64; 3], [f64; 2]) {
     let (values, vectors) = eigen_symmetric(&[d[0], d[1], d[1], d[2]], 2);
-    let guarded = |x: f64| if x.abs() < floor { if x < 0.0 { -floor } else { floor } } else { x };
-    let eigen = [guarded(values[0]), guarded(values[1])];
+    let eigen = [guarded(values[0], floor), guarded(values[1], floor)];
     if eigen == [values[0], values[1]] {
         let determinant = d[0] * d[2] - d[1] * d[1];
         let product = eigen[0] * eigen[1];

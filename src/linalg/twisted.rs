@@ -10,7 +10,7 @@
 //! Matrix Anal. Appl. 13, 707 (1992), doi:10.1137/0613045, §2, has the factorisation under this name.
 
 use super::Banded;
-use super::ldl::guarded;
+use super::pivot::guarded;
 use wide::f64x2;
 
 /// The two ends.

@@ -17,8 +17,9 @@
 //! ```
 
 use super::Unstable;
+use crate::linalg::remove;
 use crate::linalg::{Banded, Ldl};
-use crate::saddle::{Border, Pin, pin, remove};
+use crate::saddle::{Border, Pin, pin};
 
 /// A Hessian whose zero modes are pinned, factorised; without its descending mode, if it has one.
 #[derive(Debug)]
@@ -136,7 +137,7 @@ mod tests {
         let n = 6;
         let mut r = rand_chacha::ChaCha8Rng::seed_from_u64(8);
         let random: Vec<Vec<f64>> = (0..n).map(|_| (0..n).map(|_| r.random_range(-1.0..1.0)).collect()).collect();
-        let axes = crate::saddle::orthonormal(random, 1e-3);
+        let axes = crate::linalg::orthonormal(random, 1e-3);
         for lambda in [1.0, 1e-3, 1e-9, 0.0] {
             let value = |k: usize| if k == 0 { -lambda } else { (k + 1) as f64 };
             let mut a = Banded::zeros(n, n, 0);

@@ -2,8 +2,9 @@
 
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::vector;
+use crate::linalg::remove;
 use crate::linalg::{lowest_modes, slab};
-use crate::saddle::{State, remove};
+use crate::saddle::State;
 
 /// Most factorisations of a search.
 const ROUNDS: usize = 30;

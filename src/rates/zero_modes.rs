@@ -15,8 +15,9 @@ use crate::energy::Hamiltonian;
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Vector, vector};
 use crate::lattice::Lattice;
+use crate::linalg::remove;
 use crate::linalg::{eigen_symmetric, slab};
-use crate::saddle::{State, remove};
+use crate::saddle::State;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 

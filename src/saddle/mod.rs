@@ -21,6 +21,5 @@ pub use pinned::Pinned;
 pub use point::Point;
 pub use polish::polish;
 pub use spectrum::Spectrum;
-pub(crate) use state::remove;
-pub use state::{State, orthonormal};
+pub use state::State;
 pub use valley::{Refined, Verdict, refine};

@@ -11,7 +11,8 @@
 //! ```
 
 use super::border::{Border, pin};
-use super::state::{State, remove};
+use super::state::State;
+use crate::linalg::remove;
 use crate::linalg::{Banded, Ldl, slab};
 use std::mem::take;
 

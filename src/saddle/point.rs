@@ -2,8 +2,8 @@
 
 use crate::energy::{Evaluator, TangentBasis, assemble_into};
 use crate::field::{Components, TILE};
+use crate::linalg::orthonormal;
 use crate::linalg::{Banded, slab};
-use crate::saddle::orthonormal;
 use crate::sphere::move_points;
 use serde::{Deserialize, Serialize};
 

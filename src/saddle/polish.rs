@@ -3,8 +3,9 @@
 //! A valley bends, so that a step along a soft mode first costs torque across it.
 
 use super::border::pin;
-use super::state::{State, remove};
+use super::state::State;
 use crate::energy::Evaluator;
+use crate::linalg::remove;
 use crate::sphere::rotation_of;
 
 /// Most steps.

@@ -11,9 +11,10 @@
 
 use super::pinned::Pinned;
 use super::polish::polish;
-use super::state::{State, orthonormal, remove};
+use super::state::State;
 use crate::energy::Evaluator;
 use crate::linalg::{Mode, lowest_modes, slab};
+use crate::linalg::{orthonormal, remove};
 use crate::path::{distance, largest_angle};
 use crate::sphere::rotation_of;
 use serde::{Deserialize, Serialize};

@@ -1,7 +1,7 @@
 //! The elimination of the own columns of a front, dense: LDLᵀ by panels, and A ← A − L D Lᵀ on all that is left.
 
 use super::panels::{self, WIDTH};
-use crate::linalg::ldl::guarded;
+use crate::linalg::pivot::guarded;
 use multiversion::multiversion;
 
 /// Panels that are eliminated before the rest is brought up to date.

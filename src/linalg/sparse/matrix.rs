@@ -1,7 +1,7 @@
 //! Sparse symmetric matrices by 2 × 2 blocks of sites.
 
 use super::Symbolic;
-use super::ldl::Memory;
+use super::memory::Memory;
 use crate::linalg::slab;
 use std::sync::Arc;
 

@@ -15,6 +15,7 @@ mod front;
 mod graph;
 mod ldl;
 mod matrix;
+mod memory;
 mod panels;
 #[cfg(test)]
 mod samples;

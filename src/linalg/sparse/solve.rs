@@ -1,7 +1,7 @@
 //! Substitution with sparse factors: up the tree with L, down with Lᵀ.
 
 use super::Symbolic;
-use super::ldl::Memory;
+use super::memory::Memory;
 use super::panels::{self, WIDTH};
 
 /// Solves L D Lᵀ X = B in place for `columns` interleaved right-hand sides, four, two or one in a pass.
