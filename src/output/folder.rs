@@ -12,8 +12,8 @@
 //! and what lies about is known to be the program's, from the manifest of `summary.json` or from `.spinneb.writing`.
 
 use super::disk::{self, File, Kind, MARK, io_error, refused};
+use super::head::Head;
 use super::manifest::{Manifest, Owned, There, hash};
-use super::summary::Head;
 use crate::error::{Error, Result};
 use crate::record::Lock;
 use serde::Deserialize;

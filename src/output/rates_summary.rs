@@ -3,7 +3,7 @@
 //! A rate too small for a double is 0 and its lifetime null; `log10_lifetime_s` is there for all. Where the barrier is below k_BT
 //! all of them are null, and `reason` says so. `known_within_factor`: a rate or time may be larger or smaller by that.
 
-use super::summary::Number;
+use super::number::Number;
 use crate::rates::{Prefactor, Rates, Refusal, Row, SaddleRate, Theory, TransitionRate, TransitionRow, Way, ZeroKind};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

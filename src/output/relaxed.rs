@@ -1,8 +1,8 @@
 //! Relaxed states: `relax.json`, and the spins as files that a config's `file` states read.
 
 use super::disk::File;
+use super::number::Number;
 use super::spin_files::{mesh, positions};
-use super::summary::Number;
 use crate::drive::RelaxedState;
 use crate::energy::Hamiltonian;
 use crate::error::{Error, Result};

@@ -1,8 +1,10 @@
 //! A result read back in full from its files, bit for bit, to be written again with more in it.
 
 use super::columns::{Columns, WAY_OUT};
-use super::stored_run::{bytes, history, shown, text};
-use super::summary::{End, Minimum, Number, Rejected, Saddle, State, Summary};
+use super::number::Number;
+use super::read::{bytes, shown, text};
+use super::stored_run::history;
+use super::summary::{End, Minimum, Rejected, Saddle, State, Summary};
 use crate::drive::{
     Barrier, EndPoint, ImageTable, IntermediateMinimum, Outcome, ProfilePoint, RejectedPath, SaddlePoint,
 };

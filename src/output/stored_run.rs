@@ -3,10 +3,11 @@
 //! `summary.json` and one of `path.csv` and `path.npz` must be there. Without `profile.csv` the curve joins the images; without
 //! `history.csv`, or a file of spins, some figures cannot be drawn, and `notes` say so. A file that is there must be whole.
 
-use super::columns::{Columns, WAY_OUT};
+use super::columns::Columns;
 use super::disk::{self, MARK};
 use super::folder::stored_result;
 use super::plot_data::above_first;
+use super::read::{bytes, shown, text};
 use super::summary::{Saddle, Summary};
 use super::{EnergyPath, Lifetimes, Places, PlotData};
 use crate::drive::{Barrier, HistoryRow};
@@ -217,18 +218,3 @@ fn agree(file: &str, found: usize, images: usize) -> Result<()> {
 }
 
 const RERUN: &str = "`spinneb run` with --force on the result's config.json writes them anew";
-
-pub(super) fn shown(dir: &Path, name: &str) -> String {
-    dir.join(name).display().to_string()
-}
-
-/// A file's text; nothing where there is no such file.
-pub(super) fn text(dir: &Path, name: &str) -> Result<Option<String>> {
-    let Some(bytes) = bytes(dir, name)? else { return Ok(None) };
-    let no_text = |_| Error::invalid(shown(dir, name), format!("is no text: {WAY_OUT}"));
-    String::from_utf8(bytes).map(Some).map_err(no_text)
-}
-
-pub(super) fn bytes(dir: &Path, name: &str) -> Result<Option<Vec<u8>>> {
-    disk::read_if_there(&dir.join(name))
-}

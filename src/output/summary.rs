@@ -6,12 +6,14 @@
 
 use super::columns::WAY_OUT;
 use super::disk::MARK;
+use super::head::Head;
+use super::number::Number;
 use super::rates_summary::{self, RateEntry, TransitionEntry};
-use super::stored_run::{shown, text};
+use super::read::{shown, text};
 use super::{Certainty, Format, RunReport};
 use crate::drive::{Barrier, EndPoint, IntermediateMinimum, Outcome, RejectedPath, SaddlePoint, StopCode, Work};
 use crate::error::{Error, Result};
-use serde::{Deserialize, Serialize, Serializer, ser::Error as _};
+use serde::{Deserialize, Serialize};
 use std::path::Path;
 
 /// J in a meV: e/1000, e in C.
@@ -37,20 +39,6 @@ impl Format for SummaryJson {
             .map_err(|e| Error::Numerical(format!("{MARK}: {}: {e}", track.path())))?;
         bytes.push(b'\n');
         Ok(bytes)
-    }
-}
-
-/// A number that JSON can hold.
-#[derive(Clone, Copy, Debug, Deserialize)]
-pub struct Number(pub f64);
-
-impl Serialize for Number {
-    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
-        if self.0.is_finite() {
-            serializer.serialize_f64(self.0)
-        } else {
-            Err(S::Error::custom(format!("{} is not a finite number", self.0)))
-        }
     }
 }
 
@@ -89,26 +77,6 @@ pub struct Summary {
     pub(super) transition_rates: Option<Vec<TransitionEntry>>,
     pub(super) path: Band,
     pub(super) work: Work,
-}
-
-/// Which result it is, and what it is worth: what a summary of any version says.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Head {
-    /// The version that wrote it.
-    pub version: String,
-    /// The hash of its config.
-    pub config_sha256: String,
-    /// The band met its tolerance.
-    pub converged: bool,
-    /// Ends and saddles are proven.
-    pub certified: bool,
-}
-
-impl Head {
-    /// Converged and certified.
-    pub fn is_proven(&self) -> bool {
-        self.converged && self.certified
-    }
 }
 
 /// An energy from the initial state and from the final one.

@@ -4,7 +4,8 @@ use super::SweepIndex;
 use crate::drive::Barrier;
 use crate::error::Result;
 use crate::output::folder::stored_result;
-use crate::output::summary::{Head, Saddle, Summary};
+use crate::output::head::Head;
+use crate::output::summary::{Saddle, Summary};
 use crate::rates::Way;
 use std::path::Path;
 

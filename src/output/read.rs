@@ -1,0 +1,22 @@
+//! Files of a result, read back.
+
+use super::columns::WAY_OUT;
+use super::disk;
+use crate::error::{Error, Result};
+use std::path::Path;
+
+/// A file of a result, as it is named to the user.
+pub(super) fn shown(dir: &Path, name: &str) -> String {
+    dir.join(name).display().to_string()
+}
+
+/// A file's text; nothing where there is no such file.
+pub(super) fn text(dir: &Path, name: &str) -> Result<Option<String>> {
+    let Some(bytes) = bytes(dir, name)? else { return Ok(None) };
+    let no_text = |_| Error::invalid(shown(dir, name), format!("is no text: {WAY_OUT}"));
+    String::from_utf8(bytes).map(Some).map_err(no_text)
+}
+
+pub(super) fn bytes(dir: &Path, name: &str) -> Result<Option<Vec<u8>>> {
+    disk::read_if_there(&dir.join(name))
+}
