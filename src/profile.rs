@@ -81,22 +81,6 @@ impl<T: Copy> Profile<T> {
         }
     }
 
-    /// The value of number k of `count`; nothing where a list has none.
-    pub fn at(&self, k: usize, count: usize) -> Option<T>
-    where
-        T: Into<f64> + From<f64>,
-    {
-        match self {
-            Profile::Same(value) => Some(*value),
-            Profile::List(list) => list.get(k).copied(),
-            Profile::Ramp { from, to, shape } => {
-                let (a, b): (f64, f64) = ((*from).into(), (*to).into());
-                Some(T::from(a + (b - a) * shape.at(place(k, count))))
-            }
-            Profile::Random(random) => random.value(k, |value| Ok(value.into())).ok().map(T::from),
-        }
-    }
-
     /// The numbers for `count` sites or bonds (`what`), each value made a number by `convert`, which is told of which of them.
     pub fn values(&self, count: usize, what: &str, convert: impl Fn(T, usize) -> Result<f64>) -> Result<Vec<f64>> {
         match self {

@@ -13,7 +13,7 @@ use super::spec::{Medium, TermBuilder};
 use crate::error::Result;
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, Vector, vector};
-use crate::lattice::{Lattice, Segment, Selection, at, moved};
+use crate::lattice::{Lattice, Segment, Selection, at};
 use crate::profile::Profile;
 use crate::registry::Described;
 use crate::units::BondEnergy;
@@ -78,17 +78,18 @@ impl Dmi {
 #[multiversion(targets("x86_64+avx2"))]
 fn add_run(
     (d, [ex, ey, ez]): (&[f64], Vector),
-    (sites, step): (Range<usize>, isize),
+    (first, step): (usize, isize),
     m: Components,
     gx: &mut [f64],
     gy: &mut [f64],
     gz: &mut [f64],
     density: &mut [f64],
 ) {
+    // all of one length to the compiler too, or it keeps the last of each run for a slower loop
     let n = gx.len();
-    let (ahead, behind) = (moved(&sites, step), moved(&sites, -step));
-    let (dp, dm) = (&d[sites.clone()][..n], &d[behind.clone()][..n]);
-    let (here, next, previous) = (m.range(sites), m.range(ahead), m.range(behind));
+    let (ahead, behind) = (at(first, step), at(first, -step));
+    let [here, next, previous] = [first, ahead, behind].map(|k| m.range(k..k + n));
+    let (dp, dm) = (&d[first..][..n], &d[behind..][..n]);
     let (gy, gz, density) = (&mut gy[..n], &mut gz[..n], &mut density[..n]);
     for i in 0..n {
         let (px, py, pz) = (dp[i] * next.x[i], dp[i] * next.y[i], dp[i] * next.z[i]);
@@ -114,10 +115,10 @@ impl EnergyTerm for Dmi {
         let first = range.start;
         for Couplings { family, mev: d } in &self.families {
             for segment in family.segments(range.clone()) {
-                let (sites, run) = (segment.sites.clone(), moved(&segment.sites, -(first as isize)));
-                if let Some(n) = segment.even() {
+                let (sites, run) = (segment.sites.clone(), segment.sites.start - first..segment.sites.end - first);
+                if let Some(step) = segment.even() {
                     let (gx, gy, gz) = (&mut g.x[run.clone()], &mut g.y[run.clone()], &mut g.z[run.clone()]);
-                    add_run((d, self.direction), (sites, n), m, gx, gy, gz, &mut density[run]);
+                    add_run((d, self.direction), (sites.start, step), m, gx, gy, gz, &mut density[run]);
                     continue;
                 }
                 for i in sites {

@@ -15,7 +15,7 @@ use super::spec::{Medium, TermBuilder};
 use crate::error::{Error, Result};
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Vector, vector};
-use crate::lattice::{Lattice, Segment, Selection, at, moved};
+use crate::lattice::{Lattice, Segment, Selection, at};
 use crate::profile::Profile;
 use crate::registry::Described;
 use crate::units::{Energy, ExchangeStiffness, SurfaceEnergy};
@@ -101,11 +101,13 @@ pub struct Exchange {
 
 /// One component's share of one family, on a run of sites whose partners are as far ahead as behind.
 #[multiversion(targets("x86_64+avx2"))]
-fn add_run(sites: Range<usize>, n: isize, j: &[f64], x: &[f64], g: &mut [f64], density: &mut [f64]) {
-    let (ahead, behind) = (moved(&sites, n), moved(&sites, -n));
-    let (jp, jm, density) = (&j[sites.clone()], &j[behind.clone()], &mut density[..g.len()]);
-    let (here, next, previous) = (&x[sites], &x[ahead], &x[behind]);
-    for k in 0..g.len() {
+fn add_run(first: usize, step: isize, j: &[f64], x: &[f64], g: &mut [f64], density: &mut [f64]) {
+    // all of one length to the compiler too, or it keeps the last of each run for a slower loop
+    let n = g.len();
+    let (ahead, behind) = (at(first, step), at(first, -step));
+    let (here, next, previous) = (&x[first..][..n], &x[ahead..][..n], &x[behind..][..n]);
+    let (jp, jm, density) = (&j[first..][..n], &j[behind..][..n], &mut density[..n]);
+    for k in 0..n {
         let up = here[k] - 1f64.copysign(jp[k]) * next[k];
         let down = here[k] - 1f64.copysign(jm[k]) * previous[k];
         density[k] += 0.5 * jp[k].abs() * up * up;
@@ -155,11 +157,11 @@ impl EnergyTerm for Exchange {
         let first = range.start;
         for Couplings { family, mev: j } in &self.families {
             for segment in family.segments(range.clone()) {
-                let (sites, run) = (segment.sites.clone(), moved(&segment.sites, -(first as isize)));
-                if let Some(n) = segment.even() {
-                    add_run(sites.clone(), n, j, m.x, &mut g.x[run.clone()], &mut density[run.clone()]);
-                    add_run(sites.clone(), n, j, m.y, &mut g.y[run.clone()], &mut density[run.clone()]);
-                    add_run(sites, n, j, m.z, &mut g.z[run.clone()], &mut density[run]);
+                let (sites, run) = (segment.sites.clone(), segment.sites.start - first..segment.sites.end - first);
+                if let Some(step) = segment.even() {
+                    add_run(sites.start, step, j, m.x, &mut g.x[run.clone()], &mut density[run.clone()]);
+                    add_run(sites.start, step, j, m.y, &mut g.y[run.clone()], &mut density[run.clone()]);
+                    add_run(sites.start, step, j, m.z, &mut g.z[run.clone()], &mut density[run]);
                     continue;
                 }
                 for i in sites {

@@ -55,12 +55,6 @@ pub fn at(i: usize, offset: isize) -> usize {
     (i as isize + offset) as usize
 }
 
-/// A row of sites moved by an offset.
-#[inline(always)]
-pub fn moved(row: &Range<usize>, offset: isize) -> Range<usize> {
-    at(row.start, offset)..at(row.end, offset)
-}
-
 impl BondFamily {
     /// The bonds of a shift in a box.
     pub fn new(grid: &Grid, shell: usize, shift: Shift) -> BondFamily {

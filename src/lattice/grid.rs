@@ -36,6 +36,11 @@ impl Grid {
         [i % x, i / x % y, i / x / y]
     }
 
+    /// Whether it is an odd number of steps from the first cell to cell i.
+    pub fn is_odd(&self, i: usize) -> bool {
+        self.cell(i).iter().sum::<usize>() % 2 == 1
+    }
+
     /// The cell a shift on from cell i, if there is one.
     pub fn shifted(&self, i: usize, shift: Shift) -> Option<usize> {
         let cell = self.cell(i);

@@ -17,7 +17,7 @@ mod selection;
 mod spec;
 mod symmetry;
 
-pub use bonds::{Bond, BondFamily, Segment, at, moved};
+pub use bonds::{Bond, BondFamily, Segment, at};
 pub use chain::{Chain, MAX_SITES};
 pub use grid::{Grid, Shift};
 pub use selection::Selection;

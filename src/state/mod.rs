@@ -1,6 +1,6 @@
 //! Spin states as written in a config: `{"domain_wall": {"center": 39.5}}`.
 //!
-//! Every state may carry `"staggered": true`: site i is then multiplied by (−1)^i, for antiferromagnets. One file a state.
+//! Every state may carry `"staggered": true`: every other site is then reversed, for antiferromagnets. One file a state.
 
 mod domain_wall;
 mod file;
@@ -106,7 +106,7 @@ impl StateSpec {
         let member = self.member();
         let mut vectors = member.vectors(context)?;
         if member.staggered() {
-            for v in vectors.iter_mut().skip(1).step_by(2) {
+            for (_, v) in vectors.iter_mut().enumerate().filter(|(i, _)| context.lattice.grid.is_odd(*i)) {
                 *v = vector::scale(-1.0, *v);
             }
         }
