@@ -7,7 +7,7 @@ use spinneb::energy::magnetostatics::{Convolution, Kernel, Shape};
 use spinneb::energy::{EnergyTerm, Hamiltonian, Medium, TangentBasis, TermSpec, assemble, assemble_shifted};
 use spinneb::geometry::Direction;
 use spinneb::lattice::Chain;
-use spinneb::linalg::Banded;
+use spinneb::linalg::Matrix;
 use spinneb::spins::Spins;
 use spinneb::units::{Length, Magnetisation};
 use std::time::{Duration, Instant};
@@ -51,7 +51,7 @@ fn gradients() {
             let _ = std::hint::black_box(assemble(&all, m.as_slice(), &g, &basis).factor());
         });
         let rough = seconds(|| {
-            let mut matrix = Banded::default();
+            let mut matrix = Matrix::default();
             assemble_shifted(&all, m.as_slice(), &g, &basis, 0.0, &mut matrix);
             let _ = std::hint::black_box(matrix.factor());
         });

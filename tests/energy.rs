@@ -6,7 +6,7 @@ use spinneb::energy::{EnergyTerm, Hamiltonian, Medium, TangentBasis, TermSpec, a
 use spinneb::field::{Components, ComponentsMut, project};
 use spinneb::geometry::{Direction, exp, rotate, tangent_basis, vector};
 use spinneb::lattice::{Chain, Frozen, Lattice, Selection};
-use spinneb::linalg::Banded;
+use spinneb::linalg::Matrix;
 use spinneb::spins::Spins;
 use spinneb::units::{Length, Moment};
 
@@ -293,7 +293,7 @@ fn the_hessian_of_a_long_ranged_chain_is_its_product_dense_or_as_exponentials() 
 
 /// A⁻¹b, the number of negative pivots and ln|det A| by a sparse LDLᵀ that is not ours, a port of QDLDL (Stellato et al., Math.
 /// Program. Comput. 12, 637 (2020), doi:10.1007/s12532-020-00179-2).
-fn by_qdldl(matrix: &Banded, b: &[f64]) -> (Vec<f64>, usize, f64) {
+fn by_qdldl(matrix: &Matrix, b: &[f64]) -> (Vec<f64>, usize, f64) {
     let n = b.len();
     let (mut starts, mut rows, mut entries) = (vec![0usize], Vec::new(), Vec::new());
     for j in 0..n {

@@ -9,52 +9,60 @@
 
 use super::Band;
 use crate::energy::Hamiltonian;
-use crate::linalg::{Banded, Ldl, eigenvalues_symmetric, slab};
+use crate::linalg::{Banded, Dense, Factors, Layout, Matrix, SparseMatrix, eigenvalues_symmetric, slab};
 use rayon::prelude::*;
 
 /// The factorised operator, one for all images.
 #[derive(Debug)]
 pub struct Laplacian {
-    factors: Ldl,
+    factors: Factors,
     sites: usize,
+    /// Unknowns a site, all alike: two where the matrix is kept by blocks of two.
+    each: usize,
 }
 
 impl Laplacian {
     /// For a Hamiltonian with the stiffness scale `c` (meV).
     pub fn new(h: &Hamiltonian, c: f64) -> Laplacian {
         let blocks = h.constant_blocks();
-        let (sites, rim) = (h.sites(), h.lattice().rim(h.reach()));
-        let mut m = Banded::zeros(sites - rim, h.reach(), rim);
+        let sites = h.sites();
+        let (mut m, each) = match h.layout() {
+            Layout::Band { span, places } => (Matrix::Band(Banded::zeros(sites, *span), places.clone()), 1),
+            Layout::Sparse(plan) => (Matrix::Sparse(SparseMatrix::zeros(plan.clone())), 2),
+            Layout::Dense => (Matrix::Dense(Dense::zeros(sites)), 1),
+        };
+        let mut add = |i: usize, j: usize, v: f64| (0..each).for_each(|a| m.add(each * i + a, each * j + a, v));
         let spread = blocks.sites().map(spread).fold(0.0, f64::max);
-        m.shift(c.max(spread));
+        (0..sites).for_each(|i| add(i, i, c.max(spread)));
         for bonds in &blocks.bond {
             for [i, next] in bonds.family.bonds() {
                 let j = -bonds.mean(i);
                 if j != 0.0 && !h.is_frozen(i) && !h.is_frozen(next) {
-                    m.add(next, i, -j);
+                    add(next, i, -j);
                 }
                 if j != 0.0 {
-                    m.add(i, i, j.abs());
-                    m.add(next, next, j.abs());
+                    add(i, i, j.abs());
+                    add(next, next, j.abs());
                 }
             }
         }
-        Laplacian { factors: m.factor(), sites }
+        Laplacian { factors: m.factor(), sites, each }
     }
 
     /// M⁻¹ v for a slab of 3N numbers.
     pub fn solve(&self, v: &[f64], out: &mut [f64]) {
-        let n = self.sites;
-        let mut x = vec![0.0; 3 * n];
+        let (n, columns) = (self.sites, if self.each == 1 { 3 } else { 2 });
+        let numbers = self.each * columns;
+        let mut x = vec![0.0; numbers * n];
         for i in 0..n {
             for c in 0..3 {
-                x[3 * i + c] = v[c * n + i];
+                x[numbers * i + c] = v[c * n + i];
             }
         }
-        self.factors.solve(&mut x, 3);
+        self.factors.solve(&mut x, columns);
         for i in 0..n {
             for c in 0..3 {
-                out[c * n + i] = x[3 * i + c];
+                out[c * n + i] = x[numbers * i + c];
             }
         }
     }

@@ -5,8 +5,7 @@ use super::Band;
 use crate::energy::{Assembly, TangentBasis};
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::Vector;
-use crate::linalg::orthonormal;
-use crate::linalg::{Banded, Ldl, eigenvalues_symmetric, slab, solve_dense};
+use crate::linalg::{Factors, Matrix, eigenvalues_symmetric, orthonormal, slab, solve_dense};
 use std::mem::take;
 
 /// μ never falls below this part of c.
@@ -22,7 +21,7 @@ const LEAST: f64 = 1e-6;
 #[derive(Debug, Default)]
 pub struct Linearised {
     basis: TangentBasis,
-    factors: Ldl,
+    factors: Factors,
     /// Number of columns of C.
     columns: usize,
     /// C, orthonormal columns side by side, τ first.
@@ -73,7 +72,7 @@ impl Linearised {
         self.factors.negatives() + positive <= self.columns
     }
 
-    fn assembly<'a>(&self, band: &'a Band, k: usize, matrix: &mut Banded) -> Assembly<'a> {
+    fn assembly<'a>(&self, band: &'a Band, k: usize, matrix: &mut Matrix) -> Assembly<'a> {
         let shift = self.sigma + self.shift;
         Assembly::begin(band.hamiltonian(), band.path().image(k), band.gradient(k), shift, false, matrix)
     }
@@ -143,13 +142,13 @@ impl Linearised {
     }
 
     /// The factors of A, A⁻¹ C, which is C at first, and CᵀA⁻¹C.
-    fn factor(&mut self, band: &Band, matrix: Banded) {
+    fn factor(&mut self, band: &Band, matrix: Matrix) {
         if self.tries > 1 {
             self.solved.clone_from(&self.border);
         }
         let size = band.hamiltonian().stiffness_mev() + self.sigma + self.shift;
         let k = self.columns;
-        self.factors = Ldl::solving_sized(matrix, size, &mut self.solved, k);
+        self.factors = Factors::solving_sized(matrix, size, &mut self.solved, k);
         self.schur.clear();
         match k {
             1 => self.schur.push(slab::dot(&self.border, &self.solved)),
@@ -292,7 +291,7 @@ mod tests {
                     tried += usize::from(done.factorisations > 1);
                     let (m, g) = (band.path().image(k), band.gradient(k));
                     let basis = TangentBasis::at(m);
-                    let (mut a, mut image) = (Banded::default(), vec![0.0; 2 * sites]);
+                    let (mut a, mut image) = (Matrix::default(), vec![0.0; 2 * sites]);
                     assemble_shifted(&h, m, g, &basis, room.sigma + done.shift, &mut a);
                     let t = basis.coordinates(&y);
                     a.multiply(&t, &mut image);

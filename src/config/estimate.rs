@@ -13,7 +13,7 @@
 use super::{Loaded, expected_images};
 use crate::drive::{Images, Problem, Scales};
 use crate::energy::{TangentBasis, assemble_shifted};
-use crate::linalg::Banded;
+use crate::linalg::Matrix;
 use crate::path::guess::moving_sites;
 use std::time::Instant;
 
@@ -75,7 +75,7 @@ fn gradient_seconds(problem: &Problem, scales: &Scales) -> f64 {
     let (h, m) = (&problem.hamiltonian, problem.initial.as_slice());
     let mut g = vec![0.0; m.len()];
     let basis = TangentBasis::at(m);
-    let mut matrix = Banded::default();
+    let mut matrix = Matrix::default();
     let (begin, mut shortest) = (Instant::now(), f64::INFINITY);
     for _ in 0..MOST {
         let start = Instant::now();

@@ -7,7 +7,7 @@ use crate::band::Band;
 use crate::energy::Evaluator;
 use crate::error::Result;
 use crate::field::project;
-use crate::linalg::{Banded, lowest_modes, slab};
+use crate::linalg::{Matrix, lowest_modes, slab};
 use crate::path::{Path, largest_angle};
 use crate::saddle::{Refined, Spectrum, Verdict, follow_modes, refine};
 use crate::sphere::{move_points, rotation_of};
@@ -40,7 +40,7 @@ impl Found {
         found.sharpen(h, c);
         if found.refined.index > 1 {
             // a mode within the rounding error has no sign to count
-            found.refined.index = Spectrum::negatives(h, &found.refined.state, &mut Banded::default());
+            found.refined.index = Spectrum::negatives(h, &found.refined.state, &mut Matrix::default());
         }
         found
     }

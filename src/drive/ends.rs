@@ -5,7 +5,7 @@ use crate::energy::Evaluator;
 use crate::error::{Error, Result};
 use crate::field::Components;
 use crate::geometry::{Vector, vector};
-use crate::linalg::{Banded, Ldl, slab};
+use crate::linalg::{Factors, Matrix, slab};
 use crate::path::largest_angle;
 use crate::saddle::{Point, Spectrum, State, descend, polish};
 use crate::sphere::rotation_of;
@@ -56,7 +56,7 @@ pub fn relax_to_minimum(h: Evaluator, start: &Spins, tolerance_mev: f64) -> Resu
     let mut p = Point::at(h, start.as_slice().to_vec());
     let mut left = None;
     let mut steps = 0;
-    let mut memory = Banded::default();
+    let mut memory = Matrix::default();
     loop {
         p = stationary(h, p, tolerance_mev, &mut steps, &mut memory)?;
         let Some((below, way)) = way_down(h, &p, &mut memory) else { break };
@@ -79,7 +79,7 @@ pub fn relax_to_minimum(h: Evaluator, start: &Spins, tolerance_mev: f64) -> Resu
 
 /// Newton's method down to a stationary state, minimum or not. Beside a saddle that the forces do not lead away from, its steps
 /// along soft modes are short, and it ends before.
-fn stationary(h: Evaluator, mut p: Point, tolerance_mev: f64, steps: &mut usize, memory: &mut Banded) -> Result<Point> {
+fn stationary(h: Evaluator, mut p: Point, tolerance_mev: f64, steps: &mut usize, memory: &mut Matrix) -> Result<Point> {
     let mut shift = 0.0;
     let mut stalled = 0;
     let most = *steps + STEPS;
@@ -112,7 +112,7 @@ fn stationary(h: Evaluator, mut p: Point, tolerance_mev: f64, steps: &mut usize,
 /// One accepted step: (H + shift) v = F, capped, with a larger shift as long as the energy would rise. The shift to go on with
 /// comes down while H stays indefinite, to the size of its lowest eigenvalue: near a saddle the falling mode then grows from step
 /// to step by a part that does not depend on how soft it is.
-fn newton_step(h: Evaluator, p: &Point, shift: &mut f64, memory: &mut Banded) -> Option<Point> {
+fn newton_step(h: Evaluator, p: &Point, shift: &mut f64, memory: &mut Matrix) -> Option<Point> {
     let scale = h.stiffness_mev();
     let slack = 1e-13 * (p.energy_mev.abs() + scale);
     let [first, least, small] = SHIFTS.map(|part| part * scale);
@@ -121,7 +121,7 @@ fn newton_step(h: Evaluator, p: &Point, shift: &mut f64, memory: &mut Banded) ->
         let mut matrix = take(memory);
         p.write_hessian(h, trial + 1e-12 * scale, &mut matrix);
         let mut x = p.downhill();
-        let factors = Ldl::solving(matrix, &mut x, 1);
+        let factors = Factors::solving(matrix, &mut x, 1);
         let positive = factors.negatives() == 0;
         *memory = factors.into_memory();
         if positive {
@@ -147,7 +147,7 @@ fn newton_step(h: Evaluator, p: &Point, shift: &mut f64, memory: &mut Banded) ->
 }
 
 /// From a state with a negative direction, stationary or nearly so: the minimum below it; nothing if there is no such direction.
-fn way_down(h: Evaluator, p: &Point, memory: &mut Banded) -> Option<(Point, WayDown)> {
+fn way_down(h: Evaluator, p: &Point, memory: &mut Matrix) -> Option<(Point, WayDown)> {
     if Spectrum::negatives(h, p, memory) == 0 {
         return None;
     }

@@ -9,14 +9,14 @@
 use super::hessian::TangentBasis;
 use super::{Hamiltonian, Magnetostatics};
 use crate::geometry::{Vector, vector};
-use crate::linalg::{Banded, Decays, Tail};
+use crate::linalg::{Decays, Matrix, Tail};
 use std::sync::Arc;
 
 /// r of every site: two rows of three; zero where a site is frozen.
 type Rows = Vec<[Vector; 2]>;
 
 /// Adds what reaches further than the blocks.
-pub(super) fn add(h: &Hamiltonian, long: &Magnetostatics, basis: &TangentBasis, precise: bool, matrix: &mut Banded) {
+pub(super) fn add(h: &Hamiltonian, long: &Magnetostatics, basis: &TangentBasis, precise: bool, matrix: &mut Matrix) {
     let rows = rows(h, long, basis);
     let Some(sum) = long.exponentials(precise) else { return add_pairs(long, &rows, matrix) };
     for n in 1..=sum.shells {
@@ -30,7 +30,7 @@ pub(super) fn add(h: &Hamiltonian, long: &Magnetostatics, basis: &TangentBasis, 
 }
 
 /// All pairs but those of neighbours that have a block.
-fn add_pairs(long: &Magnetostatics, rows: &Rows, matrix: &mut Banded) {
+fn add_pairs(long: &Magnetostatics, rows: &Rows, matrix: &mut Matrix) {
     for i in 0..rows.len() {
         for j in i + 1..rows.len() {
             add_pair(i, j, long.pair(i, j), rows, matrix);
@@ -39,12 +39,9 @@ fn add_pairs(long: &Magnetostatics, rows: &Rows, matrix: &mut Banded) {
 }
 
 #[inline]
-fn add_pair(i: usize, j: usize, k: [f64; 3], rows: &Rows, matrix: &mut Banded) {
-    for (a, p) in rows[i].iter().enumerate() {
-        for (b, q) in rows[j].iter().enumerate() {
-            matrix.add(2 * j + b, 2 * i + a, p[0] * k[0] * q[0] + p[1] * k[1] * q[1] + p[2] * k[2] * q[2]);
-        }
-    }
+fn add_pair(i: usize, j: usize, k: [f64; 3], rows: &Rows, matrix: &mut Matrix) {
+    let entry = |p: &Vector, q: &Vector| p[0] * k[0] * q[0] + p[1] * k[1] * q[1] + p[2] * k[2] * q[2];
+    matrix.add_block(j, i, rows[j].map(|q| rows[i].map(|p| entry(&p, &q))));
 }
 
 fn rows(h: &Hamiltonian, long: &Magnetostatics, basis: &TangentBasis) -> Rows {

@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::field::{Components, ComponentsMut, TILE, project_row, tiles};
 use crate::geometry::{Direction, Vector, vector};
 use crate::lattice::Lattice;
-use crate::linalg::slab;
+use crate::linalg::{Layout, slab};
 use crate::spins::Spins;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -28,6 +28,7 @@ pub struct Hamiltonian {
     /// The term that joins all pairs of sites.
     long: Option<usize>,
     blocks: Blocks,
+    layout: Layout,
     reach: usize,
     stiffness: f64,
     axes: Vec<Vector>,
@@ -50,6 +51,7 @@ impl Hamiltonian {
             frozen,
             axes: symmetry_axes(&terms, sites),
             blocks: constant_blocks(lattice, &terms, reach),
+            layout: lattice.layout(reach),
             terms,
             long,
             reach,
@@ -79,6 +81,11 @@ impl Hamiltonian {
     /// furthest partner with a block is.
     pub fn reach(&self) -> usize {
         self.reach
+    }
+
+    /// How a matrix of its bonds is kept, a long-ranged term apart.
+    pub fn layout(&self) -> &Layout {
+        &self.layout
     }
 
     /// Whether site `i` never moves.

@@ -1,18 +1,19 @@
-//! The Riemannian Hessian in orthonormal tangent coordinates, as a banded matrix.
+//! The Riemannian Hessian in orthonormal tangent coordinates.
 //!
 //! ```text
 //! H = Uᵀ A U − diag(m_i·g_i) ⊗ 1₂        A = ∂²E/∂m∂m, g = ∂E/∂m, U the 3N × 2N matrix of tangent bases
 //! ```
 //! (Absil, Mahony, Trumpf, LNCS 8085, 361 (2013), doi:10.1007/978-3-642-40020-9_39.) Unknown 2i + a is the component of site i
-//! along its basis vector a; shells 1 … r of a chain give the half-bandwidth 2r + 1, and the last r sites of a ring are the rim,
-//! see [`Lattice::rim`](crate::lattice::Lattice::rim). What a long-ranged term adds is in [`far`].
+//! along its basis vector a. A row of sites whose bonds reach over r shells has a band, of half-bandwidth 2r + 1 if it is open and
+//! 4r + 1 if it is closed and folded; other lattices have blocks of coupled sites, see
+//! [`Lattice::layout`](crate::lattice::Lattice::layout). What a long-ranged term adds is in [`far`].
 
 use super::blocks::{Blocks, Bonds, multiply};
 use super::hamiltonian::LONG;
 use super::{Hamiltonian, far};
 use crate::field::{Components, ComponentsMut, tiles};
 use crate::geometry::{Vector, tangent_basis, vector};
-use crate::linalg::Banded;
+use crate::linalg::{Banded, Layout, Matrix};
 use multiversion::multiversion;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -235,24 +236,24 @@ fn write_component(t: &[f64], e: &[f64], f: &[f64], v: &mut [f64]) {
 }
 
 /// The Riemannian Hessian at `m`, where the Euclidean gradient is `g`. A frozen site has a stiff diagonal and no couplings.
-pub fn assemble(h: &Hamiltonian, m: &[f64], g: &[f64], basis: &TangentBasis) -> Banded {
-    let mut matrix = Banded::default();
+pub fn assemble(h: &Hamiltonian, m: &[f64], g: &[f64], basis: &TangentBasis) -> Matrix {
+    let mut matrix = Matrix::default();
     assemble_into(h, m, g, basis, 0.0, &mut matrix);
     matrix
 }
 
 /// [`assemble`] of H + shift·1 into the memory of `matrix`.
-pub fn assemble_into(h: &Hamiltonian, m: &[f64], g: &[f64], basis: &TangentBasis, shift: f64, matrix: &mut Banded) {
+pub fn assemble_into(h: &Hamiltonian, m: &[f64], g: &[f64], basis: &TangentBasis, shift: f64, matrix: &mut Matrix) {
     fill(h, m, g, basis, shift, true, matrix);
 }
 
 /// [`assemble_into`], quicker: what a long-ranged term does to distant sites is there to six digits only, enough
 /// to steer.
-pub fn assemble_shifted(h: &Hamiltonian, m: &[f64], g: &[f64], basis: &TangentBasis, shift: f64, matrix: &mut Banded) {
+pub fn assemble_shifted(h: &Hamiltonian, m: &[f64], g: &[f64], basis: &TangentBasis, shift: f64, matrix: &mut Matrix) {
     fill(h, m, g, basis, shift, false, matrix);
 }
 
-fn fill(h: &Hamiltonian, m: &[f64], g: &[f64], basis: &TangentBasis, shift: f64, precise: bool, matrix: &mut Banded) {
+fn fill(h: &Hamiltonian, m: &[f64], g: &[f64], basis: &TangentBasis, shift: f64, precise: bool, matrix: &mut Matrix) {
     let assembly = Assembly::begin(h, m, g, shift, precise, matrix);
     assembly.write_all(basis, matrix);
     assembly.finish(basis, matrix);
@@ -268,7 +269,7 @@ pub struct Assembly<'a> {
     own: Option<Blocks>,
     shift: f64,
     precise: bool,
-    /// So many sites have all their later partners after them in the band.
+    /// So many sites have the partners of their own bonds so many sites on as the shell tells, in a row.
     plain: usize,
 }
 
@@ -280,31 +281,38 @@ impl<'a> Assembly<'a> {
         g: &'a [f64],
         shift: f64,
         precise: bool,
-        matrix: &mut Banded,
+        matrix: &mut Matrix,
     ) -> Assembly<'a> {
         let dense = h.long_range().is_some_and(|long| long.exponentials(precise).is_none());
-        let rim = if dense { h.sites() } else { h.lattice().rim(h.reach()) };
-        let width = if rim == h.sites() { 1 } else { 2 * h.reach() + 1 };
-        let plain = if h.has_frozen() { 0 } else { (h.sites() - rim).saturating_sub(h.reach()) };
-        matrix.reset(2 * (h.sites() - rim), width, 2 * rim, 2 * plain);
+        let layout = if dense { &Layout::Dense } else { h.layout() };
+        let plain = match layout {
+            Layout::Band { .. } if !h.has_frozen() => h.sites().saturating_sub(h.reach()),
+            _ => 0,
+        };
+        matrix.reset(layout, h.sites(), plain);
         let own = h.varying_blocks(Components::new(m));
         Assembly { h, m: Components::new(m), g: Components::new(g), own, shift, precise, plain }
     }
 
     /// Writes a row of sites, with the basis there and as many sites on as the bonds reach.
-    pub fn write_rows(&self, basis: &TangentBasis, row: Range<usize>, matrix: &mut Banded) {
+    pub fn write_rows(&self, basis: &TangentBasis, row: Range<usize>, matrix: &mut Matrix) {
         let row = row.start..row.end.min(self.plain);
-        if !row.is_empty() {
-            self.parts(basis).write_plain(row.clone(), matrix.columns_of(row));
+        if let (Matrix::Band(band, places), false) = (matrix, row.is_empty()) {
+            match places.moved() {
+                None => self.parts(basis).write_plain(row.clone(), band.columns_of(row)),
+                Some(places) => self.parts(basis).add_placed(row, places, band),
+            }
         }
     }
 
-    /// Writes all rows of sites; of long chains side by side.
-    fn write_all(&self, basis: &TangentBasis, matrix: &mut Banded) {
-        if self.h.sites() < LONG {
-            return self.write_rows(basis, 0..self.h.sites(), matrix);
-        }
-        let columns = matrix.columns_of(0..self.plain);
+    /// Writes all rows of sites; of long open chains side by side.
+    fn write_all(&self, basis: &TangentBasis, matrix: &mut Matrix) {
+        let columns = match matrix {
+            Matrix::Band(band, places) if self.h.sites() >= LONG && places.moved().is_none() => {
+                band.columns_of(0..self.plain)
+            }
+            _ => return self.write_rows(basis, 0..self.h.sites(), matrix),
+        };
         let size = columns.len() / self.plain.max(1);
         let parts = self.parts(basis);
         columns.par_chunks_mut((size * PART).max(1)).enumerate().for_each(|(k, columns)| {
@@ -314,7 +322,7 @@ impl<'a> Assembly<'a> {
     }
 
     /// Adds all that [`write_rows`](Self::write_rows) has not written, whatever rows it was given.
-    pub fn finish(&self, basis: &TangentBasis, matrix: &mut Banded) {
+    pub fn finish(&self, basis: &TangentBasis, matrix: &mut Matrix) {
         self.parts(basis).add_rest(self.plain, matrix);
         if let Some(long) = self.h.long_range() {
             far::add(self.h, long, basis, self.precise, matrix);
@@ -434,8 +442,31 @@ impl Parts<'_> {
         }
     }
 
+    /// Adds what [`write_plain`](Self::write_plain) writes to a band in which the sites stand elsewhere.
+    fn add_placed(&self, sites: Range<usize>, places: &[usize], band: &mut Banded) {
+        let mut entries = [[0.0; ROW]; 4];
+        for first in sites.clone().step_by(ROW) {
+            let here = first..sites.end.min(first + ROW);
+            diagonals(self, here.clone(), &mut entries);
+            let [ee, fe, ff, _] = &entries;
+            for (i, place) in places[here.clone()].iter().enumerate() {
+                band.add(2 * place, 2 * place, ee[i]);
+                band.add(2 * place + 1, 2 * place, fe[i]);
+                band.add(2 * place + 1, 2 * place + 1, ff[i]);
+            }
+            for (k, bonds) in self.blocks.bond.iter().enumerate() {
+                couplings(self, bonds, k + 1, here.clone(), &mut entries);
+                let [ee, ef, fe, ff] = &entries;
+                let pairs = places[here.clone()].iter().zip(&places[here.start + k + 1..]);
+                for (i, (place, partner)) in pairs.enumerate() {
+                    band.add_block(*partner, *place, [[ee[i], fe[i]], [ef[i], ff[i]]]);
+                }
+            }
+        }
+    }
+
     /// Adds the sites from `first` on and the bonds that start there, wherever their partners are.
-    fn add_rest(&self, first: usize, matrix: &mut Banded) {
+    fn add_rest(&self, first: usize, matrix: &mut Matrix) {
         let (sites, h) = (first..self.h.sites(), self.h);
         for i in sites.clone() {
             let (ee, fe, ff) = match h.is_frozen(i) {
@@ -449,10 +480,7 @@ impl Parts<'_> {
         for bonds in &self.blocks.bond {
             let free = bonds.family.bonds_of(sites.clone()).filter(|[i, j]| !h.is_frozen(*i) && !h.is_frozen(*j));
             for [i, j] in free {
-                for (b, row) in self.coupling(bonds, i, j).iter().enumerate() {
-                    matrix.add(2 * j + b, 2 * i, row[0]);
-                    matrix.add(2 * j + b, 2 * i + 1, row[1]);
-                }
+                matrix.add_block(j, i, self.coupling(bonds, i, j));
             }
         }
     }

@@ -1,6 +1,7 @@
 //! In which order sites are eliminated: partners near each other, so that a matrix keeps a narrow band.
 
 use super::Lattice;
+use crate::linalg::{Graph, Layout, Places, Symbolic};
 
 impl Lattice {
     /// Where every site stands in the order of elimination: as they are counted; of a ring folded, 0, N − 1, 1, N − 2, …, so that
@@ -11,14 +12,17 @@ impl Lattice {
         (0..n).map(|i| if self.is_ring() { folded(i) } else { i }).collect()
     }
 
-    /// How many of the last sites a matrix in the order of counting keeps as its rim, coupled to all others, where bonds reach
-    /// over so many shells: none of an open chain, those that close a ring, and all of any other lattice.
-    pub fn rim(&self, shells: usize) -> usize {
-        match (self.grid.is_row(), self.grid.periodic[0]) {
-            (true, false) => 0,
-            (true, true) => shells,
-            _ => self.sites,
+    /// How a matrix is kept whose bonds reach over so many shells: a band where the lattice is a row, blocks of coupled sites in
+    /// any other.
+    pub fn layout(&self, shells: usize) -> Layout {
+        if self.grid.is_row() {
+            let span = if self.is_ring() { 2 * shells } else { shells };
+            return Layout::Band { span, places: Places::new(self.places()) };
         }
+        let families = self.families(shells);
+        let bonds = families.iter().flat_map(|family| family.bonds()).map(|[i, j]| (i, j));
+        let positions: Vec<_> = (0..self.sites).map(|i| self.position(i)).collect();
+        Layout::Sparse(Symbolic::of(Graph::new(self.sites, bonds), &positions).into())
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::ritz::{APART, Mode, combination, rayleigh_ritz};
 use super::slices::sliced;
-use super::{Banded, Ldl, eigen_symmetric, slab};
+use super::{Factors, Matrix, eigen_symmetric, slab};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -20,25 +20,25 @@ const MOST: usize = 160;
 /// matrix has a tail, block Lanczos on (A + s·1)⁻¹ with full orthogonalisation: blocks of a few vectors, so that degenerate modes
 /// are all found, until the wanted vectors are eigenvectors (Golub, Underwood, Mathematical Software III, 361 (1977),
 /// doi:10.1016/B978-0-12-587260-7.50018-2). The inertia tells whether one was missed; then the blocks become larger.
-pub fn lowest_modes(matrix: &Banded, count: usize, known: &[Vec<f64>]) -> Vec<Mode> {
+pub fn lowest_modes(matrix: &Matrix, count: usize, known: &[Vec<f64>]) -> Vec<Mode> {
     soft_modes(matrix, count, known, f64::INFINITY)
 }
 
 /// The modes among the `count` lowest that are below a limit, but one at least; as [`lowest_modes`], without the time that the
 /// modes above the limit take, which on long chains are close together.
-pub fn soft_modes(matrix: &Banded, count: usize, known: &[Vec<f64>], below: f64) -> Vec<Mode> {
+pub fn soft_modes(matrix: &Matrix, count: usize, known: &[Vec<f64>], below: f64) -> Vec<Mode> {
     let n = matrix.order();
     let room = n.saturating_sub(known.len());
     let count = count.min(room);
     if count == 0 {
         return Vec::new();
     }
-    let found = if matrix.tail.is_none() { sliced(matrix, count, known, below) } else { None };
+    let found = if !matches!(matrix, Matrix::Tail(_)) { sliced(matrix, count, known, below) } else { None };
     found.unwrap_or_else(|| lanczos(matrix, count, known, below))
 }
 
 /// Some of the `count` lowest modes, at least one, by block Lanczos.
-fn lanczos(matrix: &Banded, count: usize, known: &[Vec<f64>], below: f64) -> Vec<Mode> {
+fn lanczos(matrix: &Matrix, count: usize, known: &[Vec<f64>], below: f64) -> Vec<Mode> {
     let room = matrix.order() - known.len();
     let scale = matrix.norm1().max(1e-280);
     let shift = shift_below(matrix, scale);
@@ -58,7 +58,7 @@ fn lanczos(matrix: &Banded, count: usize, known: &[Vec<f64>], below: f64) -> Vec
 }
 
 /// Whether no eigenvalue below the last of these modes was left out.
-fn none_is_missed(matrix: &Banded, modes: &[Mode], known: &[Vec<f64>], scale: f64) -> bool {
+fn none_is_missed(matrix: &Matrix, modes: &[Mode], known: &[Vec<f64>], scale: f64) -> bool {
     let Some(last) = modes.last().filter(|_| modes.len() > 1) else { return true };
     let below = last.value - APART * scale;
     let mut shifted = matrix.clone();
@@ -69,7 +69,7 @@ fn none_is_missed(matrix: &Banded, modes: &[Mode], known: &[Vec<f64>], scale: f6
 
 /// The space that the inverse spans from a random block, and the inverse within it.
 struct Krylov<'a> {
-    factors: Ldl,
+    factors: Factors,
     known: &'a [Vec<f64>],
     block: usize,
     random: ChaCha8Rng,
@@ -82,7 +82,7 @@ struct Krylov<'a> {
 }
 
 impl<'a> Krylov<'a> {
-    fn new(factors: Ldl, known: &'a [Vec<f64>], block: usize) -> Krylov<'a> {
+    fn new(factors: Factors, known: &'a [Vec<f64>], block: usize) -> Krylov<'a> {
         let random = ChaCha8Rng::seed_from_u64(0x5eed);
         Krylov { factors, known, block, random, basis: Vec::new(), images: Vec::new(), products: Vec::new() }
     }
@@ -180,7 +180,7 @@ impl<'a> Krylov<'a> {
 
 /// s with A + s·1 positive definite and its lowest eigenvalue small beside that of A: halves an interval by the inertia.
 /// The nearer the lowest eigenvalue is to zero, the fewer blocks the others take.
-fn shift_below(matrix: &Banded, scale: f64) -> f64 {
+fn shift_below(matrix: &Matrix, scale: f64) -> f64 {
     let positive = |s: f64| {
         let mut a = matrix.clone();
         a.shift(s);
@@ -215,9 +215,10 @@ fn shift_below(matrix: &Banded, scale: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linalg::Banded;
 
     /// By slices and by Lanczos, with and without the other's help.
-    fn all_ways(matrix: &Banded, count: usize, known: &[Vec<f64>]) -> [Vec<Mode>; 3] {
+    fn all_ways(matrix: &Matrix, count: usize, known: &[Vec<f64>]) -> [Vec<Mode>; 3] {
         let slices = sliced(matrix, count, known, f64::INFINITY).expect("slices converge");
         [slices, lanczos(matrix, count, known, f64::INFINITY), lowest_modes(matrix, count, known)]
     }
@@ -225,7 +226,7 @@ mod tests {
     #[test]
     fn the_modes_of_a_vibrating_string_are_found_with_and_without_a_known_one() {
         let n = 200;
-        let mut a = Banded::zeros(n, 1, 0);
+        let mut a = Matrix::from(Banded::zeros(n, 1));
         for i in 0..n {
             a.add(i, i, 2.0);
             if i > 0 {
@@ -251,7 +252,7 @@ mod tests {
     #[test]
     fn degenerate_modes_are_all_found() {
         let (rows, copies) = (20, 4);
-        let mut a = Banded::zeros(rows * copies, copies, 0);
+        let mut a = Matrix::from(Banded::zeros(rows * copies, copies));
         for i in 0..rows * copies {
             a.add(i, i, 2.0);
             if i >= copies {
@@ -269,7 +270,7 @@ mod tests {
 
     #[test]
     fn unknowns_without_couplings_give_their_diagonal() {
-        let mut a = Banded::zeros(50, 1, 0);
+        let mut a = Matrix::from(Banded::zeros(50, 1));
         (0..50).for_each(|i| a.add(i, i, if i == 7 { -2.0 } else { 1.0 }));
         let values: Vec<f64> = lowest_modes(&a, 3, &[]).iter().map(|m| m.value).collect();
         assert!((values[0] + 2.0).abs() < 1e-12 && values[1..].iter().all(|v| (v - 1.0).abs() < 1e-12), "{values:?}");
@@ -280,7 +281,7 @@ mod tests {
         let mut r = ChaCha8Rng::seed_from_u64(8);
         for round in 0..60 {
             let (n, width) = (3 + round, 1 + round % 5);
-            let mut a = Banded::zeros(n, width.min(n - 1), 0);
+            let mut a = Matrix::from(Banded::zeros(n, width.min(n - 1)));
             let level = [0.0, 3.0, -3.0, 2.5][round % 4];
             for j in 0..n {
                 for i in j..n.min(j + 1 + width.min(n - 1)) {
@@ -306,7 +307,7 @@ mod tests {
 
     #[test]
     fn a_matrix_of_one_unknown_has_one_mode() {
-        let mut a = Banded::zeros(1, 0, 0);
+        let mut a = Matrix::from(Banded::zeros(1, 0));
         a.add(0, 0, -3.0);
         let modes = lowest_modes(&a, 4, &[]);
         assert_eq!(modes.len(), 1);

@@ -1,13 +1,17 @@
-//! Linear algebra of chains and lattices: banded symmetric matrices, with or without a long-ranged tail, and their LDLᵀ, banded ones without
-//! symmetry and their LU, sparse symmetric ones of any lattice, the small dense matrices beside them, the Fourier transform, and
-//! numbers of twice the digits.
+//! Linear algebra of chains and lattices: one [`Matrix`], symmetric, kept as a band, with or without a long-ranged tail, as blocks of
+//! coupled sites or whole, behind one set of [`Factors`]; banded ones without symmetry and their LU, small dense ones, the Fourier
+//! transform, and numbers of twice the digits.
 
 mod banded;
+mod dense;
 mod double_double;
+mod factors;
 mod fft;
 mod general;
+mod layout;
 mod ldl;
 mod lowest;
+mod matrix;
 mod orthonormal;
 mod pivot;
 mod ritz;
@@ -21,14 +25,18 @@ mod tridiagonal;
 mod twisted;
 
 pub use banded::Banded;
+pub use dense::Dense;
 pub use double_double::DoubleDouble;
+pub use factors::Factors;
 pub use fft::Fft;
 pub use general::{General, Lu};
+pub use layout::{Layout, Places};
 pub use ldl::Ldl;
 pub use lowest::{lowest_modes, soft_modes};
+pub use matrix::Matrix;
 pub use orthonormal::{orthonormal, remove};
 pub use ritz::{Mode, rayleigh_ritz};
 pub use small::{eigen_symmetric, eigenvalues_symmetric, solve_dense};
 pub use sparse::{Graph, SparseLdl, SparseMatrix, Symbolic, nested_dissection};
-pub use tail::{Decays, Tail};
+pub use tail::{Decays, Tail, TailedBand};
 pub use tail_ldl::TailLdl;

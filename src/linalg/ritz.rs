@@ -1,6 +1,6 @@
 //! Modes of a matrix, and those within a space (Rayleigh, Ritz).
 
-use super::{Banded, eigen_symmetric, slab};
+use super::{Matrix, eigen_symmetric, slab};
 
 /// An eigenvalue as much lower as this part of the matrix's size is another.
 pub(super) const APART: f64 = 1e-10;
@@ -16,7 +16,7 @@ pub struct Mode {
 
 /// The eigenvalues of `matrix` within the span of orthonormal vectors, ascending, with their vectors, whose largest component
 /// is positive.
-pub fn rayleigh_ritz(matrix: &Banded, space: &[Vec<f64>]) -> Vec<Mode> {
+pub fn rayleigh_ritz(matrix: &Matrix, space: &[Vec<f64>]) -> Vec<Mode> {
     let (n, k) = (matrix.order(), space.len());
     let images: Vec<Vec<f64>> = space
         .iter()

@@ -154,6 +154,19 @@ pub fn one_of(together: &[f64], k: usize, j: usize, column: &mut Vec<f64>) {
     column.extend(together.chunks_exact(k).map(|row| row[j]));
 }
 
+/// Calls `act` with each of so many columns side by side in turn.
+pub fn one_by_one(together: &mut [f64], columns: usize, mut act: impl FnMut(&mut [f64])) {
+    if columns == 1 {
+        return act(together);
+    }
+    let mut one = Vec::new();
+    for c in 0..columns {
+        one_of(together, columns, c, &mut one);
+        act(&mut one);
+        together[c..].iter_mut().step_by(columns).zip(&one).for_each(|(x, o)| *x = *o);
+    }
+}
+
 /// The products of `a` with two columns side by side.
 pub fn dot_pairs(a: &[f64], both: &[f64]) -> [f64; 2] {
     if a.len() > 4096 {

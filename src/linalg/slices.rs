@@ -9,7 +9,7 @@
 //! than were found in it comes next. Parlett, "The Symmetric Eigenvalue Problem", SIAM 1998, doi:10.1137/1.9781611971163, §§3.3, 4.6.
 
 use super::ritz::{APART, Mode, rayleigh_ritz};
-use super::{Banded, Ldl, slab};
+use super::{Factors, Matrix, slab};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::mem::take;
@@ -25,7 +25,7 @@ const SPARE: usize = 4;
 
 /// The `count` lowest modes in the space orthogonal to `known` (orthonormal, invariant), ascending, but for the first only those
 /// below a limit. Nothing where the iteration does not converge.
-pub fn sliced(matrix: &Banded, count: usize, known: &[Vec<f64>], limit: f64) -> Option<Vec<Mode>> {
+pub fn sliced(matrix: &Matrix, count: usize, known: &[Vec<f64>], limit: f64) -> Option<Vec<Mode>> {
     let mut slices = Slices::new(matrix, known);
     if !slices.scale.is_finite() {
         return None;
@@ -43,7 +43,7 @@ pub fn sliced(matrix: &Banded, count: usize, known: &[Vec<f64>], limit: f64) -> 
 }
 
 struct Slices<'a> {
-    matrix: &'a Banded,
+    matrix: &'a Matrix,
     scale: f64,
     known: &'a [Vec<f64>],
     /// Eigenvalues of the known vectors.
@@ -55,11 +55,11 @@ struct Slices<'a> {
     vectors: Vec<Vec<f64>>,
     random: ChaCha8Rng,
     /// Memory for A − s and its factors.
-    memory: Banded,
+    memory: Matrix,
 }
 
 impl<'a> Slices<'a> {
-    fn new(matrix: &'a Banded, known: &'a [Vec<f64>]) -> Slices<'a> {
+    fn new(matrix: &'a Matrix, known: &'a [Vec<f64>]) -> Slices<'a> {
         let known_values = rayleigh_ritz(matrix, known).iter().map(|mode| mode.value).collect();
         Slices {
             matrix,
@@ -70,7 +70,7 @@ impl<'a> Slices<'a> {
             found: Vec::new(),
             vectors: Vec::new(),
             random: ChaCha8Rng::seed_from_u64(0x5eed),
-            memory: Banded::default(),
+            memory: Matrix::default(),
         }
     }
 
@@ -79,7 +79,7 @@ impl<'a> Slices<'a> {
         let mut shifted = take(&mut self.memory);
         shifted.copy_from(self.matrix);
         shifted.shift(-s);
-        let factors = Ldl::solving_sized(shifted, self.scale, x, usize::from(!x.is_empty()));
+        let factors = Factors::solving_sized(shifted, self.scale, x, usize::from(!x.is_empty()));
         let known = self.known_values.iter().filter(|v| **v < s).count();
         let at = self.points.partition_point(|p| p.0 < s);
         self.points.insert(at, (s, factors.negatives().saturating_sub(known)));

@@ -6,6 +6,7 @@
 //! plus its transpose; nothing on the diagonal. Sums along the chain with decaying memory, s ← q (s + r_j x_j), make products
 //! with it O(N), and its factorisation too (see [`super::TailLdl`]).
 
+use super::Banded;
 use std::sync::Arc;
 
 /// Decays and weights, the same for all sites.
@@ -26,6 +27,22 @@ pub struct Tail {
     pub rows: Vec<[[f64; 3]; 2]>,
     /// An estimate of the largest column sum of absolute values.
     pub norm: f64,
+}
+
+/// A band of two unknowns a site, and a tail besides.
+#[derive(Clone, Debug, Default)]
+pub struct TailedBand {
+    /// The band.
+    pub band: Banded,
+    /// What reaches further.
+    pub tail: Tail,
+}
+
+impl TailedBand {
+    /// Entry (i, j).
+    pub fn get(&self, i: usize, j: usize) -> f64 {
+        self.band.get(i, j) + self.tail.get(i, j)
+    }
 }
 
 impl Tail {

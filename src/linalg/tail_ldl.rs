@@ -12,7 +12,7 @@
 //! Appl. 27, 341 (2005), doi:10.1137/S0895479802405884, for sequentially semiseparable matrices.
 
 use super::pivot::guarded;
-use super::{Banded, eigen_symmetric};
+use super::{TailedBand, eigen_symmetric};
 use multiversion::multiversion;
 
 /// Rows of P are padded to a multiple of this.
@@ -40,10 +40,10 @@ pub struct TailLdl {
 }
 
 impl TailLdl {
-    /// The factors of `a`, which has no rim. A pivot smaller than `floor` is replaced by that size, sign kept.
-    pub fn of(a: &Banded, floor: f64) -> TailLdl {
-        let Some(tail) = &a.tail else { return TailLdl::default() };
-        let (sites, slots) = (tail.rows.len(), a.width / 2);
+    /// The factors of `a`. A pivot smaller than `floor` is replaced by that size, sign kept.
+    pub fn of(a: &TailedBand, floor: f64) -> TailLdl {
+        let TailedBand { band, tail } = a;
+        let (sites, slots) = (tail.rows.len(), band.width / 2);
         let mut phi = vec![1.0; 2 * slots];
         let mut first = [2 * slots; 4];
         for (c, q) in tail.decays.q.iter().enumerate() {
@@ -76,9 +76,9 @@ impl TailLdl {
             let (p0, p1) = pc.split_at(size);
             let cross = 0.5 * (plain_dot(c0, p1) + plain_dot(c1, p0));
             let d = [
-                a.get_band(2 * i, 2 * i) - plain_dot(c0, p0),
-                a.get_band(2 * i + 1, 2 * i) - cross,
-                a.get_band(2 * i + 1, 2 * i + 1) - plain_dot(c1, p1),
+                band.get(2 * i, 2 * i) - plain_dot(c0, p0),
+                band.get(2 * i + 1, 2 * i) - cross,
+                band.get(2 * i + 1, 2 * i + 1) - plain_dot(c1, p1),
             ];
             let (inverse, eigen) = guarded_inverse(d, floor);
             f.inverse.push(inverse);
@@ -103,16 +103,15 @@ impl TailLdl {
     }
 
     /// C_i: the band's entries to the last sites, and the tail's weights.
-    fn set_outputs(&mut self, a: &Banded, i: usize) {
+    fn set_outputs(&mut self, TailedBand { band, tail }: &TailedBand, i: usize) {
         let (size, slots, first) = (self.size, self.slots, self.first);
-        let Some(tail) = &a.tail else { return };
         let c = &mut self.c[2 * i * size..2 * (i + 1) * size];
         for row in 0..2 {
             let c = &mut c[row * size..(row + 1) * size];
             for n in 1..=slots.min(i) {
                 let slot = (i - n) % slots;
                 for column in 0..2 {
-                    c[2 * slot + column] = a.get_band(2 * i + row, 2 * (i - n) + column);
+                    c[2 * slot + column] = band.get(2 * i + row, 2 * (i - n) + column);
                 }
             }
             for (axis, weights) in tail.decays.weights.iter().enumerate() {
@@ -253,8 +252,7 @@ fn guarded_inverse(d: [f64; 3], floor: f64) -> ([f64; 3], [f64; 2]) {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::linalg::{Decays, Tail, eigenvalues_symmetric};
+    use crate::linalg::{Banded, Decays, Matrix, Tail, eigenvalues_symmetric};
     use rand::{RngExt, SeedableRng};
     use std::sync::Arc;
 
@@ -262,7 +260,7 @@ mod tests {
     fn a_band_with_a_tail_agrees_with_dense_arithmetic() {
         let mut r = rand_chacha::ChaCha8Rng::seed_from_u64(3);
         for (sites, reach, terms) in [(1, 0, 1), (2, 1, 1), (9, 1, 2), (12, 3, 4), (20, 2, 0), (15, 0, 5), (30, 5, 3)] {
-            let mut a = Banded::zeros(2 * sites, 2 * reach + 1, 0);
+            let mut a = Matrix::from(Banded::zeros(2 * sites, 2 * reach + 1));
             for i in 0..2 * sites {
                 for j in 0..=i {
                     if i / 2 - j / 2 <= reach {

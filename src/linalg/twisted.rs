@@ -18,13 +18,12 @@ type Lanes = f64x2;
 
 /// The half-bandwidth, if a matrix of this shape is eliminated from both ends.
 pub fn width(m: &Banded) -> Option<usize> {
-    let plain = m.border == 0 && m.tail.is_none();
-    (plain && [1, 3, 5].contains(&m.width) && m.inner >= 8 * (m.width + 1)).then_some(m.width)
+    ([1, 3, 5].contains(&m.width) && m.order >= 8 * (m.width + 1)).then_some(m.width)
 }
 
 /// Number of unknowns in each half.
 fn half(m: &Banded) -> usize {
-    (m.inner - m.width) / 2
+    (m.order - m.width) / 2
 }
 
 /// Entries of the i-th unknowns from both ends: the diagonal, then the couplings to the k-th unknowns further in.
@@ -56,7 +55,7 @@ fn set_column<const S: usize>(band: &mut [f64], n: usize, i: usize, c: [Lanes; S
 /// the time that the pivots take. W is the half-bandwidth, S = W + 1. The inverse pivots stand on the diagonal; returns how many
 /// of them are negative.
 pub fn eliminate<const W: usize, const S: usize, const C: usize>(m: &mut Banded, floor: f64, x: &mut [f64]) -> usize {
-    let (n, h) = (m.inner, half(m));
+    let (n, h) = (m.order, half(m));
     let band = &mut m.band[..];
     let mut window = [[Lanes::ZERO; S]; S];
     let mut rows = [[Lanes::ZERO; C]; S];
@@ -175,7 +174,7 @@ fn advance<const S: usize, const C: usize>(rows: &mut [[Lanes; C]; S], l: &[Lane
 
 /// Substitution for C interleaved right-hand sides.
 pub fn substitute<const W: usize, const S: usize, const C: usize>(m: &Banded, x: &mut [f64]) {
-    let (n, h, band) = (m.inner, half(m), &m.band[..]);
+    let (n, h, band) = (m.order, half(m), &m.band[..]);
     let mut rows = [[Lanes::ZERO; C]; S];
     for k in 0..W {
         rows[k] = row::<C>(x, n, k);
@@ -215,7 +214,7 @@ fn take_from_middle<const W: usize, const S: usize, const C: usize>(
 
 /// The rest of the substitution: the middle, and from there to both ends.
 pub fn substitute_back<const W: usize, const S: usize, const C: usize>(m: &Banded, x: &mut [f64]) {
-    let (n, h, band) = (m.inner, half(m), &m.band[..]);
+    let (n, h, band) = (m.order, half(m), &m.band[..]);
     match n - 2 * h == W {
         true => substitute_middle::<W, S, C>(&band[h * S..], &mut x[h * C..]),
         false => substitute_middle::<S, S, C>(&band[h * S..], &mut x[h * C..]),

@@ -17,14 +17,13 @@
 //! ```
 
 use super::Unstable;
-use crate::linalg::remove;
-use crate::linalg::{Banded, Ldl};
+use crate::linalg::{Factors, Matrix, remove};
 use crate::saddle::{Border, Pin, pin};
 
 /// A Hessian whose zero modes are pinned, factorised; without its descending mode, if it has one.
 #[derive(Debug)]
 pub struct PinnedHessian {
-    factors: Ldl,
+    factors: Factors,
     /// Modes that are left out as they are: zero modes, and a stiff descending one.
     zeros: Vec<Vec<f64>>,
     /// Leaves a flat descending mode out.
@@ -38,7 +37,7 @@ const STIFF: f64 = 1e-5;
 impl PinnedHessian {
     /// Of a Hessian (meV) with these orthonormal zero modes and, at a saddle, its descending mode (unit, orthogonal to them); κ is
     /// the stiffness of the pins (meV).
-    pub fn new(hessian: &Banded, zeros: &[Vec<f64>], descending: Option<&Unstable>, kappa: f64) -> PinnedHessian {
+    pub fn new(hessian: &Matrix, zeros: &[Vec<f64>], descending: Option<&Unstable>, kappa: f64) -> PinnedHessian {
         let mut matrix = hessian.clone();
         let mut used = Vec::new();
         let pins: Vec<Pin> = zeros.iter().map(|z| pin(&mut matrix, z, &mut used, kappa)).collect();
@@ -79,7 +78,7 @@ impl PinnedHessian {
 }
 
 /// ln|det'H| (energies in meV) of a Hessian with these orthonormal zero modes; κ is any stiffness of the Hessian's size (meV).
-pub fn log_determinant(hessian: &Banded, zeros: &[Vec<f64>], kappa: f64) -> f64 {
+pub fn log_determinant(hessian: &Matrix, zeros: &[Vec<f64>], kappa: f64) -> f64 {
     PinnedHessian::new(hessian, zeros, None, kappa).log_determinant()
 }
 
@@ -108,14 +107,14 @@ fn determinant(matrix: &[f64], n: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linalg::slab;
+    use crate::linalg::{Banded, slab};
     use rand::{RngExt, SeedableRng};
 
     #[test]
     fn the_zero_mode_of_a_free_string_leaves_the_product_of_the_others() {
         // A free string of n beads has the eigenvalues 2 − 2 cos(πk/n); those with k > 0 multiply to n.
         for n in [2, 7, 300] {
-            let mut a = Banded::zeros(2 * n, 3, 0);
+            let mut a = Matrix::from(Banded::zeros(2 * n, 3));
             for i in 0..n {
                 for c in 0..2 {
                     let ends = usize::from(i == 0) + usize::from(i + 1 == n);
@@ -140,7 +139,7 @@ mod tests {
         let axes = crate::linalg::orthonormal(random, 1e-3);
         for lambda in [1.0, 1e-3, 1e-9, 0.0] {
             let value = |k: usize| if k == 0 { -lambda } else { (k + 1) as f64 };
-            let mut a = Banded::zeros(n, n, 0);
+            let mut a = Matrix::from(Banded::zeros(n, n));
             for i in 0..n {
                 for j in 0..=i {
                     a.add(i, j, (0..n).map(|k| value(k) * axes[k][i] * axes[k][j]).sum());

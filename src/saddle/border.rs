@@ -5,7 +5,7 @@
 //! C = [t, −e],  Z = H″⁻¹C,  S = diag(0, 1/κ) − CᵀZ        [H' t; tᵀ 0] by H″ and one border column
 //! ```
 
-use crate::linalg::{Banded, Ldl, slab};
+use crate::linalg::{Factors, Matrix, slab};
 
 /// A unit vector on one site.
 #[derive(Clone, Copy, Debug, Default)]
@@ -22,7 +22,7 @@ impl Pin {
 }
 
 /// Adds κ e eᵀ on the site where `mode` is largest and no pin stands yet; returns e.
-pub fn pin(matrix: &mut Banded, mode: &[f64], used: &mut Vec<usize>, kappa: f64) -> Pin {
+pub fn pin(matrix: &mut Matrix, mode: &[f64], used: &mut Vec<usize>, kappa: f64) -> Pin {
     let size = |i: usize| mode[2 * i].powi(2) + mode[2 * i + 1].powi(2);
     let mut site = 0;
     let mut largest = -1.0;
@@ -60,18 +60,18 @@ impl Border {
     }
 
     /// Pins `self.soft`; factorises the matrix that is pinned so, and solves for C.
-    pub fn factor(&mut self, mut matrix: Banded, used: &mut Vec<usize>, kappa: f64) -> Ldl {
+    pub fn factor(&mut self, mut matrix: Matrix, used: &mut Vec<usize>, kappa: f64) -> Factors {
         self.set(&mut matrix, used, kappa);
-        let factors = Ldl::solving(matrix, &mut self.solved, 2);
+        let factors = Factors::solving(matrix, &mut self.solved, 2);
         self.close(kappa);
         factors
     }
 
     /// The same with a step of iterative refinement, and the matrix that is pinned so.
-    pub fn factor_refined(&mut self, mut matrix: Banded, used: &mut Vec<usize>, kappa: f64) -> (Banded, Ldl) {
+    pub fn factor_refined(&mut self, mut matrix: Matrix, used: &mut Vec<usize>, kappa: f64) -> (Matrix, Factors) {
         self.set(&mut matrix, used, kappa);
         let columns = self.solved.clone();
-        let factors = Ldl::solving(matrix.clone(), &mut self.solved, 2);
+        let factors = Factors::solving(matrix.clone(), &mut self.solved, 2);
         let (mut x, mut image, mut rest) = (Vec::new(), vec![0.0; self.soft.len()], columns);
         for column in 0..2 {
             slab::one_of(&self.solved, 2, column, &mut x);
@@ -85,7 +85,7 @@ impl Border {
     }
 
     /// The pin, and C where Z is to be.
-    fn set(&mut self, matrix: &mut Banded, used: &mut Vec<usize>, kappa: f64) {
+    fn set(&mut self, matrix: &mut Matrix, used: &mut Vec<usize>, kappa: f64) {
         self.pin = pin(matrix, &self.soft, used, kappa);
         slab::spread(&self.soft, &mut self.solved);
         for a in 0..2 {

@@ -13,7 +13,7 @@ use super::state::State;
 use super::trail::Trail;
 use crate::energy::Evaluator;
 use crate::field::project;
-use crate::linalg::{Banded, Ldl, slab};
+use crate::linalg::{Factors, Matrix, slab};
 use crate::sphere::rotation_of;
 use std::mem::{swap, take};
 
@@ -99,7 +99,7 @@ struct Walk<'a> {
 #[derive(Default)]
 struct Room {
     pinned: Pinned,
-    matrix: Banded,
+    matrix: Matrix,
     x: Vec<f64>,
     v: Vec<f64>,
 }
@@ -347,7 +347,7 @@ impl Walk<'_> {
         let Room { matrix, x, v, .. } = &mut self.room;
         self.here.write_hessian(self.h, rate, matrix);
         self.here.write_downhill(x);
-        let factors = Ldl::solving(take(matrix), x, 1);
+        let factors = Factors::solving(take(matrix), x, 1);
         let positive = factors.negatives() == 0;
         *matrix = factors.into_memory();
         if !positive {

@@ -12,16 +12,15 @@
 
 use super::border::{Border, pin};
 use super::state::State;
-use crate::linalg::remove;
-use crate::linalg::{Banded, Ldl, slab};
+use crate::linalg::{Factors, Matrix, remove, slab};
 use std::mem::take;
 
 /// A factorised, pinned Hessian.
 #[derive(Debug, Default)]
 pub struct Pinned {
     /// Kept where solutions are refined.
-    matrix: Option<Banded>,
-    factors: Ldl,
+    matrix: Option<Matrix>,
+    factors: Factors,
     zeros: Vec<Vec<f64>>,
     border: Border,
     /// Negative directions in the complement of the soft mode and the zero modes.
@@ -48,13 +47,13 @@ impl Pinned {
     }
 
     /// The matrix of the last factors, to be filled for [`factor`](Self::factor).
-    pub fn take_memory(&mut self) -> Banded {
+    pub fn take_memory(&mut self) -> Matrix {
         take(&mut self.factors).into_memory()
     }
 
     /// Takes any matrix with orthonormal zero modes, in the memory there is. Solutions are less accurate than those of
     /// [`new`](Self::new), and quicker: good enough for steps that are corrected.
-    pub fn factor(&mut self, mut matrix: Banded, zeros: &[Vec<f64>], t: &[f64], kappa: f64) {
+    pub fn factor(&mut self, mut matrix: Matrix, zeros: &[Vec<f64>], t: &[f64], kappa: f64) {
         let mut used = self.pin_zeros(&mut matrix, zeros.iter(), kappa);
         self.aim(t);
         let factors = self.border.factor(matrix, &mut used, kappa);
@@ -64,7 +63,7 @@ impl Pinned {
     /// Pins the zero modes; the sites that have pins now.
     fn pin_zeros<'a>(
         &mut self,
-        matrix: &mut Banded,
+        matrix: &mut Matrix,
         modes: impl Iterator<Item = &'a Vec<f64>>,
         kappa: f64,
     ) -> Vec<usize> {
@@ -94,7 +93,7 @@ impl Pinned {
         slab::scale(soft, 1.0 / size.max(f64::MIN_POSITIVE));
     }
 
-    fn count(&mut self, factors: Ldl) {
+    fn count(&mut self, factors: Factors) {
         let (negatives, schur) = (factors.negatives(), self.border.schur());
         self.soft_pivot = schur[1][1];
         self.complement_negatives = (negatives + negatives_of(schur)).saturating_sub(1);
@@ -147,7 +146,7 @@ impl Pinned {
 }
 
 /// A⁻¹ b with one step of iterative refinement.
-fn accurate(matrix: &Banded, factors: &Ldl, b: &[f64]) -> Vec<f64> {
+fn accurate(matrix: &Matrix, factors: &Factors, b: &[f64]) -> Vec<f64> {
     let mut x = b.to_vec();
     factors.solve(&mut x, 1);
     let mut r = vec![0.0; b.len()];

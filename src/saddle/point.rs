@@ -2,8 +2,7 @@
 
 use crate::energy::{Evaluator, TangentBasis, assemble_into};
 use crate::field::{Components, TILE};
-use crate::linalg::orthonormal;
-use crate::linalg::{Banded, slab};
+use crate::linalg::{Matrix, orthonormal, slab};
 use crate::sphere::move_points;
 use serde::{Deserialize, Serialize};
 
@@ -100,7 +99,7 @@ impl Point {
     }
 
     /// The Riemannian Hessian plus shift·1 in tangent coordinates (meV), in the memory of `matrix`.
-    pub fn write_hessian(&self, h: Evaluator, shift: f64, matrix: &mut Banded) {
+    pub fn write_hessian(&self, h: Evaluator, shift: f64, matrix: &mut Matrix) {
         assemble_into(&h, &self.m, &self.gradient, &self.basis, shift, matrix);
     }
 

@@ -7,7 +7,7 @@ use super::border::pin;
 use super::point::Point;
 use super::state::State;
 use crate::energy::Evaluator;
-use crate::linalg::{Banded, Ldl, lowest_modes};
+use crate::linalg::{Factors, Matrix, lowest_modes};
 use serde::{Deserialize, Serialize};
 use std::mem::take;
 
@@ -44,7 +44,7 @@ impl Spectrum {
     }
 
     /// Negative directions at a point, zero modes apart: one factorisation, in the memory of `matrix`.
-    pub fn negatives(h: Evaluator, point: &Point, matrix: &mut Banded) -> usize {
+    pub fn negatives(h: Evaluator, point: &Point, matrix: &mut Matrix) -> usize {
         point.write_hessian(h, 0.0, matrix);
         let floor = floor_mev(h, matrix.norm1());
         let factors = pinned(h, take(matrix), &point.zeros, floor);
@@ -65,7 +65,7 @@ impl Spectrum {
 }
 
 /// The factors of a Hessian + shift·1 whose zero modes are pinned.
-fn pinned(h: Evaluator, mut matrix: Banded, zeros: &[Vec<f64>], shift: f64) -> Ldl {
+fn pinned(h: Evaluator, mut matrix: Matrix, zeros: &[Vec<f64>], shift: f64) -> Factors {
     let mut used = Vec::new();
     for z in zeros {
         pin(&mut matrix, z, &mut used, h.stiffness_mev());

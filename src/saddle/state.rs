@@ -2,7 +2,7 @@
 
 use super::point::Point;
 use crate::energy::Evaluator;
-use crate::linalg::{Banded, Mode, lowest_modes, slab};
+use crate::linalg::{Matrix, Mode, lowest_modes, slab};
 use crate::sphere::move_points;
 use serde::{Deserialize, Serialize};
 use std::ops::Deref;
@@ -14,7 +14,7 @@ pub struct State {
     pub point: Point,
     /// Riemannian Hessian in tangent coordinates (meV).
     #[serde(skip)]
-    pub hessian: Banded,
+    pub hessian: Matrix,
 }
 
 impl Deref for State {
@@ -33,7 +33,7 @@ impl State {
 
     /// At a point.
     pub fn of(h: Evaluator, point: Point) -> State {
-        let mut hessian = Banded::default();
+        let mut hessian = Matrix::default();
         point.write_hessian(h, 0.0, &mut hessian);
         State { point, hessian }
     }

@@ -70,7 +70,7 @@ mod tests {
     use super::*;
     use crate::linalg::sparse::Symbolic;
     use crate::linalg::sparse::samples::{self, Lattice};
-    use crate::linalg::{Banded, Graph, eigenvalues_symmetric, solve_dense};
+    use crate::linalg::{Graph, Layout, Matrix, Places, eigenvalues_symmetric, solve_dense};
     use rand::{RngExt, SeedableRng, seq::SliceRandom};
     use rand_chacha::ChaCha8Rng;
     use std::sync::Arc;
@@ -130,8 +130,10 @@ mod tests {
             let lattice = Lattice::chain(sites, reach, ring);
             let a = lattice.random(&mut r);
             let n = a.order();
-            let (width, border) = (2 * reach + 1, if ring { 2 * reach } else { 0 });
-            let mut banded = Banded::zeros(n - border, width, border);
+            let folded = |i: usize| if 2 * i < sites { 2 * i } else { 2 * (sites - 1 - i) + 1 };
+            let places = Places::new((0..sites).map(|i| if ring { folded(i) } else { i }).collect());
+            let mut banded = Matrix::default();
+            banded.reset(&Layout::Band { span: if ring { 2 * reach } else { reach }, places }, sites, 0);
             for j in 0..n {
                 (j..n).filter(|i| a.get(*i, j) != 0.0).for_each(|i| banded.add(i, j, a.get(i, j)));
             }

@@ -133,7 +133,7 @@ impl SparseMatrix {
     }
 
     /// The largest entry; those that are no numbers do not count.
-    pub(super) fn size(&self) -> f64 {
+    pub(in crate::linalg) fn size(&self) -> f64 {
         slab::largest(self.blocks.as_flattened())
     }
 }
