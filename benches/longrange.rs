@@ -4,8 +4,9 @@
 
 use cpu_time::ProcessTime;
 use spinneb::energy::magnetostatics::{Convolution, Kernel, Shape};
-use spinneb::energy::{EnergyTerm, Hamiltonian, Medium, TangentBasis, TermSpec, assemble, assemble_shifted};
+use spinneb::energy::{EnergyTerm, Hamiltonian, Medium, TermSpec};
 use spinneb::geometry::Direction;
+use spinneb::hessian::{TangentBasis, assemble, assemble_shifted};
 use spinneb::lattice::Chain;
 use spinneb::linalg::Matrix;
 use spinneb::spins::Spins;

@@ -26,6 +26,7 @@ pub mod error;
 pub mod field;
 pub mod files;
 pub mod geometry;
+pub mod hessian;
 pub mod lattice;
 pub mod linalg;
 pub mod optimise;

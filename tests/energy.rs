@@ -2,9 +2,10 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use spinneb::energy::{EnergyTerm, Hamiltonian, Medium, TangentBasis, TermSpec, assemble};
+use spinneb::energy::{EnergyTerm, Hamiltonian, Medium, TermSpec};
 use spinneb::field::{Components, ComponentsMut, project};
 use spinneb::geometry::{Direction, exp, rotate, tangent_basis, vector};
+use spinneb::hessian::{TangentBasis, assemble};
 use spinneb::lattice::{Chain, Frozen, Lattice, Selection};
 use spinneb::linalg::Matrix;
 use spinneb::spins::Spins;
@@ -281,7 +282,7 @@ fn the_hessian_of_a_long_ranged_chain_is_its_product_dense_or_as_exponentials() 
                 assert!((a - b).abs() < 1e-8 * norm, "{text} on {sites}: {a} {b}");
             }
             let mut rough = Default::default();
-            spinneb::energy::assemble_shifted(&h, &m, &g, &basis, 0.0, &mut rough);
+            spinneb::hessian::assemble_shifted(&h, &m, &g, &basis, 0.0, &mut rough);
             rough.multiply(&basis.coordinates(&v), &mut y);
             basis.field(&y, &mut found);
             for (a, b) in found.iter().zip(&expected) {

@@ -2,9 +2,9 @@
 //! used again for the next image.
 
 use super::Band;
-use crate::energy::{Assembly, TangentBasis};
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::Vector;
+use crate::hessian::{Assembly, TangentBasis};
 use crate::linalg::{Factors, Matrix, eigenvalues_symmetric, orthonormal, slab, solve_dense};
 use std::mem::take;
 
@@ -243,8 +243,9 @@ fn largest_pair(x: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::energy::{Anisotropy, EnergyTerm, Exchange, Hamiltonian, assemble_shifted};
+    use crate::energy::{Anisotropy, EnergyTerm, Exchange, Hamiltonian};
     use crate::geometry::Direction;
+    use crate::hessian::assemble_shifted;
     use crate::lattice::Chain;
     use crate::path::Path;
     use crate::spins::Spins;

@@ -229,8 +229,8 @@ pub fn expected_images(problem: &Problem, scales: &Scales) -> usize {
 /// Memory that a run needs (bytes), roughly.
 pub fn needed_bytes(problem: &Problem, scales: &Scales) -> f64 {
     let h = &problem.hamiltonian;
-    let far = h.long_range().map_or(0.0, |long| {
-        let state = long.exponentials(true).map(|e| e.cost());
+    let far = h.coupling().pairs().map_or(0.0, |_| {
+        let state = h.coupling().tail(true).map(|e| e.cost());
         memory::far_bytes(h.sites(), state, rayon::current_num_threads())
     });
     far + memory::run_bytes(

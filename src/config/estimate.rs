@@ -12,7 +12,7 @@
 
 use super::{Loaded, expected_images};
 use crate::drive::{Images, Problem, Scales};
-use crate::energy::{TangentBasis, assemble_shifted};
+use crate::hessian::{TangentBasis, assemble_shifted};
 use crate::linalg::Matrix;
 use crate::path::guess::moving_sites;
 use std::time::Instant;

@@ -76,7 +76,7 @@ fn on_site_gap(h: &Hamiltonian) -> f64 {
     let zero = vec![0.0; 3 * h.sites()];
     let own = h.varying_blocks(Components::new(&zero));
     let blocks = own.as_ref().unwrap_or(h.constant_blocks());
-    let others = h.long_range().map(|long| long.sums_of_others());
+    let others = h.coupling().pairs().map(|pairs| pairs.sums_of_others());
     let mut gaps: Vec<f64> = blocks
         .sites()
         .enumerate()

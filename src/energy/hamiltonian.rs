@@ -1,6 +1,6 @@
 //! The sum of the terms, on a lattice.
 
-use super::{Blocks, EnergyTerm, Magnetostatics, symmetry_axes};
+use super::{Blocks, Coupling, EnergyTerm, symmetry_axes};
 use crate::error::{Error, Result};
 use crate::field::{Components, ComponentsMut, TILE, project_row, tiles};
 use crate::geometry::{Direction, Vector, vector};
@@ -37,7 +37,7 @@ pub struct Hamiltonian {
 impl Hamiltonian {
     /// The sum of `terms` on `lattice`.
     pub fn new(lattice: &Lattice, terms: Vec<Box<dyn EnergyTerm>>) -> Result<Hamiltonian> {
-        let mut long = terms.iter().enumerate().filter(|(_, t)| t.long_range().is_some());
+        let mut long = terms.iter().enumerate().filter(|(_, t)| t.coupling().pairs().is_some());
         let (long, second) = (long.next().map(|(k, _)| k), long.next());
         if let (Some(first), Some((_, second))) = (long, second) {
             return Err(twice(terms[first].name(), second.name()));
@@ -98,9 +98,9 @@ impl Hamiltonian {
         self.has_frozen
     }
 
-    /// The term that joins all pairs of sites, if there is one.
-    pub fn long_range(&self) -> Option<&Magnetostatics> {
-        self.long.and_then(|k| self.terms[k].long_range())
+    /// Which sites are coupled: as by the term that joins all pairs, if there is one.
+    pub fn coupling(&self) -> Coupling<'_> {
+        self.long.map_or(Coupling::Local, |k| self.terms[k].coupling())
     }
 
     /// The terms, in the order of the config.
@@ -187,10 +187,10 @@ impl Hamiltonian {
 
     /// What a long-ranged term adds: its gradient in `g`, and its density.
     fn add_far(&self, m: &[f64], g: &mut [f64]) -> Option<Vec<f64>> {
-        self.long_range().map(|long| {
+        self.long.map(|k| {
             g.fill(0.0);
             let mut density = vec![0.0; self.sites];
-            long.add_gradient(Components::new(m), ComponentsMut::new(g), &mut density, 0..self.sites);
+            self.terms[k].add_gradient(Components::new(m), ComponentsMut::new(g), &mut density, 0..self.sites);
             density
         })
     }

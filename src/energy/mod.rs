@@ -7,9 +7,8 @@
 //! its file and name it in [`TermSpec`].
 
 mod anisotropy;
-#[cfg(test)]
-mod any_lattice;
 mod blocks;
+mod coupling;
 mod couplings;
 mod cubic_anisotropy;
 mod demag;
@@ -17,16 +16,15 @@ mod dipolar;
 mod dmi;
 mod evaluator;
 mod exchange;
-mod far;
 mod hamiltonian;
-mod hessian;
 pub mod magnetostatics;
 mod spec;
 mod symmetry;
 mod zeeman;
 
 pub use anisotropy::{Anisotropy, AnisotropySpec};
-pub use blocks::{Blocks, Bonds};
+pub use blocks::{Block, Blocks, Bonds, multiply};
+pub use coupling::{AllPairs, Coupling};
 pub use couplings::Couplings;
 pub use cubic_anisotropy::{CubicAnisotropy, CubicAnisotropySpec};
 pub use demag::DemagSpec;
@@ -34,8 +32,7 @@ pub use dipolar::DipolarSpec;
 pub use dmi::{Dmi, DmiSpec};
 pub use evaluator::Evaluator;
 pub use exchange::{Exchange, ExchangeSpec};
-pub use hamiltonian::Hamiltonian;
-pub use hessian::{Assembly, BasisTile, TangentBasis, assemble, assemble_into, assemble_shifted};
+pub use hamiltonian::{Hamiltonian, LONG};
 pub use magnetostatics::Magnetostatics;
 pub use spec::{Medium, Part, TermBuilder, TermSpec};
 pub use symmetry::symmetry_axes;
@@ -92,9 +89,9 @@ pub trait EnergyTerm: Debug + Send + Sync {
     /// Axes that the term itself singles out: the candidates for an axis of symmetry that are tried first.
     fn axes(&self) -> Vec<Vector>;
 
-    /// The term as one that joins all pairs of sites, if it does: its gradient is then asked for once a configuration, for all
-    /// sites together, and its [`reach`](Self::reach) is that of the blocks it adds, which are not all.
-    fn long_range(&self) -> Option<&Magnetostatics> {
-        None
+    /// Which sites it couples. Where it joins all pairs, its gradient is asked for once a configuration, for all sites together, and
+    /// its [`reach`](Self::reach) is that of the blocks it adds, which are not all.
+    fn coupling(&self) -> Coupling<'_> {
+        Coupling::Local
     }
 }

@@ -115,7 +115,7 @@ impl Linearised<'_> {
 
     /// All pairs of sites that are coupled, each once.
     fn pairs(&self) -> Box<dyn Iterator<Item = [usize; 2]> + '_> {
-        match self.h.long_range() {
+        match self.h.coupling().pairs() {
             Some(_) => Box::new((0..self.sites()).flat_map(|i| (0..i).map(move |j| [i, j]))),
             None => Box::new(self.h.constant_blocks().bond.iter().flat_map(|bonds| bonds.family.bonds())),
         }

@@ -315,7 +315,7 @@ fn computed(
     let gyration = settings.gyration_per_s_mev();
     let mut refusals = Vec::new();
     let conserved = conserved_moment(&h, &top.state.m, crossing.minima, settings);
-    let dense = h.long_range().is_some() && h.sites() > MOST_DENSE;
+    let dense = h.coupling().pairs().is_some() && h.sites() > MOST_DENSE;
     let growth = match dense {
         true => None,
         false => growth_rate(&h, &top.state, &unstable, &gyration, settings.damping),

@@ -1,7 +1,8 @@
 //! A configuration with its energy, gradient and tangent basis, in memory that is used again for the next one.
 
-use crate::energy::{Evaluator, TangentBasis, assemble_into};
+use crate::energy::Evaluator;
 use crate::field::{Components, TILE};
+use crate::hessian::{TangentBasis, assemble_into};
 use crate::linalg::{Matrix, orthonormal, slab};
 use crate::sphere::move_points;
 use serde::{Deserialize, Serialize};

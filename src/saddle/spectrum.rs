@@ -76,6 +76,6 @@ fn pinned(h: Evaluator, mut matrix: Matrix, zeros: &[Vec<f64>], shift: f64) -> F
 
 /// What an eigenvalue must exceed in size to have a sign (meV): the rounding error, or what a long-ranged Hessian leaves out.
 fn floor_mev(h: Evaluator, norm_mev: f64) -> f64 {
-    let left_out = h.long_range().map_or(0.0, |long| long.error_mev(true));
+    let left_out = h.coupling().error_mev(true);
     (8.0 * f64::EPSILON * norm_mev).max(left_out)
 }

@@ -1,8 +1,8 @@
 //! The energy term that dipoles and cells share.
 
 use super::{Convolution, Exponentials, Kernel, Pairs, Section, Shape};
-use crate::energy::EnergyTerm;
 use crate::energy::blocks::{Block, Blocks};
+use crate::energy::{AllPairs, Coupling, EnergyTerm};
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, Vector, vector};
 use crate::units::{E_CHARGE, MU_0, MU_B_MEV_PER_T};
@@ -28,14 +28,14 @@ pub struct Magnetostatics {
     /// Moment of every site (μ_B).
     moments: Vec<f64>,
     /// In meV/μ_B².
-    coupling: Coupling,
+    interaction: Interaction,
     /// x̂·h_i(x̂)/2 of the chain magnetised along itself (meV).
     reference: Vec<f64>,
 }
 
 /// What two sites do to each other, the moments apart.
 #[derive(Debug)]
-enum Coupling {
+enum Interaction {
     /// It depends on their distance alone.
     Distance(Box<ByDistance>),
     /// Each pair has its own.
@@ -82,7 +82,7 @@ impl Magnetostatics {
             name,
             row.direction,
             moments,
-            Coupling::Distance(Box::new(ByDistance { kernel, convolution, tails })),
+            Interaction::Distance(Box::new(ByDistance { kernel, convolution, tails })),
         )
     }
 
@@ -97,12 +97,18 @@ impl Magnetostatics {
     ) -> Magnetostatics {
         let mut pairs = Pairs::new(sections, periodic);
         pairs.scale(MU_0_MU_B_SQUARED / (spacing_nm * spacing_nm * spacing_nm));
-        Magnetostatics::coupled(name, direction, moments, Coupling::Pairs(pairs))
+        Magnetostatics::coupled(name, direction, moments, Interaction::Pairs(pairs))
     }
 
-    fn coupled(name: &'static str, direction: Direction, moments: Vec<f64>, coupling: Coupling) -> Magnetostatics {
+    fn coupled(
+        name: &'static str,
+        direction: Direction,
+        moments: Vec<f64>,
+        interaction: Interaction,
+    ) -> Magnetostatics {
         let sites = moments.len();
-        let mut term = Magnetostatics { name, frame: frame(direction), reference: vec![0.0; sites], moments, coupling };
+        let mut term =
+            Magnetostatics { name, frame: frame(direction), reference: vec![0.0; sites], moments, interaction };
         let [x, y, z] = term.frame[0].map(|v| vec![v; sites]);
         let along = Components { x: &x, y: &y, z: &z };
         let field = term.field(along, 0..sites);
@@ -111,65 +117,11 @@ impl Magnetostatics {
         term
     }
 
-    /// The chain's own axes: along, width, thickness.
-    pub fn frame(&self) -> &[Vector; 3] {
-        &self.frame
-    }
-
-    /// Moment of every site (μ_B).
-    pub fn moments(&self) -> &[f64] {
-        &self.moments
-    }
-
-    /// What sites i and j do to each other (meV/μ_B²): along, width, thickness.
-    pub fn pair(&self, i: usize, j: usize) -> [f64; 3] {
-        match &self.coupling {
-            Coupling::Distance(by) => [0, 1, 2].map(|c: usize| by.kernel.table[c][i.abs_diff(j)]),
-            Coupling::Pairs(pairs) => pairs.at(i, j),
-        }
-    }
-
-    /// The interaction of an open chain as a sum of exponentials; nothing where the Hessian is dense.
-    pub fn exponentials(&self, precise: bool) -> Option<&Exponentials> {
-        match &self.coupling {
-            Coupling::Distance(by) => by.tails.as_ref().map(|[fine, coarse]| if precise { fine } else { coarse }),
-            Coupling::Pairs(_) => None,
-        }
-    }
-
-    /// A bound of the Hessian's error (meV, any norm) for what the exponentials leave out.
-    pub fn error_mev(&self, precise: bool) -> f64 {
-        let largest = self.moments.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-        self.exponentials(precise).map_or(0.0, |e| 2.0 * e.error * largest * largest)
-    }
-
-    /// About the norm of what acts beyond the nearest `shells` (meV); 0 where the Hessian is dense.
-    pub fn far_norm_mev(&self, shells: usize) -> f64 {
-        let Coupling::Distance(by) = &self.coupling else { return 0.0 };
-        let largest = self.moments.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-        let beyond = |c: usize| by.kernel.table[c].iter().skip(shells + 1).map(|k| k.abs()).sum::<f64>();
-        2.0 * largest * largest * [0, 1, 2].map(beyond).into_iter().fold(0.0, f64::max)
-    }
-
-    /// What all other sites do to each site where all spins are alike (meV): site blocks, in the coordinates of space.
-    pub fn sums_of_others(&self) -> Vec<Block> {
-        let sums = [0, 1, 2].map(|c: usize| {
-            let mut sum = vec![0.0; self.moments.len()];
-            self.apply(c, &self.moments, &mut sum);
-            sum
-        });
-        let others = |i: usize| {
-            let own = self.pair(i, i);
-            [0, 1, 2].map(|c: usize| self.moments[i] * (sums[c][i] - own[c] * self.moments[i]))
-        };
-        (0..self.moments.len()).map(|i| self.in_space(others(i))).collect()
-    }
-
     /// y_i ← Σ_j of component c, all sites.
     fn apply(&self, c: usize, x: &[f64], y: &mut [f64]) {
-        match &self.coupling {
-            Coupling::Distance(by) => by.convolution.apply(c, x, y),
-            Coupling::Pairs(pairs) => pairs.apply(c, x, y),
+        match &self.interaction {
+            Interaction::Distance(by) => by.convolution.apply(c, x, y),
+            Interaction::Pairs(pairs) => pairs.apply(c, x, y),
         }
     }
 
@@ -235,6 +187,36 @@ fn frame_beside(d: Vector, y: Vector) -> [Vector; 3] {
     [d, y, vector::cross(d, y)]
 }
 
+impl AllPairs for Magnetostatics {
+    fn frame(&self) -> &[Vector; 3] {
+        &self.frame
+    }
+
+    fn moments(&self) -> &[f64] {
+        &self.moments
+    }
+
+    fn pair(&self, i: usize, j: usize) -> [f64; 3] {
+        match &self.interaction {
+            Interaction::Distance(by) => [0, 1, 2].map(|c: usize| by.kernel.table[c][i.abs_diff(j)]),
+            Interaction::Pairs(pairs) => pairs.at(i, j),
+        }
+    }
+
+    fn sums_of_others(&self) -> Vec<Block> {
+        let sums = [0, 1, 2].map(|c: usize| {
+            let mut sum = vec![0.0; self.moments.len()];
+            self.apply(c, &self.moments, &mut sum);
+            sum
+        });
+        let others = |i: usize| {
+            let own = self.pair(i, i);
+            [0, 1, 2].map(|c: usize| self.moments[i] * (sums[c][i] - own[c] * self.moments[i]))
+        };
+        (0..self.moments.len()).map(|i| self.in_space(others(i))).collect()
+    }
+}
+
 impl EnergyTerm for Magnetostatics {
     fn name(&self) -> &'static str {
         self.name
@@ -277,15 +259,18 @@ impl EnergyTerm for Magnetostatics {
     }
 
     fn reach(&self) -> usize {
-        self.exponentials(true).map_or(0, |e| e.shells)
+        self.coupling().tail(true).map_or(0, |e| e.shells)
     }
 
     fn axes(&self) -> Vec<Vector> {
         self.frame.to_vec()
     }
 
-    fn long_range(&self) -> Option<&Magnetostatics> {
-        Some(self)
+    fn coupling(&self) -> Coupling<'_> {
+        match &self.interaction {
+            Interaction::Distance(by) => Coupling::Translational(self, by.tails.as_ref().map(|tails| tails.each_ref())),
+            Interaction::Pairs(_) => Coupling::Dense(self),
+        }
     }
 }
 

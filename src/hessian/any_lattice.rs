@@ -1,9 +1,10 @@
 //! What is written for any lattice, on one that is no chain: a ladder, open and closed, against sums over all pairs of sites.
 
-use super::{Anisotropy, EnergyTerm, Hamiltonian, Medium, TangentBasis, TermSpec, assemble};
+use super::{Free, TangentBasis, assemble};
+use crate::energy::{Anisotropy, EnergyTerm, Hamiltonian, Medium, TermSpec};
 use crate::geometry::{Direction, Vector, vector};
 use crate::lattice::{FrozenSites, Lattice};
-use crate::linalg::{eigenvalues_symmetric, slab};
+use crate::linalg::{Matrix, eigenvalues_symmetric, slab};
 use crate::spins::Spins;
 
 /// Exchange of nearest neighbours, diagonals and next nearest neighbours along a leg (meV), by their distances.
@@ -104,7 +105,7 @@ fn energies_forces_and_hessian_products_of_a_ladder_are_sums_over_all_pairs() {
 }
 
 #[test]
-fn the_hessian_of_a_ladder_and_its_index_are_those_of_its_product() {
+fn the_hessian_of_a_ladder_its_index_determinant_and_solutions_are_those_of_its_products() {
     for ladder in ladders().filter(|ladder| ladder.sites < 20) {
         let (h, n) = (hamiltonian(&ladder), ladder.sites);
         let state = Spins::random(n, 9);
@@ -113,25 +114,30 @@ fn the_hessian_of_a_ladder_and_its_index_are_those_of_its_product() {
         h.energy_gradient(m, &mut g);
         let basis = TangentBasis::at(m);
         let matrix = assemble(&h, m, &g, &basis);
-        let mut whole = vec![0.0; 4 * n * n];
-        let (mut v, mut out) = (vec![0.0; 3 * n], vec![0.0; 3 * n]);
+        assert!(matches!(matrix, Matrix::Sparse(_)));
+        let free = Free { h: &h, m, g: &g, basis: &basis };
+        let (mut whole, mut column) = (vec![0.0; 4 * n * n], Vec::new());
         for k in 0..2 * n {
             let mut unit = vec![0.0; 2 * n];
             unit[k] = 1.0;
-            basis.field(&unit, &mut v);
-            h.hessian_product(m, &g, &v, &mut out);
-            let column = basis.coordinates(&out);
+            free.multiply(&unit, &mut column);
             whole[k * 2 * n..(k + 1) * 2 * n].copy_from_slice(&column);
-            if h.is_frozen(k / 2) {
-                whole[k * 2 * n..(k + 1) * 2 * n].fill(0.0);
-                whole[k * 2 * n + k] = h.stiffness_mev();
-            }
-            for i in 0..2 * n {
-                let here = whole[k * 2 * n + i];
+            for (i, here) in column.iter().enumerate() {
                 assert!((matrix.get(i, k) - here).abs() < 1e-12, "{n} sites: {i} {k}: {} {here}", matrix.get(i, k));
             }
         }
-        let below = eigenvalues_symmetric(&whole, 2 * n).iter().filter(|e| **e < 0.0).count();
-        assert!(below > 0 && matrix.factor().negatives() == below, "{n} sites");
+        let values = eigenvalues_symmetric(&whole, 2 * n);
+        let below = values.iter().filter(|e| **e < 0.0).count();
+        let factors = matrix.factor();
+        assert!(below > 0 && factors.negatives() == below, "{n} sites");
+        let log: f64 = values.iter().map(|e| libm::log(e.abs())).sum();
+        assert!((factors.log_abs_determinant() - log).abs() < 1e-10, "{n} sites");
+        let smallest = values.iter().fold(f64::INFINITY, |least, e| least.min(e.abs()));
+        let x = basis.coordinates(Spins::random(n, 10).as_slice());
+        let mut y = Vec::new();
+        free.multiply(&x, &mut y);
+        factors.solve(&mut y, 1);
+        slab::add_scaled(&mut y, -1.0, &x);
+        assert!(slab::max_abs(&y) < 1e-12 / smallest, "{n} sites: {:e}", slab::max_abs(&y));
     }
 }

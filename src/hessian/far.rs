@@ -6,8 +6,8 @@
 //! In a long open chain K is a sum of exponentials beyond the nearest shells, whose blocks are in the band already; so the
 //! band takes back what the sum gives there.
 
-use super::hessian::TangentBasis;
-use super::{Hamiltonian, Magnetostatics};
+use super::TangentBasis;
+use crate::energy::{AllPairs, Hamiltonian};
 use crate::geometry::{Vector, vector};
 use crate::linalg::{Decays, Matrix, Tail};
 use std::sync::Arc;
@@ -16,9 +16,10 @@ use std::sync::Arc;
 type Rows = Vec<[Vector; 2]>;
 
 /// Adds what reaches further than the blocks.
-pub(super) fn add(h: &Hamiltonian, long: &Magnetostatics, basis: &TangentBasis, precise: bool, matrix: &mut Matrix) {
-    let rows = rows(h, long, basis);
-    let Some(sum) = long.exponentials(precise) else { return add_pairs(long, &rows, matrix) };
+pub(super) fn add(h: &Hamiltonian, basis: &TangentBasis, precise: bool, matrix: &mut Matrix) {
+    let Some(pairs) = h.coupling().pairs() else { return };
+    let rows = rows(h, pairs, basis);
+    let Some(sum) = h.coupling().tail(precise) else { return add_pairs(pairs, &rows, matrix) };
     for n in 1..=sum.shells {
         let back = sum.at(n).map(|k| -k);
         for i in 0..rows.len() - n {
@@ -26,14 +27,14 @@ pub(super) fn add(h: &Hamiltonian, long: &Magnetostatics, basis: &TangentBasis, 
         }
     }
     let decays = Arc::new(Decays { q: sum.decays.clone(), weights: sum.weights.clone() });
-    matrix.set_tail(Tail { decays, norm: long.far_norm_mev(sum.shells), rows });
+    matrix.set_tail(Tail { decays, norm: h.coupling().far_norm_mev(sum.shells), rows });
 }
 
 /// All pairs but those of neighbours that have a block.
-fn add_pairs(long: &Magnetostatics, rows: &Rows, matrix: &mut Matrix) {
+fn add_pairs(pairs: &dyn AllPairs, rows: &Rows, matrix: &mut Matrix) {
     for i in 0..rows.len() {
         for j in i + 1..rows.len() {
-            add_pair(i, j, long.pair(i, j), rows, matrix);
+            add_pair(i, j, pairs.pair(i, j), rows, matrix);
         }
     }
 }
@@ -44,10 +45,10 @@ fn add_pair(i: usize, j: usize, k: [f64; 3], rows: &Rows, matrix: &mut Matrix) {
     matrix.add_block(j, i, rows[j].map(|q| rows[i].map(|p| entry(&p, &q))));
 }
 
-fn rows(h: &Hamiltonian, long: &Magnetostatics, basis: &TangentBasis) -> Rows {
+fn rows(h: &Hamiltonian, pairs: &dyn AllPairs, basis: &TangentBasis) -> Rows {
     let row = |i: usize| {
-        let moment = if h.is_frozen(i) { 0.0 } else { long.moments()[i] };
-        basis.pair(i).map(|e| long.frame().map(|f| moment * vector::dot(e, f)))
+        let moment = if h.is_frozen(i) { 0.0 } else { pairs.moments()[i] };
+        basis.pair(i).map(|e| pairs.frame().map(|f| moment * vector::dot(e, f)))
     };
     (0..h.sites()).map(row).collect()
 }
