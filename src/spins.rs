@@ -8,12 +8,12 @@ use crate::geometry::Direction;
 use crate::geometry::vector::{Vector, unit};
 use ndarray::{Array2, ArrayView2};
 use rand::{RngExt, SeedableRng};
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 use std::f64::consts::TAU;
 
 /// Unit vectors, one a site. Nothing here makes a vector that is not of unit length to rounding.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "Vec<f64>", into = "Vec<f64>")]
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(try_from = "Vec<f64>")]
 pub struct Spins {
     m: Array2<f64>,
 }
@@ -96,10 +96,10 @@ impl Spins {
     }
 }
 
-impl From<Spins> for Vec<f64> {
+impl Serialize for Spins {
     /// Component-major.
-    fn from(spins: Spins) -> Vec<f64> {
-        spins.as_slice().to_vec()
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        self.as_slice().serialize(serializer)
     }
 }
 

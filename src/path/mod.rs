@@ -10,15 +10,15 @@ pub use resample::blend;
 
 use crate::field::Components;
 use crate::sphere::angles_between;
-use crate::spins::Spins;
+use crate::spins::{Spins, are_unit};
 use crate::threads::{READ, apiece};
 use ndarray::Array3;
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 
 /// Images along a path. Inside (image, xyz, site), so that an image is one contiguous slab of 3N numbers.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "Vec<Spins>", into = "Vec<Spins>")]
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(try_from = "(usize, Vec<f64>)")]
 pub struct Path {
     m: Array3<f64>,
 }
@@ -116,21 +116,20 @@ pub fn distance(a: &[f64], b: &[f64]) -> f64 {
 pub fn largest_angle(a: &[f64], b: &[f64]) -> f64 {
     angles_between(Components::new(a), Components::new(b)).1
 }
-impl From<Path> for Vec<Spins> {
-    fn from(path: Path) -> Vec<Spins> {
-        (0..path.images()).map(|k| path.spins(k)).collect()
+impl Serialize for Path {
+    /// The number of images, and all numbers, image after image.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        (self.images(), self.as_slice()).serialize(serializer)
     }
 }
 
-impl TryFrom<Vec<Spins>> for Path {
+impl TryFrom<(usize, Vec<f64>)> for Path {
     type Error = &'static str;
 
-    fn try_from(images: Vec<Spins>) -> Result<Path, &'static str> {
-        let same = images.windows(2).all(|pair| pair[0].sites() == pair[1].sites());
-        if images.len() >= 2 && same {
-            Ok(Path::new(&images))
-        } else {
-            Err("a path is two images or more of as many spins")
-        }
+    fn try_from((images, m): (usize, Vec<f64>)) -> Result<Path, &'static str> {
+        let slab = m.len() / images.max(1);
+        let is_path = images >= 2 && slab > 0 && m.len() == images * slab && m.chunks(slab).all(are_unit);
+        let m = is_path.then(|| Array3::from_shape_vec((images, 3, slab / 3), m).ok()).flatten();
+        m.map(|m| Path { m }).ok_or("a path is two images or more of as many spins")
     }
 }
