@@ -1,7 +1,7 @@
 //! A chain: a row of equally spaced sites, open or closed to a ring.
 
 use super::selection::Selection;
-use super::spec::{Frozen, SiteMoment, SiteSection};
+use super::sites::{Frozen, SiteMoment, SiteSection};
 use super::{FrozenSites, Grid, Lattice};
 use crate::error::{Error, Result};
 use crate::geometry::Direction;

@@ -14,6 +14,7 @@ mod grid;
 mod ladder;
 mod order;
 mod selection;
+mod sites;
 mod spec;
 mod symmetry;
 
@@ -21,7 +22,8 @@ pub use bonds::{Bond, BondFamily, Segment, at};
 pub use chain::{Chain, MAX_SITES};
 pub use grid::{Grid, Shift};
 pub use selection::Selection;
-pub use spec::{Frozen, LatticeSpec, SiteMoment, SiteSection};
+pub use sites::{Frozen, SiteMoment, SiteSection};
+pub use spec::LatticeSpec;
 pub use symmetry::SiteSymmetry;
 
 use crate::error::Result;
