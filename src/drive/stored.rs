@@ -10,11 +10,10 @@ use super::top::Top;
 use super::{Scales, Stop};
 use crate::energy::Evaluator;
 use crate::path::Path;
+use crate::record::MOST;
 use crate::saddle::{Refined, Spectrum, State};
 use crate::spins::{Spins, are_unit};
 
-/// Most of anything that is counted: sums of such counts do not overflow.
-const MOST: usize = (u32::MAX >> 1) as usize;
 /// Largest size of a number that is computed with.
 const LARGEST: f64 = 1e100;
 

@@ -22,7 +22,7 @@ pub use checkpoint::{Checkpoint, FOLDER, Identity};
 pub use fingerprint::Fingerprint;
 pub use lock::Lock;
 pub use recorder::Recorder;
-pub(crate) use recorder::Ticket;
+pub(crate) use recorder::{MOST, Ticket};
 
 /// Where the record of a run is kept. Calls are counted from 0.
 pub trait Keep: Send {

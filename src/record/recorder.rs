@@ -49,10 +49,7 @@ impl Recorder {
 
     /// Saves all that is recorded, whether it is time to or not.
     pub fn save(&self) {
-        if let Some(mut record) = self.record() {
-            let k = record.done;
-            record.keep.save(k, None);
-        }
+        self.save_with(|| None);
     }
 
     /// Saves all that is recorded, and where the call in progress stands.
