@@ -8,8 +8,8 @@ use spinneb::energy::{Anisotropy, EnergyTerm, Exchange, Hamiltonian};
 use spinneb::geometry::Direction;
 use spinneb::lattice::Chain;
 use spinneb::rates::{Crossing, RateSettings, Theory, saddle_rates};
-use spinneb::saddle::{Spectrum, refine};
 use spinneb::spins::Spins;
+use spinneb::stationary::{Spectrum, refine};
 use std::time::Instant;
 
 fn main() {

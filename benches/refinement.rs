@@ -13,8 +13,8 @@ use spinneb::energy::{Anisotropy, Exchange, Hamiltonian};
 use spinneb::geometry::Direction;
 use spinneb::lattice::Chain;
 use spinneb::path::guess::{Edge, GuessSpec, Sweep};
-use spinneb::saddle::refine;
 use spinneb::spins::Spins;
+use spinneb::stationary::refine;
 
 /// The allocator of the binary.
 #[cfg(feature = "mimalloc")]

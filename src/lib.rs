@@ -10,7 +10,7 @@
 //! | [`output`] | files and figures |
 //! | [`drive`] | a whole run: ends, first paths, band, saddles, proof |
 //! | [`rates`] | lifetimes of states |
-//! | [`band`], [`saddle`] | the force on a path; saddles to machine precision |
+//! | [`band`], [`stationary`] | the force on a path; saddles and minima to machine precision |
 //! | [`energy`], [`path`], [`optimise`] | energy terms; first paths; methods that move spins |
 //! | [`state`] | spin states |
 //! | [`files`] | files of spins: OVF, npz, npy, csv, VTK |
@@ -36,10 +36,11 @@ pub mod profile;
 pub mod rates;
 pub mod record;
 pub mod registry;
-pub mod saddle;
+
 pub mod sphere;
 pub mod spins;
 pub mod state;
+pub mod stationary;
 mod threads;
 pub mod units;
 pub mod words;

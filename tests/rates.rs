@@ -419,8 +419,8 @@ fn a_saddle_of_higher_index_has_no_rate() {
     problem.guess = Some(serde_json::from_str(r#"{"geodesic": {"axis": [1, 0, 0]}}"#).expect("a guess"));
     let state = |v: [f64; 3]| Spins::from_vectors(&vec![v; 20]).expect("unit vectors");
     let h = &problem.hamiltonian;
-    let top = spinneb::saddle::State::at(h.into(), state([0.0, 1.0, 0.0]).as_slice().to_vec());
-    let spectrum = spinneb::saddle::Spectrum::of(h.into(), &top, 6);
+    let top = spinneb::stationary::State::at(h.into(), state([0.0, 1.0, 0.0]).as_slice().to_vec());
+    let spectrum = spinneb::stationary::Spectrum::of(h.into(), &top, 6);
     assert!(spectrum.negative > 1);
     let minima = [state([0.0, 0.0, 1.0]), state([0.0, 0.0, -1.0])];
     let spectra = minima.clone().map(|m| spinneb::drive::Minimum::examine(h.into(), &m).spectrum);
@@ -507,7 +507,7 @@ fn the_determinant_of_a_hundred_thousand_spins_is_the_product_of_its_spin_waves(
     let n = 100_000;
     let (easy, hard) = (0.05, 0.02);
     let problem = Build::open(n).easy(easy).hard(hard).reversal();
-    let state = spinneb::saddle::State::at((&problem.hamiltonian).into(), problem.initial.as_slice().to_vec());
+    let state = spinneb::stationary::State::at((&problem.hamiltonian).into(), problem.initial.as_slice().to_vec());
     let found = spinneb::rates::log_determinant(&state.hessian, &[], 1.0);
     // free ends: 2K + 2J (1 − cos(πk/N)), and the same with the hard axis on top
     let wave = |k: usize| 4.0 * (PI * k as f64 / (2 * n) as f64).sin().powi(2) + 2.0 * easy;
@@ -631,8 +631,8 @@ fn a_state_beside_a_saddle_that_is_no_minimum_has_no_rate() {
     let problem = with(Build::open(1).easy(1.0).hard(0.5).reversal(), settings(1, 2.0, 0.3, 1.0));
     let h = &problem.hamiltonian;
     let state = |v: [f64; 3]| Spins::from_vectors(&[v]).expect("a unit vector");
-    let top = spinneb::saddle::State::at(h.into(), state([0.0, 1.0, 0.0]).as_slice().to_vec());
-    let spectrum = spinneb::saddle::Spectrum::of(h.into(), &top, 2);
+    let top = spinneb::stationary::State::at(h.into(), state([0.0, 1.0, 0.0]).as_slice().to_vec());
+    let spectrum = spinneb::stationary::Spectrum::of(h.into(), &top, 2);
     let refused = |before: [f64; 3]| {
         let minima = [state(before), state([0.0, 0.0, -1.0])];
         let spectra = minima.clone().map(|m| spinneb::drive::Minimum::examine(h.into(), &m).spectrum);

@@ -9,9 +9,9 @@ use crate::error::Result;
 use crate::field::project;
 use crate::linalg::{Matrix, lowest_modes, slab};
 use crate::path::{Path, largest_angle};
-use crate::saddle::{Refined, Spectrum, Verdict, follow_modes, refine};
 use crate::sphere::{move_points, rotation_of};
 use crate::spins::Spins;
+use crate::stationary::{Refined, Spectrum, Verdict, follow_modes, refine};
 use serde::{Deserialize, Serialize};
 
 /// A mode of less than this part of c is shallow.

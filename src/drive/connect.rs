@@ -19,9 +19,9 @@ use crate::error::Result;
 use crate::linalg::{Mode, slab, soft_modes};
 use crate::path::guess::{Edge, FirstGuess, GuessContext, Sweep};
 use crate::path::{Path, distance};
-use crate::saddle::{State, follow_modes};
 use crate::sphere::rotation_of;
 use crate::spins::Spins;
+use crate::stationary::{State, follow_modes};
 use std::borrow::Cow;
 
 /// Most stretches of one path.

@@ -7,9 +7,9 @@ use crate::field::Components;
 use crate::geometry::{Vector, vector};
 use crate::linalg::{Factors, Matrix, slab};
 use crate::path::largest_angle;
-use crate::saddle::{Point, Spectrum, State, descend, polish};
 use crate::sphere::rotation_of;
 use crate::spins::Spins;
+use crate::stationary::{Point, Spectrum, State, descend, polish};
 use serde::{Deserialize, Serialize};
 use std::mem::take;
 

@@ -13,8 +13,8 @@ use crate::energy::Evaluator;
 use crate::error::Result;
 use crate::field::Components;
 use crate::geometry::{Direction, Vector, vector};
-use crate::saddle::{Point, follow_modes};
 use crate::sphere::rotate_sites;
+use crate::stationary::{Point, follow_modes};
 use std::f64::consts::PI;
 use std::ops::Range;
 

@@ -9,8 +9,8 @@ use crate::energy::Evaluator;
 use crate::error::Result;
 use crate::linalg::slab;
 use crate::path::largest_angle;
-use crate::saddle::{Spectrum, State, descend};
 use crate::spins::Spins;
+use crate::stationary::{Spectrum, State, descend};
 use crate::threads::both;
 use serde::{Deserialize, Serialize};
 

@@ -11,8 +11,8 @@ use crate::rates::{
     Crossing, Equivalents, Orbits, RateSettings, Rates, Refusal, SaddleRate, ZeroKind, equivalent_saddles, refused,
     saddle_rates, transitions,
 };
-use crate::saddle::{self, Refined, State};
 use crate::spins::Spins;
+use crate::stationary::{self, Refined, State};
 
 /// A stored energy above the initial state and that of the stored spins differ by less than this part of the scale.
 const AGREE: f64 = 1e-9;
@@ -137,7 +137,7 @@ fn stored_link(h: Evaluator, saddle: &SaddlePoint, beside: &[Minimum]) -> Link {
     let (before, after) = (beside[0].clone(), beside[1].clone());
     let towards = |end: &Minimum| h.difference_mev(&state.m, end.spins.as_slice());
     let fallen_mev = [towards(&before), towards(&after)];
-    let spectrum = saddle::Spectrum::of(h, &state, 0);
+    let spectrum = stationary::Spectrum::of(h, &state, 0);
     let lowest = state.lowest_mode();
     let valley = lowest.as_ref().map_or_else(|| vec![0.0; state.m.len()], |mode| state.field(&mode.vector));
     let curvature_mev = lowest.map_or(0.0, |mode| mode.value);
@@ -147,7 +147,7 @@ fn stored_link(h: Evaluator, saddle: &SaddlePoint, beside: &[Minimum]) -> Link {
     let (s, image) = (saddle.reaction_coordinate_rad, saddle.image);
     let top = Top { m: state.m.clone(), tau, energy_mev: state.energy_mev, s, image };
     let index = spectrum.negative;
-    let verdict = if index > 1 { saddle::Verdict::HigherIndex } else { saddle::Verdict::Saddle };
+    let verdict = if index > 1 { stationary::Verdict::HigherIndex } else { stationary::Verdict::Saddle };
     let refined =
         Refined { verdict, state, valley, steps: 0, factorisations: 0, index, curvature_mev, rotation_rad: 0.0 };
     Link { found: Found { top, refined }, spectrum, before, after, fallen_mev, ways: Default::default(), given: false }

@@ -3,8 +3,8 @@
 use crate::energy::{Evaluator, Hamiltonian};
 use crate::field::Components;
 use crate::linalg::{eigenvalues_symmetric, slab};
-use crate::saddle::State;
 use crate::state::StateContext;
+use crate::stationary::State;
 use crate::threads::both;
 use serde::{Deserialize, Serialize};
 

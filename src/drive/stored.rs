@@ -11,8 +11,8 @@ use super::{Scales, Stop};
 use crate::energy::Evaluator;
 use crate::path::Path;
 use crate::record::MOST;
-use crate::saddle::{Refined, Spectrum, State};
 use crate::spins::{Spins, are_unit};
+use crate::stationary::{Refined, Spectrum, State};
 
 /// Largest size of a number that is computed with.
 const LARGEST: f64 = 1e100;

@@ -10,7 +10,7 @@
 //!
 //! The descending mode t of a saddle is left out too. Its eigenvalue λ₁ is divided out if it is well above the rounding error; if it
 //! is all but flat, it is pinned as well, and the pin taken back through a second border column, so that no small number is
-//! divided by (see `Pinned` of the module `saddle`):
+//! divided by (see `Pinned` of the module `stationary`):
 //!
 //! ```text
 //! C = [t, −e],  S = diag(0, 1/κ) − Cᵀ(H' + κ e eᵀ)⁻¹C,    det'H/λ₁ = −κ det(H' + κ e eᵀ) det S / (κ^P det(EᵀZ)²)
@@ -18,7 +18,7 @@
 
 use super::Unstable;
 use crate::linalg::{Factors, Matrix, remove};
-use crate::saddle::{Border, Pin, pin};
+use crate::stationary::{Border, Pin, pin};
 
 /// A Hessian whose zero modes are pinned, factorised; without its descending mode, if it has one.
 #[derive(Debug)]

@@ -10,7 +10,7 @@
 use super::Unstable;
 use crate::energy::Hamiltonian;
 use crate::linalg::{General, slab};
-use crate::saddle::State;
+use crate::stationary::State;
 
 /// Most factorisations; halving alone would need about fifty.
 const ROUNDS: usize = 200;

@@ -10,8 +10,8 @@ use super::{
     growth_rate, unstable_mode, zero_modes,
 };
 use crate::energy::Evaluator;
-use crate::saddle::{Spectrum, State};
 use crate::spins::Spins;
+use crate::stationary::{Spectrum, State};
 use crate::units::K_B;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;

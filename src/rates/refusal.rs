@@ -5,8 +5,8 @@ use crate::energy::Hamiltonian;
 use crate::field::Components;
 use crate::geometry::{Vector, vector};
 use crate::linalg::slab;
-use crate::saddle::Spectrum;
 use crate::spins::Spins;
+use crate::stationary::Spectrum;
 use thiserror::Error;
 
 /// A total moment that changes by less than this part of the sum of all is the same.

@@ -4,7 +4,7 @@ use crate::field::{Components, ComponentsMut};
 use crate::geometry::vector;
 use crate::linalg::remove;
 use crate::linalg::{lowest_modes, slab};
-use crate::saddle::State;
+use crate::stationary::State;
 
 /// Most factorisations of a search.
 const ROUNDS: usize = 30;

@@ -6,7 +6,7 @@
 use super::determinant::PinnedHessian;
 use super::{Prefactor, RateSettings, Unstable};
 use crate::energy::Hamiltonian;
-use crate::saddle::State;
+use crate::stationary::State;
 use crate::units::K_B;
 use std::f64::consts::PI;
 

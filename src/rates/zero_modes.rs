@@ -17,7 +17,7 @@ use crate::geometry::{Vector, vector};
 use crate::lattice::Lattice;
 use crate::linalg::remove;
 use crate::linalg::{eigen_symmetric, slab};
-use crate::saddle::State;
+use crate::stationary::State;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
