@@ -3,9 +3,9 @@
 //! `cargo bench --bench rates`. The chain of the shipped wall nucleation with a hard axis, refined to N sites; its saddle is the wall
 //! at the centre, and the minima are the two uniform states.
 
-use spinneb::drive::Minimum;
 use spinneb::energy::{Anisotropy, EnergyTerm, Exchange, Hamiltonian};
 use spinneb::geometry::Direction;
+use spinneb::landscape::Minimum;
 use spinneb::lattice::Chain;
 use spinneb::rates::{Crossing, RateSettings, Theory, saddle_rates};
 use spinneb::spins::Spins;

@@ -8,9 +8,10 @@
 //! a busy spell of the machine does not meet one size alone.
 
 use spinneb::band::Band;
-use spinneb::drive::{Images, Outcome, Problem, Silent, run, tops};
+use spinneb::drive::{Images, Outcome, Problem, Silent, run};
 use spinneb::energy::{Anisotropy, Exchange, Hamiltonian};
 use spinneb::geometry::Direction;
+use spinneb::landscape::peaks;
 use spinneb::lattice::Chain;
 use spinneb::path::guess::{Edge, GuessSpec, Sweep};
 use spinneb::spins::Spins;
@@ -131,7 +132,7 @@ fn saddle_solves(problem: &Problem, outcome: &Outcome) -> usize {
     let mut band = Band::new(&problem.hamiltonian, outcome.path.clone());
     band.evaluate();
     let c = 2.0 * anisotropy(outcome.path.sites());
-    let top = tops(&band, 0.0).into_iter().next();
+    let top = peaks(&band, 0.0).into_iter().next();
     top.map_or(0, |top| refine((&problem.hamiltonian).into(), &top.m, &top.tau, c).factorisations)
 }
 

@@ -21,12 +21,13 @@
 use anyhow::{Context, Result, ensure};
 use rayon::prelude::*;
 use spinneb::config::library;
-use spinneb::drive::{Problem, Silent, relax_to_minimum, run};
+use spinneb::drive::{Problem, Silent, run};
 use spinneb::energy::{Anisotropy, EnergyTerm, Exchange, Hamiltonian, Zeeman};
 use spinneb::geometry::Direction;
 use spinneb::lattice::Chain;
 use spinneb::output::canvas::{BLACK, BLUE, LinePlot, Marker, Series, VERMILLION};
 use spinneb::spins::Spins;
+use spinneb::stationary::relax_to_minimum;
 use spinneb::units::{Energy, EnergyDensity, ExchangeStiffness, MU_B_MEV_PER_T, Magnetisation};
 use std::fmt::Write;
 

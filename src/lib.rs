@@ -27,6 +27,7 @@ pub mod field;
 pub mod files;
 pub mod geometry;
 pub mod hessian;
+pub mod landscape;
 pub mod lattice;
 pub mod linalg;
 pub mod optimise;

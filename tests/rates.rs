@@ -423,7 +423,7 @@ fn a_saddle_of_higher_index_has_no_rate() {
     let spectrum = spinneb::stationary::Spectrum::of(h.into(), &top, 6);
     assert!(spectrum.negative > 1);
     let minima = [state([0.0, 0.0, 1.0]), state([0.0, 0.0, -1.0])];
-    let spectra = minima.clone().map(|m| spinneb::drive::Minimum::examine(h.into(), &m).spectrum);
+    let spectra = minima.clone().map(|m| spinneb::landscape::Minimum::examine(h.into(), &m).spectrum);
     let valley: Vec<f64> = (0..60).map(|k| if k / 20 == 2 { 1.0 } else { 0.0 }).collect();
     let crossing = spinneb::rates::Crossing {
         saddle: &top,
@@ -635,7 +635,7 @@ fn a_state_beside_a_saddle_that_is_no_minimum_has_no_rate() {
     let spectrum = spinneb::stationary::Spectrum::of(h.into(), &top, 2);
     let refused = |before: [f64; 3]| {
         let minima = [state(before), state([0.0, 0.0, -1.0])];
-        let spectra = minima.clone().map(|m| spinneb::drive::Minimum::examine(h.into(), &m).spectrum);
+        let spectra = minima.clone().map(|m| spinneb::landscape::Minimum::examine(h.into(), &m).spectrum);
         let crossing = spinneb::rates::Crossing {
             saddle: &top,
             valley: &[0.0, 0.0, 1.0],

@@ -15,7 +15,7 @@ use clap::Args;
 use rayon::prelude::*;
 use spinneb::config::Loaded;
 use spinneb::config::sweep::Sweep;
-use spinneb::drive::Doubt;
+use spinneb::landscape::Doubt;
 use spinneb::output::sweep::{IndexedPoint, PointState, SweepIndex, look};
 use std::io::{self, Write};
 use std::num::NonZeroUsize;

@@ -1,10 +1,10 @@
 //! A first path on its way to become the one, or to be rejected.
 
 use super::Stop;
-use super::climb::Found;
 use super::outcome::{HistoryRow, RejectedPath};
 use crate::band::Band;
 use crate::geometry::Direction;
+use crate::landscape::Saddle;
 use crate::path::guess::GuessSpec;
 
 /// Barriers that differ by no more than this part are alike.
@@ -21,7 +21,7 @@ pub struct Candidate<'a> {
     /// Its iterations.
     pub history: Vec<HistoryRow>,
     /// Its refined top.
-    pub found: Option<Found>,
+    pub found: Option<Saddle>,
     /// Saddles of higher index that were left: energy above the first image (meV) and index.
     pub escapes: Vec<(f64, usize)>,
     /// The highest that it passes (meV above the first image), if it was followed from end to end.
@@ -40,7 +40,7 @@ impl<'a> Candidate<'a> {
     }
 
     /// Its refined top, if that is stationary.
-    fn stationary(&self, c: f64) -> Option<&Found> {
+    fn stationary(&self, c: f64) -> Option<&Saddle> {
         self.found.as_ref().filter(|f| f.is_stationary(c))
     }
 

@@ -6,16 +6,17 @@
 //! its ends. A saddle with one minimum on both sides (where of two walls one turns all the way round) is not on the way. Minima
 //! joined by a valley that is flat to rounding have no saddle between them and count as one.
 
-use super::Doubt;
-use super::climb::{Found, ZOOMS, zoomed};
-use super::minimum::{Link, Minimum};
-use super::recorded::recorded;
+use super::climb::{ZOOMS, zoomed};
 use super::relaxation::{Goal, Relaxation};
-use super::top::{Top, direction, highest, tops};
-use super::turns::{turned, turns};
 use crate::band::Band;
 use crate::energy::Evaluator;
+use crate::energy::recorded;
 use crate::error::Result;
+use crate::landscape::Doubt;
+use crate::landscape::Saddle;
+use crate::landscape::{Minimum, Pass};
+use crate::landscape::{Peak, direction, highest, peaks};
+use crate::landscape::{turned, turns};
 use crate::linalg::{Mode, slab, soft_modes};
 use crate::path::guess::{Edge, FirstGuess, GuessContext, Sweep};
 use crate::path::{Path, distance};
@@ -50,7 +51,7 @@ const START: f64 = 0.1;
 #[derive(Debug, Default)]
 pub struct Sequence {
     /// Saddle, minimum, saddle, …
-    pub links: Vec<Link>,
+    pub links: Vec<Pass>,
     /// Why the sequence does not lead from end to end; nothing if it does.
     pub gap: Option<Doubt>,
 }
@@ -60,7 +61,7 @@ struct Stretch<'p> {
     a: Minimum,
     b: Minimum,
     path: Cow<'p, Path>,
-    saddle: Option<Found>,
+    saddle: Option<Saddle>,
 }
 
 impl<'p> Stretch<'p> {
@@ -91,7 +92,7 @@ pub fn follow(
     band: &Band,
     a: Minimum,
     b: Minimum,
-    saddle: Found,
+    saddle: Saddle,
     context: &GuessContext,
 ) -> Result<Sequence> {
     let h = band.evaluator();
@@ -99,8 +100,8 @@ pub fn follow(
     let mut sequence = Sequence::default();
     // the part of the path that comes first is on top
     let mut stretches = vec![Stretch { a, b, path: Cow::Borrowed(band.path()), saddle: Some(saddle) }];
-    let mut open: Vec<(Minimum, Link)> = Vec::new();
-    let mut strays: Vec<Found> = Vec::new();
+    let mut open: Vec<(Minimum, Pass)> = Vec::new();
+    let mut strays: Vec<Saddle> = Vec::new();
     let mut count = 0;
     while let Some(mut stretch) = stretches.pop() {
         count += 1;
@@ -116,7 +117,7 @@ pub fn follow(
             Some(found) => (Some(found), false),
             None => {
                 let links = sequence.links.iter().chain(open.iter().map(|o| &o.1));
-                let known: Vec<&Found> = links.map(|l| &l.found).chain(&strays).collect();
+                let known: Vec<&Saddle> = links.map(|l| &l.saddle).chain(&strays).collect();
                 search(relaxation, h, &mut stretch, &known, c)?
             }
         };
@@ -125,7 +126,7 @@ pub fn follow(
             close(&mut sequence, &mut open, &stretch.b, h);
             continue;
         };
-        let mut link = Link::recorded(h, found, c)?;
+        let mut link = Pass::recorded(h, found, c)?;
         if link.before.is_same(h, &stretch.b) || link.after.is_same(h, &stretch.a) {
             link.reverse();
         }
@@ -146,7 +147,7 @@ pub fn follow(
             } else {
                 stretches.push(stretch);
             }
-            strays.push(link.found);
+            strays.push(link.saddle);
             continue;
         }
         if astray {
@@ -169,7 +170,7 @@ pub fn follow(
 }
 
 /// Saddles that waited for the stretch before them, which is now followed to `reached`.
-fn close(sequence: &mut Sequence, open: &mut Vec<(Minimum, Link)>, reached: &Minimum, h: Evaluator) {
+fn close(sequence: &mut Sequence, open: &mut Vec<(Minimum, Pass)>, reached: &Minimum, h: Evaluator) {
     let mut reached = reached.clone();
     while let Some((wanted, _)) = open.last() {
         if !wanted.is_same(h, &reached) {
@@ -200,10 +201,10 @@ fn search(
     relaxation: &mut Relaxation,
     h: Evaluator,
     stretch: &mut Stretch,
-    known: &[&Found],
+    known: &[&Saddle],
     c: f64,
-) -> Result<(Option<Found>, bool)> {
-    let is_known = |f: &Found| known.iter().any(|k| k.is_same(h, f));
+) -> Result<(Option<Saddle>, bool)> {
+    let is_known = |f: &Saddle| known.iter().any(|k| k.is_same(h, f));
     let found = new_saddle(relaxation, h, stretch, known, c)?;
     if found.as_ref().is_some_and(|f| !is_known(f)) {
         return Ok((found, false));
@@ -223,9 +224,9 @@ fn new_saddle(
     relaxation: &mut Relaxation,
     h: Evaluator,
     stretch: &Stretch,
-    known: &[&Found],
+    known: &[&Saddle],
     c: f64,
-) -> Result<Option<Found>> {
+) -> Result<Option<Saddle>> {
     let mut band = Band::new(h, stretch.path.as_ref().clone());
     relaxation.run(&mut band, Goal::Loose, EVALUATIONS)?;
     for _ in 0..ZOOMS {
@@ -234,17 +235,17 @@ fn new_saddle(
         relaxation.run(&mut band, Goal::Loose, EVALUATIONS)?;
     }
     let hop = relaxation.scales.half_site_rad();
-    let is_new = |f: &Found| f.is_saddle(c) && !known.iter().any(|k| k.is_same(h, f));
-    let tops = tops(&band, f64::INFINITY);
+    let is_new = |f: &Saddle| f.is_saddle(c) && !known.iter().any(|k| k.is_same(h, f));
+    let tops = peaks(&band, f64::INFINITY);
     let e = band.energies_mev();
     let last = band.images() - 1;
     let highest = tops.first().map_or(e[0].max(e[last]), |top| top.energy_mev);
     // a saddle far above the band leads elsewhere
     let most = highest + ABOVE * (highest - e[0].min(e[last]));
-    let mut high: Vec<Found> = Vec::new();
+    let mut high: Vec<Saddle> = Vec::new();
     let mut known_top = None;
     for (k, top) in tops.iter().take(MOST_TOPS).enumerate() {
-        let found = Found::recorded(h, top.clone(), c, hop)?;
+        let found = Saddle::recorded(h, top.clone(), c, hop)?;
         if !is_new(&found) {
             known_top = known_top.or((k == 0).then_some(found));
         } else if found.refined.state.energy_mev <= most {
@@ -268,7 +269,7 @@ fn new_saddle(
 }
 
 /// Saddles above the minimum at one end of a band, along its soft modes towards the next image.
-fn uphill(h: Evaluator, band: &Band, end: usize, next: usize, c: f64) -> Vec<Found> {
+fn uphill(h: Evaluator, band: &Band, end: usize, next: usize, c: f64) -> Vec<Saddle> {
     let state = State::at(h, band.path().image(end).to_vec());
     let towards = state.basis.coordinates(&direction(&state.m, band.path().image(next), 1.0));
     let modes = soft_modes(&state.hessian, SOFT_MODES, &state.zeros, SOFT * c);
@@ -285,7 +286,7 @@ fn uphill(h: Evaluator, band: &Band, end: usize, next: usize, c: f64) -> Vec<Fou
         if end > next {
             slab::scale(&mut tau, -1.0);
         }
-        Some(Found { top: Top { m: state.m.clone(), tau, energy_mev, s, image: end }, refined })
+        Some(Saddle { top: Peak { m: state.m.clone(), tau, energy_mev, s, image: end }, refined })
     };
     modes.iter().filter(|m| m.value < SOFT * c).filter_map(from).collect()
 }

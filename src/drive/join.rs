@@ -4,15 +4,15 @@
 //! A band over many minima relaxes slowly, because its images have to share themselves among them. A stretch between a saddle
 //! and a minimum has neither on the way: it starts as the descent itself and is monotone.
 
-use super::minimum::Link;
-use super::recorded::recorded;
 use super::relaxation::{Goal, Relaxation};
-use super::turns::{turned, turns};
 use super::{Images, NebSettings, Scales, Silent};
 use crate::band::{Band, Laplacian};
 use crate::energy::Evaluator;
+use crate::energy::recorded;
 use crate::error::Result;
 use crate::geometry::Vector;
+use crate::landscape::Pass;
+use crate::landscape::{turned, turns};
 use crate::optimise::Follows;
 use crate::path::{Path, largest_angle};
 use crate::spins::Spins;
@@ -43,7 +43,7 @@ pub struct Tools<'a> {
 /// are fewer images than stretches.
 pub fn joined(
     h: Evaluator,
-    links: &[Link],
+    links: &[Pass],
     [a, b]: [&Spins; 2],
     images: Images,
     apart: f64,
@@ -66,7 +66,7 @@ pub fn joined(
 }
 
 /// The descents from the saddles, end to end from `a` to `b`: minimum to saddle, saddle to minimum, …
-fn stretches(h: Evaluator, links: &[Link], a: &Spins, b: &Spins) -> Option<Vec<Path>> {
+fn stretches(h: Evaluator, links: &[Pass], a: &Spins, b: &Spins) -> Option<Vec<Path>> {
     let mut pieces = Vec::new();
     let mut here = a.clone();
     for (k, link) in links.iter().enumerate() {
@@ -75,7 +75,7 @@ fn stretches(h: Evaluator, links: &[Link], a: &Spins, b: &Spins) -> Option<Vec<P
         if largest_angle(turned(&link.before.spins).as_slice(), here.as_slice()) > SAME {
             return None;
         }
-        let saddle = turned(&Spins::from_unit_components(&link.found.refined.state.m));
+        let saddle = turned(&Spins::from_unit_components(&link.saddle.refined.state.m));
         let mut up = vec![here.clone()];
         up.extend(link.ways[0].iter().rev().map(turned));
         up.push(saddle.clone());

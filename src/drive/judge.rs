@@ -1,11 +1,12 @@
 //! What a path shows of its barrier.
 
 use super::candidate::Candidate;
-use super::minimum::Minimum;
 use super::outcome::{Barrier, SaddlePoint};
 use super::relaxation::height;
-use super::{Doubt, PathEnd, Problem, Verdict};
+use super::{Problem, Verdict};
 use crate::band::Band;
+use crate::landscape::Minimum;
+use crate::landscape::{Doubt, PathEnd};
 
 /// What a path shows.
 pub struct Seen<'a> {

@@ -5,14 +5,14 @@
 //! differ by half a turn of one wall about the axis: in one the walls' distance is what falls, in the other their azimuth. No soft
 //! mode leads from one to the other, so the half turn is tried, wall by wall.
 
-use super::climb::Found;
-use super::minimum::Link;
-use super::recorded::recorded;
-use super::top::Top;
 use crate::energy::Evaluator;
+use crate::energy::recorded;
 use crate::error::Result;
 use crate::field::Components;
 use crate::geometry::{Direction, Vector, vector};
+use crate::landscape::Pass;
+use crate::landscape::Peak;
+use crate::landscape::Saddle;
 use crate::sphere::rotate_sites;
 use crate::stationary::{Point, follow_modes};
 use std::f64::consts::PI;
@@ -31,11 +31,11 @@ const MOST_WALLS: usize = 8;
 
 /// The links with their highest saddle exchanged for a lower one between the same two minima; none if there is none in sight.
 /// c is the stiffness scale (meV).
-pub fn lowered(h: Evaluator, links: &[Link], c: f64) -> Result<Option<Vec<Link>>> {
-    let mut better: Option<Vec<Link>> = None;
+pub fn lowered(h: Evaluator, links: &[Pass], c: f64) -> Result<Option<Vec<Pass>>> {
+    let mut better: Option<Vec<Pass>> = None;
     for _ in 0..ROUNDS {
         let now = better.as_deref().unwrap_or(links);
-        let height = |k: &usize| now[*k].found.refined.state.energy_mev;
+        let height = |k: &usize| now[*k].saddle.refined.state.energy_mev;
         let Some(k) = (0..now.len()).max_by(|i, j| height(i).total_cmp(&height(j))) else { break };
         let Some(lower) = beside(h, &now[k], c)? else { break };
         better.get_or_insert_with(|| links.to_vec())[k] = lower;
@@ -44,13 +44,13 @@ pub fn lowered(h: Evaluator, links: &[Link], c: f64) -> Result<Option<Vec<Link>>
 }
 
 /// A lower saddle between the minima of a link, with one of its walls turned.
-fn beside(h: Evaluator, link: &Link, c: f64) -> Result<Option<Link>> {
-    let saddle = &link.found.refined.state;
+fn beside(h: Evaluator, link: &Pass, c: f64) -> Result<Option<Pass>> {
+    let saddle = &link.saddle.refined.state;
     for start in turned_walls(h, &saddle.m, APART * c) {
         let found = recorded(h, "saddle beside", &[&start], || Ok(saddle_at(h, &start, c)))?;
-        let below = |f: &Found| saddle.above_mev(&f.refined.state) > LOWER * c;
+        let below = |f: &Saddle| saddle.above_mev(&f.refined.state) > LOWER * c;
         let Some(found) = found.into_iter().next().filter(|f| f.is_saddle(c) && below(f)) else { continue };
-        let mut lower = Link::recorded(h, found, c)?;
+        let mut lower = Pass::recorded(h, found, c)?;
         if lower.before.is_same(h, &link.after) && lower.after.is_same(h, &link.before) {
             lower.reverse();
         }
@@ -63,9 +63,9 @@ fn beside(h: Evaluator, link: &Link, c: f64) -> Result<Option<Link>> {
 }
 
 /// The saddle near a state, if there is one.
-fn saddle_at(h: Evaluator, m: &[f64], c: f64) -> Vec<Found> {
-    let found = follow_modes(h, m, c).map(|refined| Found {
-        top: Top {
+fn saddle_at(h: Evaluator, m: &[f64], c: f64) -> Vec<Saddle> {
+    let found = follow_modes(h, m, c).map(|refined| Saddle {
+        top: Peak {
             m: m.to_vec(),
             tau: refined.valley.clone(),
             energy_mev: Point::at(h, m.to_vec()).energy_mev,

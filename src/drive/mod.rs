@@ -3,18 +3,15 @@
 mod candidate;
 mod climb;
 mod connect;
-mod doubt;
 mod ends;
 mod explore;
 mod join;
 mod judge;
 mod lower;
-mod minimum;
 mod outcome;
 mod places;
 mod problem;
 mod rates;
-mod recorded;
 mod relaxation;
 mod relaxed;
 mod report;
@@ -22,25 +19,18 @@ mod run;
 mod scales;
 mod stop;
 mod stored;
-mod top;
-mod turns;
 mod verdict;
 
-pub use doubt::{Doubt, PathEnd};
-pub use ends::{Relaxed, WayDown, relax_to_minimum};
 pub use explore::natural_guesses;
-pub use minimum::{Link, Minimum};
 pub use outcome::*;
 pub use problem::{Images, NebSettings, Problem};
 pub use rates::{is_said_of_rates, stored_rates, warnings as rates_warnings};
-
 pub use relaxation::{Goal, Relaxation, image_levels, prominent_maxima, refined};
 pub use relaxed::{RelaxedState, relaxed_state};
 pub use report::partial;
 pub use run::{FEWEST_IMAGES, run};
 pub use scales::Scales;
 pub use stop::Stop;
-pub use top::{Top, tops};
 pub use verdict::{StopCode, Verdict};
 
 use crate::path::Path;

@@ -1,11 +1,12 @@
 //! From the proven saddles of a path to its rates.
 
-use super::climb::Found;
-use super::minimum::{Link, Minimum};
+use super::Verdict;
 use super::outcome::SaddlePoint;
-use super::top::Top;
-use super::{Doubt, Verdict};
 use crate::energy::Evaluator;
+use crate::landscape::Doubt;
+use crate::landscape::Peak;
+use crate::landscape::Saddle;
+use crate::landscape::{Minimum, Pass};
 use crate::linalg::slab;
 use crate::rates::{
     Crossing, Equivalents, Orbits, RateSettings, Rates, Refusal, SaddleRate, ZeroKind, equivalent_saddles, refused,
@@ -21,7 +22,7 @@ const AGREE: f64 = 1e-9;
 pub struct Known<'a> {
     pub h: Evaluator<'a>,
     /// Saddles with the minima beside them, in path order; none where nothing was proven.
-    pub links: &'a [Link],
+    pub links: &'a [Pass],
     /// The saddles as reported.
     pub saddles: &'a [SaddlePoint],
     /// Final above initial state (meV).
@@ -66,19 +67,19 @@ fn orbits(known: &Known, rates: &[SaddleRate], settings: &RateSettings) -> Orbit
     let like = |m: &[f64], slides: bool| equivalent_saddles(&h, m, ends, &settings.moments_mub, slides);
     let between: Vec<Equivalents> =
         links[..links.len() - 1].iter().map(|l| like(l.after.spins.as_slice(), false)).collect();
-    let saddles = links.iter().enumerate().map(|(k, l)| like(&l.found.refined.state.m, slides(k)).count).collect();
+    let saddles = links.iter().enumerate().map(|(k, l)| like(&l.saddle.refined.state.m, slides(k)).count).collect();
     let minima = std::iter::once(1).chain(between.iter().map(|e| e.count)).chain([1]).collect();
     Orbits { saddles, minima, paths: between[0].clone() }
 }
 
-fn proven(known: &Known, link: &Link, settings: &RateSettings) -> [SaddleRate; 2] {
+fn proven(known: &Known, link: &Pass, settings: &RateSettings) -> [SaddleRate; 2] {
     let h = known.h;
     let doubt = link.doubt(h).map(|doubt| doubt.to_string());
-    let m = &link.found.refined.state.m;
+    let m = &link.saddle.refined.state.m;
     let number = known.saddles.iter().position(|s| s.spins.as_slice() == m).unwrap_or(0);
     let crossing = Crossing {
-        saddle: &link.found.refined.state,
-        valley: &link.found.refined.valley,
+        saddle: &link.saddle.refined.state,
+        valley: &link.saddle.refined.valley,
         spectrum: &link.spectrum,
         minima: [&link.before.spins, &link.after.spins],
         minima_spectra: [&link.before.spectrum, &link.after.spectrum],
@@ -113,7 +114,7 @@ pub fn stored_rates(
         return Err(format!("a state has {found} sites, the chain has {}", h.sites()));
     }
     let examined: Vec<Minimum> = minima.iter().map(|m| Minimum::examine(h, m)).collect();
-    let links: Vec<Link> =
+    let links: Vec<Pass> =
         saddles.iter().zip(examined.windows(2)).map(|(s, beside)| stored_link(h, s, beside)).collect();
     let initial = minima[0].as_slice();
     for (k, (link, saddle)) in links.iter().zip(saddles).enumerate() {
@@ -132,7 +133,7 @@ pub fn stored_rates(
 }
 
 /// A stored saddle between two minima, its descending mode found anew.
-fn stored_link(h: Evaluator, saddle: &SaddlePoint, beside: &[Minimum]) -> Link {
+fn stored_link(h: Evaluator, saddle: &SaddlePoint, beside: &[Minimum]) -> Pass {
     let state = State::at(h, saddle.spins.as_slice().to_vec());
     let (before, after) = (beside[0].clone(), beside[1].clone());
     let towards = |end: &Minimum| h.difference_mev(&state.m, end.spins.as_slice());
@@ -145,12 +146,20 @@ fn stored_link(h: Evaluator, saddle: &SaddlePoint, beside: &[Minimum]) -> Link {
     let size = slab::norm(&tau);
     slab::scale(&mut tau, 1.0 / size.max(f64::MIN_POSITIVE));
     let (s, image) = (saddle.reaction_coordinate_rad, saddle.image);
-    let top = Top { m: state.m.clone(), tau, energy_mev: state.energy_mev, s, image };
+    let top = Peak { m: state.m.clone(), tau, energy_mev: state.energy_mev, s, image };
     let index = spectrum.negative;
     let verdict = if index > 1 { stationary::Verdict::HigherIndex } else { stationary::Verdict::Saddle };
     let refined =
         Refined { verdict, state, valley, steps: 0, factorisations: 0, index, curvature_mev, rotation_rad: 0.0 };
-    Link { found: Found { top, refined }, spectrum, before, after, fallen_mev, ways: Default::default(), given: false }
+    Pass {
+        saddle: Saddle { top, refined },
+        spectrum,
+        before,
+        after,
+        fallen_mev,
+        ways: Default::default(),
+        given: false,
+    }
 }
 
 /// That some numbers are rough.

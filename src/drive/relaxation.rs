@@ -1,13 +1,13 @@
 //! The loop that relaxes a band: evaluate, judge, move; it counts and says why it stopped.
 
 use super::outcome::HistoryRow;
-use super::recorded::Stored;
-use super::stored::{are_counts, are_finite};
 use super::{NebSettings, Observer, Scales, Stop};
 use crate::band::{Band, Laplacian, Sweep, align_rotations};
 use crate::energy::Evaluator;
+use crate::energy::Stored;
 use crate::error::Result;
 use crate::geometry::Vector;
+use crate::landscape::{are_counts, are_finite};
 use crate::linalg::slab;
 use crate::optimise::{Follows, Optimiser, OptimiserSpec};
 use crate::path::Path;

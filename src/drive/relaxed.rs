@@ -1,11 +1,12 @@
 //! A state relaxed by itself, with what it was before and what kind of state it is now.
 
-use super::ends::{Relaxed, judge_end, kept, relax_to_minimum};
-use super::minimum::Minimum;
+use super::ends::{judge_end, kept};
 use super::run::END_TOLERANCE;
 use crate::energy::Evaluator;
 use crate::error::Result;
+use crate::landscape::Minimum;
 use crate::spins::Spins;
+use crate::stationary::{Relaxed, relax_to_minimum};
 
 /// A state before and after it was relaxed.
 #[derive(Clone, Debug)]

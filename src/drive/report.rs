@@ -1,20 +1,21 @@
 //! From a finished run to its outcome: tables, barrier, warnings.
 
 use super::candidate::Candidate;
-use super::climb::Found;
-use super::ends::Relaxed;
 use super::judge::{Judgement, Seen};
-use super::minimum::{Link, Minimum};
 use super::outcome::*;
 use super::places::{Place, in_order, nearest};
 use super::rates::{self, Known};
 use super::relaxation::{height, prominent_maxima};
-use super::{Doubt, Partial, Problem, Verdict};
+use super::{Partial, Problem, Verdict};
 use crate::band::{Band, Extremum, Profile};
 use crate::energy::Evaluator;
+use crate::landscape::Doubt;
+use crate::landscape::Saddle;
+use crate::landscape::{Minimum, Pass};
 use crate::linalg::slab;
 use crate::path::Path;
 use crate::spins::Spins;
+use crate::stationary::Relaxed;
 use crate::threads::{MADE, apiece};
 use rayon::prelude::*;
 use std::time::Instant;
@@ -36,7 +37,7 @@ pub struct Proof {
     /// The two ends, examined.
     pub ends: [Minimum; 2],
     /// Saddles in path order, with the minima beside them.
-    pub links: Vec<Link>,
+    pub links: Vec<Pass>,
     /// What stands against a certificate; nothing if it is given.
     pub doubts: Vec<Doubt>,
 }
@@ -67,7 +68,7 @@ impl Prepared<'_> {
 pub fn outcome(
     run: Prepared,
     c: Candidate,
-    found: &[Found],
+    found: &[Saddle],
     proof: Proof,
     rejected_paths: Vec<RejectedPath>,
 ) -> Outcome {
@@ -221,7 +222,7 @@ impl Course {
 }
 
 /// Modes under the noise floor are said, not guessed.
-fn flat_warnings(ends: &[Minimum; 2], links: &[Link]) -> Vec<String> {
+fn flat_warnings(ends: &[Minimum; 2], links: &[Pass]) -> Vec<String> {
     let say = |what: &str, flat: usize, floor: f64| {
         format!("{what}: {flat} mode(s) flat to {floor:.1e} meV, counted with the zero modes")
     };
@@ -248,15 +249,15 @@ fn end_of(m: &Minimum) -> EndPoint {
 }
 
 /// The saddles in path order: proven, refined, or else as the band shows them.
-fn saddles(problem: &Problem, band: &Band, found: &[Found], links: &[Link], places: &[Place]) -> Vec<SaddlePoint> {
+fn saddles(problem: &Problem, band: &Band, found: &[Saddle], links: &[Pass], places: &[Place]) -> Vec<SaddlePoint> {
     let h = problem.evaluator();
-    let of_link = |(l, place): (&Link, &Place)| saddle_of_link(h, band, l, *place);
+    let of_link = |(l, place): (&Pass, &Place)| saddle_of_link(h, band, l, *place);
     match (links, found) {
         ([], []) => band_saddles(problem, band),
         ([], found) => {
             // where the path only rises to an end, a search may come to that
             let found = found.iter().filter(|f| f.refined.index > 0);
-            let at = |f: &Found| saddle_of(h, band, f, nearest(band.path(), &f.refined.state.m));
+            let at = |f: &Saddle| saddle_of(h, band, f, nearest(band.path(), &f.refined.state.m));
             let mut saddles: Vec<SaddlePoint> = found.map(at).collect();
             saddles.sort_by(|p, q| p.reaction_coordinate_rad.total_cmp(&q.reaction_coordinate_rad));
             saddles
@@ -265,7 +266,7 @@ fn saddles(problem: &Problem, band: &Band, found: &[Found], links: &[Link], plac
     }
 }
 
-fn saddle_of(h: Evaluator, band: &Band, f: &Found, place: Place) -> SaddlePoint {
+fn saddle_of(h: Evaluator, band: &Band, f: &Saddle, place: Place) -> SaddlePoint {
     let first = band.path().image(0);
     let above = h.difference_mev(&f.refined.state.m, first);
     SaddlePoint {
@@ -281,12 +282,12 @@ fn saddle_of(h: Evaluator, band: &Band, f: &Found, place: Place) -> SaddlePoint 
     }
 }
 
-fn saddle_of_link(h: Evaluator, band: &Band, link: &Link, place: Place) -> SaddlePoint {
+fn saddle_of_link(h: Evaluator, band: &Band, link: &Pass, place: Place) -> SaddlePoint {
     SaddlePoint {
         negative_modes: Some(link.spectrum.negative),
         zero_modes: Some(link.spectrum.zero_and_flat()),
         lowest_eigenvalues_mev: link.spectrum.lowest_mev.clone(),
-        ..saddle_of(h, band, &link.found, place)
+        ..saddle_of(h, band, &link.saddle, place)
     }
 }
 
@@ -321,13 +322,13 @@ fn band_saddles(problem: &Problem, band: &Band) -> Vec<SaddlePoint> {
 }
 
 /// Where a path passes the saddles of its links, and the minima between them.
-fn places_of(path: &Path, links: &[Link]) -> Vec<Place> {
-    let states = links.iter().flat_map(|l| [&l.found.refined.state.m[..], l.after.spins.as_slice()]);
+fn places_of(path: &Path, links: &[Pass]) -> Vec<Place> {
+    let states = links.iter().flat_map(|l| [&l.saddle.refined.state.m[..], l.after.spins.as_slice()]);
     in_order(path, &states.take((2 * links.len()).saturating_sub(1)).collect::<Vec<_>>())
 }
 
 /// The minimum behind a link.
-fn minimum_of(link: &Link, place: Place) -> IntermediateMinimum {
+fn minimum_of(link: &Pass, place: Place) -> IntermediateMinimum {
     IntermediateMinimum {
         image: place.image,
         reaction_coordinate_rad: place.s,

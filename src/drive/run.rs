@@ -1,26 +1,29 @@
 //! A whole run.
 
 use super::candidate::{Candidate, describe, rejection};
-use super::climb::{Found, ZOOMS, escapes, same, zoomed};
+use super::climb::{ZOOMS, escapes, zoomed};
 use super::connect::{Sequence, follow};
-use super::ends::{Relaxed, judge_end, kept, relax_to_minimum};
+use super::ends::{judge_end, kept};
 use super::explore::{natural_guesses, turning_axis};
 use super::join::{Joined, Tools, joined};
 use super::lower::lowered;
-use super::minimum::{Link, Minimum};
 use super::outcome::*;
-use super::recorded::recorded;
 use super::relaxation::{Goal, Relaxation, height, image_levels, needs_laplacian, refined};
 use super::report::{self, Prepared, Proof};
-use super::top::{Top, highest, tops};
-use super::{Doubt, Images, Observer, PathEnd, Problem, Scales, Silent, Stop};
+use super::{Images, Observer, Problem, Scales, Silent, Stop};
 use crate::band::{Band, Laplacian, align_rotations};
 use crate::energy::Evaluator;
+use crate::energy::recorded;
 use crate::error::Result;
 use crate::geometry::{Direction, Vector};
+use crate::landscape::{Doubt, PathEnd};
+use crate::landscape::{Minimum, Pass};
+use crate::landscape::{Peak, highest, peaks};
+use crate::landscape::{Saddle, same};
 use crate::path::guess::{FirstGuess, GuessContext, GuessSpec, NoiseSpec, Rotation, add_noise, moving_sites, smooth};
 use crate::path::{Path, distance};
 use crate::spins::Spins;
+use crate::stationary::{Relaxed, relax_to_minimum};
 use crate::threads::both;
 use std::time::Instant;
 
@@ -62,7 +65,7 @@ pub fn run(problem: &Problem, observer: &mut dyn Observer) -> Result<Outcome> {
 /// A path with what is known of it.
 struct Settled<'a> {
     candidate: Candidate<'a>,
-    found: Vec<Found>,
+    found: Vec<Saddle>,
     proof: Proof,
 }
 
@@ -70,15 +73,15 @@ impl Settled<'_> {
     /// The highest that the path is known to pass above its first image (meV): an image or a saddle.
     fn seen_mev(&self) -> f64 {
         let reference = self.candidate.band.energies_mev()[0];
-        let saddles = self.proof.links.iter().map(|l| l.found.refined.state.energy_mev - reference);
+        let saddles = self.proof.links.iter().map(|l| l.saddle.refined.state.energy_mev - reference);
         saddles.fold(self.candidate.top_mev(), f64::max)
     }
 }
 
 /// What no image of a path over these saddles exceeds (meV above the first image): the highest of them or an end, and rounding.
-fn over(c: &Candidate, links: &[Link]) -> f64 {
+fn over(c: &Candidate, links: &[Pass]) -> f64 {
     let e = c.band.energies_mev();
-    let saddles = links.iter().map(|l| l.found.refined.state.energy_mev - e[0]);
+    let saddles = links.iter().map(|l| l.saddle.refined.state.energy_mev - e[0]);
     saddles.fold((e[e.len() - 1] - e[0]).max(0.0), f64::max) + 1e-6 * height(&c.band)
 }
 
@@ -260,7 +263,7 @@ impl<'a, 'o> Run<'a, 'o> {
     }
 
     /// With its saddles as images, and proven.
-    fn seated(&mut self, mut c: Candidate<'a>, found: Vec<Found>, proof: Option<Proof>) -> Result<Settled<'a>> {
+    fn seated(&mut self, mut c: Candidate<'a>, found: Vec<Saddle>, proof: Option<Proof>) -> Result<Settled<'a>> {
         if self.problem.neb.climb && seat(&mut c.band, &found) {
             self.relax(&mut c, Goal::Tight, usize::MAX)?;
         }
@@ -318,7 +321,7 @@ impl<'a, 'o> Run<'a, 'o> {
     }
 
     /// Follows the path from its highest saddle down to both ends, and says what was proven on the way.
-    fn prove(&mut self, c: &Candidate<'a>, found: &[Found]) -> Result<Proof> {
+    fn prove(&mut self, c: &Candidate<'a>, found: &[Saddle]) -> Result<Proof> {
         let h = self.problem.evaluator();
         let ends = Minimum::examine_both(h, self.ends.each_ref().map(|end| &end.spins));
         let highest = found.iter().max_by(|p, q| p.refined.state.energy_mev.total_cmp(&q.refined.state.energy_mev));
@@ -339,10 +342,10 @@ impl<'a, 'o> Run<'a, 'o> {
             sequence = follow(&mut relaxation, &c.band, ends[0].clone(), ends[1].clone(), highest.clone(), &context)?;
         } else {
             let alone = match self.problem.rates {
-                None => Link::between(h, highest.clone(), ends.clone()),
+                None => Pass::between(h, highest.clone(), ends.clone()),
                 Some(_) => None,
             };
-            sequence.links.push(alone.map_or_else(|| Link::recorded(h, highest.clone(), scale), Ok)?);
+            sequence.links.push(alone.map_or_else(|| Pass::recorded(h, highest.clone(), scale), Ok)?);
         }
         let mut doubts: Vec<Doubt> = sequence.links.iter().filter_map(|l| l.doubt(h)).collect();
         doubts.extend(sequence.gap);
@@ -438,7 +441,7 @@ impl<'a, 'o> Run<'a, 'o> {
             }
             let h = c.band.evaluator();
             c.found = match self.zoom(c)? {
-                Some(top) => Some(Found::recorded(h, top, scale, self.scales.half_site_rad())?),
+                Some(top) => Some(Saddle::recorded(h, top, scale, self.scales.half_site_rad())?),
                 None => None,
             };
             let Some(found) = c.found.as_ref() else { break };
@@ -465,7 +468,7 @@ impl<'a, 'o> Run<'a, 'o> {
     }
 
     /// The path's top. One inside the first or last interval is not resolved: the part of the path around it becomes finer.
-    fn zoom(&mut self, c: &mut Candidate<'a>) -> Result<Option<Top>> {
+    fn zoom(&mut self, c: &mut Candidate<'a>) -> Result<Option<Peak>> {
         let mut top = highest(&c.band);
         for _ in 0..ZOOMS {
             let images = match self.problem.images {
@@ -481,17 +484,17 @@ impl<'a, 'o> Run<'a, 'o> {
     }
 
     /// Every maximum within a tenth of the highest, refined; saddles found twice count once.
-    fn all_saddles(&mut self, c: &Candidate<'a>) -> Result<Vec<Found>> {
+    fn all_saddles(&mut self, c: &Candidate<'a>) -> Result<Vec<Saddle>> {
         let scale = self.scales.stiffness_mev;
         if !self.problem.seeks_saddles() {
             return Ok(Vec::new());
         }
         let h = self.problem.evaluator();
-        let mut found: Vec<Found> = Vec::new();
-        for top in tops(&c.band, WINDOW * height(&c.band)) {
+        let mut found: Vec<Saddle> = Vec::new();
+        for top in peaks(&c.band, WINDOW * height(&c.band)) {
             let f = match c.found.as_ref().filter(|f| is_seated(&c.band, top.image, f)) {
-                Some(f) => Found { top, refined: f.refined.clone() },
-                None => Found::recorded(h, top, scale, self.scales.half_site_rad())?,
+                Some(f) => Saddle { top, refined: f.refined.clone() },
+                None => Saddle::recorded(h, top, scale, self.scales.half_site_rad())?,
             };
             if f.is_saddle(scale) && !found.iter().any(|g| same(&g.refined.state.m, &f.refined.state.m)) {
                 found.push(f);
@@ -576,7 +579,7 @@ fn relaxed_ends(h: Evaluator, given: [&Spins; 2]) -> Result<[Relaxed; 2]> {
 }
 
 /// Whether a saddle is image k of a band, and higher than its neighbours.
-fn is_seated(band: &Band, k: usize, saddle: &Found) -> bool {
+fn is_seated(band: &Band, k: usize, saddle: &Saddle) -> bool {
     let e = band.energies_mev();
     let between_ends = k > 0 && k + 1 < e.len();
     between_ends
@@ -587,7 +590,7 @@ fn is_seated(band: &Band, k: usize, saddle: &Found) -> bool {
 }
 
 /// Puts refined saddles in the place of the images nearest to them, where they fit between the neighbours; says whether any did.
-fn seat(band: &mut Band, found: &[Found]) -> bool {
+fn seat(band: &mut Band, found: &[Saddle]) -> bool {
     let last = band.images() - 1;
     let mut seated = false;
     for f in found {

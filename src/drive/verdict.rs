@@ -1,6 +1,7 @@
 //! What a run came to: in words, and as a code from a closed list.
 
-use super::{Doubt, PathEnd, Stop};
+use super::Stop;
+use crate::landscape::{Doubt, PathEnd};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 

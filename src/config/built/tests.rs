@@ -145,7 +145,7 @@ fn a_soliton_in_a_helimagnet_takes_its_handedness_and_stays() {
         let built = problem(&helimagnet(d, json!({"center": 39.5})));
         assert!((winding(&built.initial) - turns).abs() < 1e-12, "{d}");
         let h = &built.hamiltonian;
-        let relaxed = crate::drive::relax_to_minimum(h.into(), &built.initial, 1e-12 * h.stiffness_mev()).unwrap();
+        let relaxed = crate::stationary::relax_to_minimum(h.into(), &built.initial, 1e-12 * h.stiffness_mev()).unwrap();
         assert!((winding(&relaxed.spins) - turns).abs() < 1e-12, "{d}");
         // 8 √(J μB) − 2π |D|, and the lattice's correction of that
         let energy = h.difference_mev(relaxed.spins.as_slice(), built.final_state.as_slice());

@@ -1,6 +1,6 @@
 //! Computations whose results are recorded, or taken from the record of an interrupted run.
 
-use crate::energy::Evaluator;
+use super::Evaluator;
 use crate::error::Result;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -29,4 +29,10 @@ pub fn recorded<T: Stored>(
     let found = found?;
     call.finish(|| &found);
     Ok(found)
+}
+
+impl<T: Stored> Stored for Vec<T> {
+    fn restored(self, h: Evaluator) -> Option<Self> {
+        self.into_iter().map(|one| one.restored(h)).collect()
+    }
 }

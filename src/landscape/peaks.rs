@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 /// A maximum of a band, as far as the band tells.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Top {
+pub struct Peak {
     /// Spins, component-major.
     pub m: Vec<f64>,
     /// Unit direction of the path (3N).
@@ -24,11 +24,11 @@ pub struct Top {
 }
 
 /// Every maximum whose energy is within `window` (meV) of the highest, highest first.
-pub fn tops(band: &Band, window: f64) -> Vec<Top> {
+pub fn peaks(band: &Band, window: f64) -> Vec<Peak> {
     let profile = band.profile();
     let e = band.energies_mev();
     let last = e.len() - 1;
-    let mut found: Vec<Top> = Vec::new();
+    let mut found: Vec<Peak> = Vec::new();
     for k in 1..last {
         if e[k] >= e[k - 1] && e[k] >= e[k + 1] {
             found.push(beside(band, &profile, k));
@@ -47,14 +47,14 @@ pub fn tops(band: &Band, window: f64) -> Vec<Top> {
 }
 
 /// The highest maximum, if the band rises anywhere above its ends.
-pub fn highest(band: &Band) -> Option<Top> {
-    tops(band, 0.0).into_iter().next()
+pub fn highest(band: &Band) -> Option<Peak> {
+    peaks(band, 0.0).into_iter().next()
 }
 
 /// A maximal image, or the interpolated maximum beside it where that can be trusted: its force is below twice the image's, or
 /// its energy is within 2 % of what the interpolation said (on coarse plateaus the interpolation overshoots).
-fn beside(band: &Band, profile: &Profile, k: usize) -> Top {
-    let image = Top {
+fn beside(band: &Band, profile: &Profile, k: usize) -> Peak {
+    let image = Peak {
         m: band.path().image(k).to_vec(),
         tau: through(band, k),
         energy_mev: band.energies_mev()[k],
@@ -73,17 +73,17 @@ fn beside(band: &Band, profile: &Profile, k: usize) -> Top {
     let image_force = slab::max_abs(band.perpendicular(k)) + band.along(k).abs() * slab::max_abs(band.tangent(k));
     let height = band.energies_mev()[k] - band.energies_mev()[0].min(band.energies_mev()[band.images() - 1]);
     let trusted = slab::max_abs(&f) < 2.0 * image_force || (energy - top.energy_mev).abs() < 0.02 * height;
-    if trusted { Top { energy_mev: energy.max(image.energy_mev), ..top } } else { image }
+    if trusted { Peak { energy_mev: energy.max(image.energy_mev), ..top } } else { image }
 }
 
 /// The interpolated maximum of an interval: its spins on the great circles between the two images.
-fn between(band: &Band, profile: &Profile, x: &Extremum) -> Top {
+fn between(band: &Band, profile: &Profile, x: &Extremum) -> Peak {
     let (a, b) = (band.path().image(x.interval), band.path().image(x.interval + 1));
     let mut m = vec![0.0; a.len()];
     blend(a, b, x.fraction, &mut m);
     let tau = if x.fraction < 0.5 { direction(&m, b, 1.0) } else { direction(&m, a, -1.0) };
     let image = if x.fraction < 0.5 { x.interval } else { x.interval + 1 };
-    Top {
+    Peak {
         m,
         tau,
         energy_mev: x.energy + band.energies_mev()[0],
@@ -107,7 +107,7 @@ fn through(band: &Band, k: usize) -> Vec<f64> {
 }
 
 /// ± the unit initial velocity of the geodesic from m to `to`.
-pub(super) fn direction(m: &[f64], to: &[f64], sign: f64) -> Vec<f64> {
+pub fn direction(m: &[f64], to: &[f64], sign: f64) -> Vec<f64> {
     let mut t = vec![0.0; m.len()];
     write_logs(Components::new(m), Components::new(to), &mut t);
     let size = slab::norm(&t);

@@ -1,17 +1,11 @@
-//! Minima: what a descent ends in, and whether two of them are the same.
+//! Saddles with the minima on their two sides.
 
-use super::Doubt;
-use super::climb::Found;
-use super::ends::relax_to_minimum;
-use super::recorded::recorded;
-use super::turns::{turned, turns};
-use crate::energy::Evaluator;
+use super::{Doubt, Minimum, Saddle};
+use crate::energy::{Evaluator, recorded};
 use crate::error::Result;
 use crate::linalg::slab;
-use crate::path::largest_angle;
 use crate::spins::Spins;
-use crate::stationary::{Spectrum, State, descend};
-use crate::threads::both;
+use crate::stationary::{Spectrum, descend, relax_to_minimum};
 use serde::{Deserialize, Serialize};
 
 /// How many eigenvalues of a saddle are reported.
@@ -20,77 +14,11 @@ const REPORTED: usize = 6;
 const MANY: usize = 200_000;
 /// A valley with less than this (of its curvature) left over when the Hessian acts on it is a mode.
 const PURE: f64 = 0.1;
-/// Spins of two states of one minimum differ by less (rad).
-const SAME: f64 = 1e-3;
-
-/// A stationary state with its spectrum.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Minimum {
-    /// The spins.
-    pub spins: Spins,
-    /// Total energy (meV).
-    pub energy_mev: f64,
-    /// Largest component of the Riemannian gradient (meV).
-    pub max_torque_mev: f64,
-    /// Its modes.
-    pub spectrum: Spectrum,
-}
-
-impl Minimum {
-    /// A relaxed state, examined.
-    pub fn examine(h: Evaluator, spins: &Spins) -> Minimum {
-        Minimum::with_modes(h, spins, 0)
-    }
-
-    /// Two of them.
-    pub fn examine_both(h: Evaluator, spins: [&Spins; 2]) -> [Minimum; 2] {
-        let [a, b] = spins;
-        both(3 * h.sites(), || Minimum::examine(h, a), || Minimum::examine(h, b)).into()
-    }
-
-    /// The same with so many of its lowest eigenvalues.
-    pub fn with_modes(h: Evaluator, spins: &Spins, count: usize) -> Minimum {
-        let state = State::at(h, spins.as_slice().to_vec());
-        Minimum {
-            energy_mev: h.energy_mev(&state.m),
-            max_torque_mev: state.max_torque_mev(),
-            spectrum: Spectrum::of(h, &state, count),
-            spins: spins.clone(),
-        }
-    }
-
-    /// Stationary, and without a negative direction.
-    pub fn is_proven(&self) -> bool {
-        self.spectrum.negative == 0 && self.spectrum.is_stationary(self.max_torque_mev)
-    }
-
-    /// Whether `other` is this minimum, or one along a valley that is flat as far as double precision tells: the same energy.
-    pub fn is_same(&self, h: Evaluator, other: &Minimum) -> bool {
-        if self.is_identical(h, other) {
-            return true;
-        }
-        let noise = 1e-12 * h.stiffness_mev();
-        let both_flat = self.spectrum.flat > 0 && other.spectrum.flat > 0;
-        both_flat && h.difference_mev(self.spins.as_slice(), other.spins.as_slice()).abs() < noise
-    }
-
-    /// Whether `other` has the same spins, perhaps after a rotation about the symmetry axes.
-    pub fn is_identical(&self, h: Evaluator, other: &Minimum) -> bool {
-        largest_angle(self.spins.as_slice(), other.spins.as_slice()) < SAME || self.is_turned(h, other)
-    }
-
-    /// Whether a rotation about the symmetry axes makes `other` of this minimum.
-    pub fn is_turned(&self, h: Evaluator, other: &Minimum) -> bool {
-        let a = self.spins.as_slice();
-        let turn = turns(h, &other.spins, &self.spins);
-        !turn.is_empty() && largest_angle(a, turned(&other.spins, &turn).as_slice()) < SAME
-    }
-}
 
 /// The direction (3N) in which a saddle falls: the valley that its search followed, or, where that is a mixture of soft modes,
 /// the lowest mode, if that is plainly negative.
-fn falling(found: &Found) -> Vec<f64> {
-    let (state, valley) = (&found.refined.state, &found.refined.valley);
+fn falling(saddle: &Saddle) -> Vec<f64> {
+    let (state, valley) = (&saddle.refined.state, &saddle.refined.valley);
     let v = state.basis.coordinates(valley);
     let mut residual = vec![0.0; v.len()];
     state.hessian.multiply(&v, &mut residual);
@@ -108,9 +36,9 @@ fn falling(found: &Found) -> Vec<f64> {
 
 /// A saddle with the minima on its two sides.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Link {
+pub struct Pass {
     /// The saddle.
-    pub found: Found,
+    pub saddle: Saddle,
     /// Its modes.
     pub spectrum: Spectrum,
     /// The minimum that the descent against the path's direction reaches.
@@ -125,12 +53,12 @@ pub struct Link {
     pub given: bool,
 }
 
-impl Link {
+impl Pass {
     /// Descends from a saddle on both sides.
-    pub fn of(h: Evaluator, found: Found, c: f64) -> Result<Link> {
-        let state = &found.refined.state;
-        let falls = falling(&found);
-        let sign = if slab::dot(&falls, &found.top.tau) < 0.0 { -1.0 } else { 1.0 };
+    pub fn of(h: Evaluator, saddle: Saddle, c: f64) -> Result<Pass> {
+        let state = &saddle.refined.state;
+        let falls = falling(&saddle);
+        let sign = if slab::dot(&falls, &saddle.top.tau) < 0.0 { -1.0 } else { 1.0 };
         let side = |direction: f64| -> Result<(Minimum, f64, Vec<Spins>)> {
             let valley: Vec<f64> = falls.iter().map(|v| direction * sign * v).collect();
             let d = descend(h, state, &valley, c);
@@ -143,26 +71,26 @@ impl Link {
         // on long chains the modes take much memory, which is given back before the descents
         let (spectrum, sides) = if h.sites() > MANY { (modes(), descents()) } else { rayon::join(modes, descents) };
         let ((before, f, back), (after, g, on)) = (sides.0?, sides.1?);
-        Ok(Link { spectrum, before, after, fallen_mev: [f, g], ways: [back, on], found, given: false })
+        Ok(Pass { spectrum, before, after, fallen_mev: [f, g], ways: [back, on], saddle, given: false })
     }
 
     /// A saddle whose spectrum alone tells that it is one, between ends that are kept as they are, minima or not. Nothing if its
     /// descending direction is too flat for that.
-    pub fn between(h: Evaluator, found: Found, [before, after]: [Minimum; 2]) -> Option<Link> {
-        let state = &found.refined.state;
+    pub fn between(h: Evaluator, saddle: Saddle, [before, after]: [Minimum; 2]) -> Option<Pass> {
+        let state = &saddle.refined.state;
         let spectrum = Spectrum::of(h, state, REPORTED);
         if spectrum.negative == 0 {
             return None;
         }
         let fallen_mev = [&before, &after].map(|end| h.difference_mev(&state.m, end.spins.as_slice()));
-        Some(Link { spectrum, before, after, fallen_mev, ways: Default::default(), found, given: true })
+        Some(Pass { spectrum, before, after, fallen_mev, ways: Default::default(), saddle, given: true })
     }
 
     /// The same, as far as it is not on record.
-    pub fn recorded(h: Evaluator, found: Found, c: f64) -> Result<Link> {
-        let Found { top, refined } = &found;
+    pub fn recorded(h: Evaluator, saddle: Saddle, c: f64) -> Result<Pass> {
+        let Saddle { top, refined } = &saddle;
         let [m, valley, tau] = [&refined.state.m, &refined.valley, &top.tau].map(Vec::clone);
-        recorded(h, "descents", &[&m, &valley, &tau], || Link::of(h, found, c))
+        recorded(h, "descents", &[&m, &valley, &tau], || Pass::of(h, saddle, c))
     }
 
     /// Exchanges its two sides: which of them the path comes from is not always plain at the saddle itself.
@@ -174,7 +102,7 @@ impl Link {
 
     /// Why this is not a proven saddle of index one between two proven minima; nothing if it is.
     pub fn doubt(&self, h: Evaluator) -> Option<Doubt> {
-        let state = &self.found.refined.state;
+        let state = &self.saddle.refined.state;
         let s = &self.spectrum;
         if !s.is_stationary(state.max_torque_mev()) {
             return Some(Doubt::Torque(state.max_torque_mev()));

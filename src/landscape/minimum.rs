@@ -1,0 +1,76 @@
+//! Minima: what a descent ends in, and whether two of them are the same.
+
+use super::turns::{turned, turns};
+use crate::energy::Evaluator;
+use crate::path::largest_angle;
+use crate::spins::Spins;
+use crate::stationary::{Spectrum, State};
+use crate::threads::both;
+use serde::{Deserialize, Serialize};
+
+/// Spins of two states of one minimum differ by less (rad).
+const SAME: f64 = 1e-3;
+
+/// A stationary state with its spectrum.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Minimum {
+    /// The spins.
+    pub spins: Spins,
+    /// Total energy (meV).
+    pub energy_mev: f64,
+    /// Largest component of the Riemannian gradient (meV).
+    pub max_torque_mev: f64,
+    /// Its modes.
+    pub spectrum: Spectrum,
+}
+
+impl Minimum {
+    /// A relaxed state, examined.
+    pub fn examine(h: Evaluator, spins: &Spins) -> Minimum {
+        Minimum::with_modes(h, spins, 0)
+    }
+
+    /// Two of them.
+    pub fn examine_both(h: Evaluator, spins: [&Spins; 2]) -> [Minimum; 2] {
+        let [a, b] = spins;
+        both(3 * h.sites(), || Minimum::examine(h, a), || Minimum::examine(h, b)).into()
+    }
+
+    /// The same with so many of its lowest eigenvalues.
+    pub fn with_modes(h: Evaluator, spins: &Spins, count: usize) -> Minimum {
+        let state = State::at(h, spins.as_slice().to_vec());
+        Minimum {
+            energy_mev: h.energy_mev(&state.m),
+            max_torque_mev: state.max_torque_mev(),
+            spectrum: Spectrum::of(h, &state, count),
+            spins: spins.clone(),
+        }
+    }
+
+    /// Stationary, and without a negative direction.
+    pub fn is_proven(&self) -> bool {
+        self.spectrum.negative == 0 && self.spectrum.is_stationary(self.max_torque_mev)
+    }
+
+    /// Whether `other` is this minimum, or one along a valley that is flat as far as double precision tells: the same energy.
+    pub fn is_same(&self, h: Evaluator, other: &Minimum) -> bool {
+        if self.is_identical(h, other) {
+            return true;
+        }
+        let noise = 1e-12 * h.stiffness_mev();
+        let both_flat = self.spectrum.flat > 0 && other.spectrum.flat > 0;
+        both_flat && h.difference_mev(self.spins.as_slice(), other.spins.as_slice()).abs() < noise
+    }
+
+    /// Whether `other` has the same spins, perhaps after a rotation about the symmetry axes.
+    pub fn is_identical(&self, h: Evaluator, other: &Minimum) -> bool {
+        largest_angle(self.spins.as_slice(), other.spins.as_slice()) < SAME || self.is_turned(h, other)
+    }
+
+    /// Whether a rotation about the symmetry axes makes `other` of this minimum.
+    pub fn is_turned(&self, h: Evaluator, other: &Minimum) -> bool {
+        let a = self.spins.as_slice();
+        let turn = turns(h, &other.spins, &self.spins);
+        !turn.is_empty() && largest_angle(a, turned(&other.spins, &turn).as_slice()) < SAME
+    }
+}

@@ -1,0 +1,161 @@
+//! Relaxing a state to its minimum: Newton's method with a shift that keeps the Hessian positive, and descent checked.
+
+use super::{Point, Spectrum, State, descend, polish};
+use crate::energy::Evaluator;
+use crate::error::{Error, Result};
+use crate::field::Components;
+use crate::geometry::{Vector, vector};
+use crate::linalg::{Factors, Matrix, slab};
+use crate::path::largest_angle;
+use crate::sphere::rotation_of;
+use crate::spins::Spins;
+use serde::{Deserialize, Serialize};
+use std::mem::take;
+
+/// Largest rotation of a spin in one step (rad).
+const CAP: f64 = 0.5;
+/// Most Newton steps to a stationary state.
+const STEPS: usize = 500;
+/// Forces of this many tolerances are rounding error beside steps that a shift makes short: the state is as good as stationary.
+const NEARLY: f64 = 1e6;
+/// The first shift and the least one, in parts of the largest stiffness; one below the third gives way to none where it can.
+const SHIFTS: [f64; 3] = [1e-3, 1e-9, 1e-4];
+
+/// A relaxed state.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Relaxed {
+    /// The spins.
+    pub spins: Spins,
+    /// Largest component of the remaining force (meV).
+    pub max_torque_mev: f64,
+    /// Newton steps taken.
+    pub steps: usize,
+    /// Largest rotation of any spin from where it was put (rad).
+    pub largest_rotation_rad: f64,
+    /// How a stationary state that is no minimum was left, if the relaxation came to one: the first of them.
+    pub left: Option<WayDown>,
+    /// The force fell below the tolerance.
+    pub converged: bool,
+}
+
+/// How a saddle was left for a minimum.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WayDown {
+    /// The site that its lowest mode turns most.
+    pub site: usize,
+    /// Where that site's spin turns to first, of unit length.
+    pub direction: Vector,
+    /// How far the energy fell (meV).
+    pub fallen_mev: f64,
+}
+
+/// The minimum that `start` relaxes to, with every force component below `tolerance_mev`. Stationary states on the way that are
+/// no minima are left, however many, as long as the energy falls.
+pub fn relax_to_minimum(h: Evaluator, start: &Spins, tolerance_mev: f64) -> Result<Relaxed> {
+    let mut p = Point::at(h, start.as_slice().to_vec());
+    let mut left = None;
+    let mut steps = 0;
+    let mut memory = Matrix::default();
+    loop {
+        p = stationary(h, p, tolerance_mev, &mut steps, &mut memory)?;
+        let Some((below, way)) = way_down(h, &p, &mut memory) else { break };
+        if way.fallen_mev <= 0.0 {
+            break;
+        }
+        left.get_or_insert(way);
+        steps += 1;
+        p = below;
+    }
+    Ok(Relaxed {
+        max_torque_mev: p.max_torque_mev(),
+        steps,
+        largest_rotation_rad: largest_angle(start.as_slice(), &p.m),
+        left,
+        converged: p.max_torque_mev() <= 1e3 * tolerance_mev,
+        spins: Spins::from_unit_components(&p.m),
+    })
+}
+
+/// Newton's method down to a stationary state, minimum or not. Beside a saddle that the forces do not lead away from, its steps
+/// along soft modes are short, and it ends before.
+fn stationary(h: Evaluator, mut p: Point, tolerance_mev: f64, steps: &mut usize, memory: &mut Matrix) -> Result<Point> {
+    let mut shift = 0.0;
+    let mut stalled = 0;
+    let most = *steps + STEPS;
+    while *steps < most {
+        if h.is_stopped() {
+            return Err(Error::Stopped);
+        }
+        if !p.max_torque_mev().is_finite() {
+            return Err(Error::Numerical(
+                "the forces on the state are not finite numbers: are the energies absurdly large?".into(),
+            ));
+        }
+        if p.max_torque_mev() <= tolerance_mev || stalled >= 2 {
+            break;
+        }
+        let before = p.max_torque_mev();
+        let Some(next) = newton_step(h, &p, &mut shift, memory) else { break };
+        let torque = next.max_torque_mev();
+        stalled = if torque > 0.5 * before && torque < 20.0 * tolerance_mev { stalled + 1 } else { 0 };
+        p = next;
+        *steps += 1;
+    }
+    if p.max_torque_mev() > tolerance_mev && p.max_torque_mev() < NEARLY * tolerance_mev {
+        // the shift makes steps along a valley that is all but flat short
+        p = polish(h, State::of(h, p)).point;
+    }
+    Ok(p)
+}
+
+/// One accepted step: (H + shift) v = F, capped, with a larger shift as long as the energy would rise. The shift to go on with
+/// comes down while H stays indefinite, to the size of its lowest eigenvalue: near a saddle the falling mode then grows from step
+/// to step by a part that does not depend on how soft it is.
+fn newton_step(h: Evaluator, p: &Point, shift: &mut f64, memory: &mut Matrix) -> Option<Point> {
+    let scale = h.stiffness_mev();
+    let slack = 1e-13 * (p.energy_mev.abs() + scale);
+    let [first, least, small] = SHIFTS.map(|part| part * scale);
+    let mut trial = if *shift > small { *shift } else { 0.0 };
+    while trial < 1e6 * scale {
+        let mut matrix = take(memory);
+        p.write_hessian(h, trial + 1e-12 * scale, &mut matrix);
+        let mut x = p.downhill();
+        let factors = Factors::solving(matrix, &mut x, 1);
+        let positive = factors.negatives() == 0;
+        *memory = factors.into_memory();
+        if positive {
+            let mut v = p.field(&x);
+            let rotation = rotation_of(&v);
+            if rotation > CAP {
+                slab::scale(&mut v, CAP / rotation);
+            }
+            let mut next = Point::default();
+            next.go(h, p, &v);
+            if next.energy_mev <= p.energy_mev + slack {
+                *shift = if trial > 0.0 { (trial / 4.0).max(least) } else { 0.0 };
+                return Some(next);
+            }
+        }
+        trial = match (trial > 0.0, *shift > 0.0) {
+            (true, _) => 4.0 * trial,
+            (false, true) => *shift,
+            (false, false) => first,
+        };
+    }
+    None
+}
+
+/// From a state with a negative direction, stationary or nearly so: the minimum below it; nothing if there is no such direction.
+fn way_down(h: Evaluator, p: &Point, memory: &mut Matrix) -> Option<(Point, WayDown)> {
+    if Spectrum::negatives(h, p, memory) == 0 {
+        return None;
+    }
+    let state = State::of(h, p.clone());
+    let mode = state.field(&state.lowest_mode()?.vector);
+    let below = Point::at(h, descend(h, &state, &mode, h.stiffness_mev()).m);
+    let turns = Components::new(&mode);
+    let largest = (0..h.sites()).max_by(|i, j| vector::norm(turns.get(*i)).total_cmp(&vector::norm(turns.get(*j))));
+    let site = largest.unwrap_or(0);
+    let way = WayDown { site, direction: vector::unit_or(turns.get(site), [0.0; 3]), fallen_mev: p.above_mev(&below) };
+    Some((below, way))
+}
