@@ -10,7 +10,7 @@
 //! | [`output`] | files and figures |
 //! | [`drive`] | a whole run: ends, first paths, band, saddles, proof |
 //! | [`rates`] | lifetimes of states |
-//! | [`band`], [`stationary`] | the force on a path; saddles and minima to machine precision |
+//! | [`band`], [`stationary`], [`symmetry`] | the force on a path; saddles and minima to machine precision; what leaves an energy as it is |
 //! | [`energy`], [`path`], [`optimise`] | energy terms; first paths; methods that move spins |
 //! | [`state`] | spin states |
 //! | [`files`] | files of spins: OVF, npz, npy, csv, VTK |
@@ -42,6 +42,7 @@ pub mod sphere;
 pub mod spins;
 pub mod state;
 pub mod stationary;
+pub mod symmetry;
 mod threads;
 pub mod units;
 pub mod words;

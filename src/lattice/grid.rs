@@ -48,6 +48,13 @@ impl Grid {
         Some(x? + self.size[0] * (y? + self.size[1] * z?))
     }
 
+    /// The cell so many on from cell i along one direction, if there is one.
+    pub fn step_from(&self, i: usize, direction: usize, by: isize) -> Option<usize> {
+        let mut shift = [0; 3];
+        shift[direction] = by;
+        self.shifted(i, shift)
+    }
+
     /// So many cells on along one direction, if there is one.
     pub(super) fn step(&self, from: usize, by: isize, direction: usize) -> Option<usize> {
         let (to, size) = (from as isize + by, self.size[direction]);

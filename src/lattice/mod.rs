@@ -24,7 +24,7 @@ pub use grid::{Grid, Shift};
 pub use selection::Selection;
 pub use sites::{Frozen, SiteMoment, SiteSection};
 pub use spec::LatticeSpec;
-pub use symmetry::SiteSymmetry;
+pub use symmetry::{Motion, SiteSymmetry};
 
 use crate::error::Result;
 use crate::geometry::{Direction, Vector, vector};

@@ -1,0 +1,84 @@
+//! The group of an energy, as generators: shifts, and one operation of each class of those that differ by shifts.
+
+use super::operation::Operation;
+use super::search::Search;
+use crate::energy::Hamiltonian;
+use crate::geometry::Vector;
+use crate::geometry::matrix::{UNIT, product};
+
+/// Any of the orthogonal matrices tried becomes 1 after so many times.
+const ORDER: usize = 12;
+
+/// The operations that leave an energy as it is.
+#[derive(Debug)]
+pub struct Group {
+    axes: Vec<Vector>,
+    shifts: Vec<Shift>,
+    classes: Vec<Operation>,
+}
+
+/// The shortest shift along a direction.
+#[derive(Clone, Debug)]
+pub struct Shift {
+    /// Once.
+    pub operation: Operation,
+    /// After how many times every site is where it was.
+    pub order: usize,
+}
+
+impl Shift {
+    /// So many times, less than its order.
+    pub fn times(&self, count: usize) -> Operation {
+        let once = &self.operation;
+        let mut motion = once.motion;
+        motion.by = motion.by.map(|by| by * count);
+        let spin = (0..count % ORDER).fold(UNIT, |r, _| product(&r, &once.spin));
+        Operation { motion, spin, ..once.clone() }
+    }
+}
+
+impl Group {
+    /// The group of an energy. Frozen spins are those of `state` (component-major, 3N numbers). `alike`: a number a site, if more
+    /// than the energy must be kept: the moments, where rates are to be the same.
+    pub fn of(h: &Hamiltonian, state: &[f64], alike: &[f64]) -> Group {
+        let mut search = Search::new(h, state, alike);
+        let turns = search.turns_of_spins();
+        let shifts = search.shifts();
+        let motions = search.motions(&shifts);
+        let classes = motions.iter().flat_map(|m| turns.iter().map(move |turn| m.after(turn))).collect();
+        Group { axes: search.into_axes(), shifts, classes }
+    }
+
+    /// Unit vectors about which any rotation of all spins together is an operation too: none, one, or x, y and z. Such a rotation
+    /// before or after another operation makes none of its own here.
+    pub fn axes(&self) -> &[Vector] {
+        &self.axes
+    }
+
+    /// The shortest shifts, one a direction that has any. Every product of them is an operation.
+    pub fn shifts(&self) -> &[Shift] {
+        &self.shifts
+    }
+
+    /// One operation of each class of those that differ by no more than shifts; the identity is the first.
+    pub fn classes(&self) -> &[Operation] {
+        &self.classes
+    }
+
+    /// How many operations there are, with the identity.
+    pub fn order(&self) -> usize {
+        self.classes.len() * self.shifts.iter().map(|s| s.order).product::<usize>()
+    }
+
+    /// All operations but the identity, in a fixed order: the classes, then each after the first shift, and so on.
+    pub fn operations(&self) -> impl Iterator<Item = Operation> + '_ {
+        (1..self.order()).map(|k| {
+            let (mut shift, class) = (k / self.classes.len(), &self.classes[k % self.classes.len()]);
+            self.shifts.iter().fold(class.clone(), |operation, s| {
+                let count = shift % s.order;
+                shift /= s.order;
+                if count == 0 { operation } else { s.times(count).after(&operation) }
+            })
+        })
+    }
+}

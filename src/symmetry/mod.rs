@@ -1,0 +1,32 @@
+//! The discrete symmetry group of an energy, found from what it does to random states, not from what its terms are called.
+//!
+//! ```text
+//! m'_i = R m_p(i)          R orthogonal, p a motion of the sites: an operation of the group if E(m') = E(m) for every m
+//! f(m')_i = R f(m)_p(i)    then the forces f = −∂E/∂m move along with the spins
+//! ```
+//! One random state decides: 2N equations that an operation that is none fulfils with probability zero; the energy of another state
+//! confirms it. Frozen spins have to be taken to themselves, vacant sites stay as they are.
+//!
+//! # What is tried
+//! R: the 48 matrices that take the axes of a frame to each other, for x, y, z, for the principal axes of the on-site energy, and for
+//! the frames that the axes of the terms and the frozen spins span (the first eight frames). m ↦ −m, reversal of time, is among
+//! them. About an axis of symmetry, operations that differ by a rotation count as one; where the energy has no axis at all, m ↦ −m
+//! alone is tried. p: mirror images, shifts along periodic directions, and their products; those that take sites to unlike ones are
+//! left out: of other moments, frozen or not, or with other gradients Σ |∂E/∂m_i|² over the uniform states along ±x, ±y, ±z. An R
+//! must take the Σ_i ∂E/∂m_i of uniform states to each other. If p goes with one R, it goes with R R' for every R' that goes with no
+//! motion at all, and with no others; if a shift is an operation, so are its multiples. So the group is held as a few generators.
+//!
+//! # What is not found
+//! Matrices that are of none of these frames (a ring whose anisotropy turns by 30° from site to site); operations that turn each
+//! site by another matrix (an open chain with D along its one axis, whose spins can be reflected in planes that turn from
+//! site to site; bonds whose signs a reversal of some spins makes alike; parts of a chain that a vacancy cuts apart, each turned
+//! alone); and, beyond 512 trials of operations that move sites, whatever would come later.
+
+mod frames;
+mod group;
+mod marks;
+mod operation;
+mod search;
+
+pub use group::{Group, Shift};
+pub use operation::Operation;

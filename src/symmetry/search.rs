@@ -1,0 +1,279 @@
+//! The search for a group: marks of sites and sums of gradients say what is worth trying, one random state decides.
+
+use super::frames::{Frame, Permutation, along, are_alike, frames};
+use super::group::Shift;
+use super::marks::Marks;
+use super::operation::{Operation, SAME};
+use crate::energy::Hamiltonian;
+use crate::field::{Components, ComponentsMut};
+use crate::geometry::matrix::{UNIT, opposite, product, times};
+use crate::geometry::{Matrix, Vector, vector};
+use crate::lattice::{Grid, Motion};
+use crate::linalg::slab;
+use crate::spins::Spins;
+use std::sync::Arc;
+
+/// Forces agree that differ by less than this part of the stiffness, energies by so much a site.
+const AGREE: f64 = 1e-12;
+/// Squares of gradients differ by more than this part of the squared stiffness.
+const NOISE: f64 = 1e-11;
+/// How many operations that move sites are tried at most.
+const TRIALS: usize = 512;
+/// How many axes are kept of those that the terms and the frozen spins single out.
+const AXES: usize = 6;
+
+/// What it takes to try an operation.
+pub(super) struct Search<'a> {
+    h: &'a Hamiltonian,
+    state: &'a [f64],
+    held: Arc<[bool]>,
+    axes: Vec<Vector>,
+    marks: Marks,
+    /// Rotations and reflections of spins worth trying, 1 the first; once those that alone are operations are known, one of each
+    /// class of those that differ by them.
+    turns: Vec<Matrix>,
+    /// A random state and its force.
+    sample: [Vec<f64>; 2],
+    /// Another one and its energy (meV).
+    witness: (Vec<f64>, f64),
+    trials: usize,
+}
+
+impl<'a> Search<'a> {
+    pub fn new(h: &'a Hamiltonian, state: &'a [f64], alike: &[f64]) -> Search<'a> {
+        let vacant = &h.lattice().vacant;
+        let held: Arc<[bool]> = (0..h.sites()).map(|i| h.is_frozen(i) || vacant[i]).collect();
+        let mut search = Search {
+            h,
+            state,
+            held,
+            axes: h.symmetry_axes_at(state),
+            marks: Marks::none(h.sites()),
+            turns: Vec::new(),
+            sample: Default::default(),
+            witness: Default::default(),
+            trials: TRIALS,
+        };
+        search.marks.tell(|i| u64::from(h.is_frozen(i)) + 2 * u64::from(vacant[i]));
+        if !alike.is_empty() {
+            search.marks.tell(|i| alike[i].to_bits());
+        }
+        search.turns = search.candidates();
+        let [m, other] = [1, 2].map(|seed| search.held_as_they_are(Spins::random(h.sites(), 0x5a3e + seed)));
+        let force = search.force(&m);
+        search.witness = (other.clone(), h.energy_mev(&other));
+        search.sample = [m, force];
+        search
+    }
+
+    pub fn into_axes(self) -> Vec<Vector> {
+        self.axes
+    }
+
+    fn grid(&self) -> &'a Grid {
+        &self.h.lattice().grid
+    }
+
+    fn operation(&self, motion: Motion, spin: Matrix) -> Operation {
+        Operation { motion, spin, grid: *self.grid(), held: self.held.clone() }
+    }
+
+    /// The operations that move no site, the identity the first.
+    pub fn turns_of_spins(&mut self) -> Vec<Operation> {
+        let all = self.turns.iter().map(|r| self.operation(Motion::default(), *r));
+        let found: Vec<Operation> =
+            all.enumerate().filter(|(k, o)| *k == 0 || self.is_symmetry(o)).map(|(_, o)| o).collect();
+        let mut classes: Vec<Matrix> = Vec::new();
+        for r in std::mem::take(&mut self.turns) {
+            let reached = |q: &Matrix| found.iter().any(|o| are_alike(&product(q, &o.spin), &r, &self.axes));
+            if !classes.iter().any(reached) {
+                classes.push(r);
+            }
+        }
+        self.turns = classes;
+        found
+    }
+
+    /// The shortest shift along each periodic direction: of its subgroups of a cycle of n sites each has one that divides n.
+    pub fn shifts(&mut self) -> Vec<Shift> {
+        let grid = *self.grid();
+        let along = |search: &mut Search, d: usize| {
+            let n = grid.size[d];
+            let mut parts = (1..n).filter(|k| n.is_multiple_of(*k));
+            parts.find_map(|k| {
+                search.with_motion(Motion::shift(d, k)).map(|operation| Shift { operation, order: n / k })
+            })
+        };
+        (0..3).filter(|d| grid.periodic[*d]).filter_map(|d| along(self, d)).collect()
+    }
+
+    /// One operation of each class of those that move sites, of classes that differ by more than shifts and what moves none.
+    pub fn motions(&mut self, shifts: &[Shift]) -> Vec<Operation> {
+        let grid = *self.grid();
+        let mut free = [0, 1, 2].map(|d| if grid.periodic[d] { grid.size[d] } else { 1 });
+        for shift in shifts {
+            (0..3).filter(|d| shift.operation.motion.by[*d] > 0).for_each(|d| free[d] = shift.operation.motion.by[d]);
+        }
+        if free.iter().any(|n| *n > 1) {
+            self.marks.look_around(&grid);
+        }
+        let mut found = vec![self.operation(Motion::default(), UNIT)];
+        // shifts along several directions at once; along one, all are known
+        if free.iter().filter(|n| **n > 1).count() > 1 {
+            let skew = self.placed([false; 3], free);
+            found.extend(skew.into_iter().filter_map(|motion| self.with_motion(motion)));
+        }
+        let shifted = found.clone();
+        for pattern in 1..8 {
+            let reversed = [0, 1, 2].map(|d| pattern >> d & 1 == 1);
+            // a ring of two is its own mirror image, shifted
+            if (0..3).any(|d| reversed[d] && grid.size[d] < 2 + usize::from(grid.periodic[d])) {
+                continue;
+            }
+            let placed = self.placed(reversed, free);
+            if let Some(one) = placed.into_iter().find_map(|motion| self.with_motion(motion)) {
+                found.extend(shifted.iter().map(|s| s.after(&one)));
+            }
+        }
+        found
+    }
+
+    /// The motions that reverse these directions and take a site of the rarest mark to one like it, but for shifts by `free`.
+    fn placed(&self, reversed: [bool; 3], free: [usize; 3]) -> Vec<Motion> {
+        let grid = self.grid();
+        let ends = Motion::mirror(grid, reversed);
+        let rarest = self.marks.rarest();
+        let from = grid.cell(ends.of(grid, rarest[0]));
+        let mut list: Vec<Motion> = Vec::new();
+        for to in rarest.iter().map(|i| grid.cell(*i)) {
+            let apart = [0, 1, 2].map(|d| (to[d] + grid.size[d] - from[d]) % grid.size[d]);
+            if (0..3).any(|d| apart[d] > 0 && !grid.periodic[d]) {
+                continue;
+            }
+            let motion = Motion { reversed: [false; 3], by: [0, 1, 2].map(|d| apart[d] % free[d]) }.after(&ends, grid);
+            if !motion.is_none() && !list.contains(&motion) {
+                list.push(motion);
+            }
+        }
+        list
+    }
+
+    /// The first operation that moves sites so.
+    fn with_motion(&mut self, motion: Motion) -> Option<Operation> {
+        if !self.marks.allow(&motion, self.grid()) {
+            return None;
+        }
+        let tried = self.trials.min(self.turns.len());
+        let found = self.turns[..tried].iter().map(|r| self.operation(motion, *r)).position(|o| self.is_symmetry(&o));
+        self.trials -= found.map_or(tried, |k| k + 1);
+        found.map(|k| self.operation(motion, self.turns[k]))
+    }
+
+    /// f(m')_i = R f(m)_p(i) on a random state, E(m') = E(m) on another.
+    fn is_symmetry(&self, o: &Operation) -> bool {
+        let n = self.h.sites();
+        let near = |a: Vector, b: Vector, most: f64| slab::max_abs(&vector::sub(a, b)) <= most;
+        let state = Components::new(self.state);
+        let frozen = |i: &usize| self.h.is_frozen(*i) && !self.h.lattice().vacant[*i];
+        let image = |v: Components, i: usize| times(&o.spin, v.get(o.motion.of(self.grid(), i)));
+        if !(0..n).filter(frozen).all(|i| near(image(state, i), state.get(i), SAME)) {
+            return false;
+        }
+        let [m, force] = &self.sample;
+        let (moved, force) = (self.force(&o.apply(m)), Components::new(force));
+        let (moved, most) = (Components::new(&moved), AGREE * self.h.stiffness_mev());
+        let (other, energy_mev) = &self.witness;
+        (0..n).all(|i| near(moved.get(i), image(force, i), most))
+            && (self.h.energy_mev(&o.apply(other)) - energy_mev).abs() <= most * n as f64
+    }
+
+    /// The force on the spins that are not held (meV).
+    fn force(&self, m: &[f64]) -> Vec<f64> {
+        let (mut g, mut force) = (vec![0.0; m.len()], vec![0.0; m.len()]);
+        self.h.energy_gradient(m, &mut g);
+        self.h.force(m, &g, &mut force);
+        self.without_held(force)
+    }
+
+    fn without_held(&self, mut v: Vec<f64>) -> Vec<f64> {
+        let mut field = ComponentsMut::new(&mut v);
+        (0..self.held.len()).filter(|i| self.held[*i]).for_each(|i| field.set(i, [0.0; 3]));
+        v
+    }
+
+    /// A state with the held spins as they are.
+    fn held_as_they_are(&self, spins: Spins) -> Vec<f64> {
+        let (mut m, state) = (spins.as_slice().to_vec(), Components::new(self.state));
+        let mut to = ComponentsMut::new(&mut m);
+        (0..self.held.len()).filter(|i| self.held[*i]).for_each(|i| to.set(i, state.get(i)));
+        m
+    }
+
+    /// ∂E/∂m of the state with all free spins along ± each axis of a frame.
+    fn uniform_gradients(&self, frame: &Frame) -> impl Iterator<Item = Vec<f64>> {
+        frame.iter().flat_map(|e| [*e, vector::scale(-1.0, *e)]).map(|along| {
+            let components = along.iter().flat_map(|c| std::iter::repeat_n(*c, self.h.sites())).collect::<Vec<_>>();
+            let mut g = vec![0.0; components.len()];
+            self.h.energy_gradient(&self.held_as_they_are(Spins::from_unit_components(&components)), &mut g);
+            self.without_held(g)
+        })
+    }
+
+    /// Tells the sites by Σ |∂E/∂m_i|² over uniform states along ±x, ±y and ±z, and lists the matrices R worth trying: those that
+    /// take Σ_i ∂E/∂m_i of the uniform states of a frame to each other, as any operation with R does, wherever it moves the sites.
+    fn candidates(&mut self) -> Vec<Matrix> {
+        let n = self.h.sites();
+        let mut squares = vec![0.0; n];
+        let mut list = Vec::new();
+        for frame in frames(self.h, &self.axes, &self.known_axes()) {
+            let mut sums = [[[0.0; 3]; 2]; 3];
+            for (k, g) in self.uniform_gradients(&frame).enumerate() {
+                sums[k / 2][k % 2] = [0, 1, 2].map(|c| slab::sum(&g[c * n..(c + 1) * n]));
+                if frame == UNIT {
+                    let g = Components::new(&g);
+                    squares.iter_mut().enumerate().for_each(|(i, s)| *s += vector::dot(g.get(i), g.get(i)));
+                }
+            }
+            list.extend(self.fitting(&frame, &sums));
+        }
+        let stiffness = self.h.stiffness_mev();
+        self.marks.tell_values(&squares, NOISE * stiffness * stiffness);
+        if self.axes.len() == 3 {
+            list = vec![UNIT, opposite(&UNIT)];
+        }
+        let mut distinct: Vec<Matrix> = Vec::new();
+        for r in list {
+            if !distinct.iter().any(|q| are_alike(&r, q, &self.axes)) {
+                distinct.push(r);
+            }
+        }
+        distinct
+    }
+
+    /// The matrices of a frame that take the sums of the states along each axis (forwards, backwards) to those of its image.
+    fn fitting(&self, frame: &Frame, sums: &[[Vector; 2]; 3]) -> Vec<Matrix> {
+        let most = AGREE * self.h.stiffness_mev() * self.h.sites() as f64;
+        let fits = |p: &Permutation, r: &Matrix| {
+            (0..6).all(|k| {
+                let (axis, sense) = (k / 2, k % 2);
+                let image = sums[p.to[axis]][sense ^ usize::from(p.reversed[axis])];
+                slab::max_abs(&vector::sub(times(r, sums[axis][sense]), image)) <= most
+            })
+        };
+        Permutation::all().map(|p| (p, p.matrix(frame))).filter(|(p, r)| fits(p, r)).map(|(_, r)| r).collect()
+    }
+
+    /// Axes that the terms and the frozen spins single out, the first few.
+    fn known_axes(&self) -> Vec<Vector> {
+        let state = Components::new(self.state);
+        let vacant = &self.h.lattice().vacant;
+        let frozen = (0..self.h.sites()).filter(|i| self.h.is_frozen(*i) && !vacant[*i]).map(|i| state.get(i));
+        let mut known: Vec<Vector> = Vec::new();
+        for axis in self.h.terms().iter().flat_map(|t| t.axes()).chain(frozen) {
+            if known.len() < AXES && !known.iter().any(|k| along(*k, axis)) {
+                known.push(axis);
+            }
+        }
+        known
+    }
+}

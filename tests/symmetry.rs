@@ -1,0 +1,197 @@
+//! The group of an energy: what is found, that it is a group, and that nothing else is in it.
+
+use spinneb::energy::{Hamiltonian, Medium, TermSpec};
+use spinneb::geometry::Direction;
+use spinneb::lattice::Chain;
+use spinneb::spins::Spins;
+use spinneb::symmetry::{Group, Operation};
+use spinneb::units::Moment;
+
+/// The energy of a chain, as configs write both; vacant sites have idle spins along z.
+fn energy(chain: &str, terms: &str) -> Hamiltonian {
+    let chain: Chain = serde_json::from_str(chain).unwrap();
+    let lattice = chain.resolve().unwrap();
+    let specs: Vec<TermSpec> = serde_json::from_str(terms).unwrap();
+    let medium = Medium::new(&lattice, Some(Moment(2.0).into()), None);
+    let terms = specs.iter().map(|s| s.member().build(&medium).unwrap()).collect();
+    Hamiltonian::new(&lattice.clone().with_vacancies_frozen(Direction::Z), terms).unwrap()
+}
+
+fn up(h: &Hamiltonian) -> Spins {
+    Spins::uniform(h.sites(), Direction::Z)
+}
+
+/// Its group, after a look at every operation and at the products of any two: they leave the energies of other states as they are.
+fn group(h: &Hamiltonian) -> Group {
+    let group = Group::of(h, up(h).as_slice(), &[]);
+    let list: Vec<Operation> = group.operations().collect();
+    assert_eq!(list.len() + 1, group.order());
+    let mut m = Spins::random(h.sites(), 99).as_slice().to_vec();
+    for i in (0..h.sites()).filter(|i| h.is_frozen(*i)) {
+        (0..3).for_each(|c| m[c * h.sites() + i] = f64::from(u8::from(c == 2)));
+    }
+    let same = |o: &Operation| {
+        let off = h.difference_mev(&o.apply(&m), &m).abs();
+        assert!(off < 1e-11 * h.stiffness_mev() * h.sites() as f64, "{o}: {off}");
+    };
+    for (k, a) in list.iter().enumerate().take(40) {
+        assert!(!a.is_identity());
+        same(a);
+        list[..k].iter().for_each(|b| same(&a.after(b)));
+    }
+    group
+}
+
+fn names(h: &Hamiltonian) -> Vec<String> {
+    group(h).operations().map(|o| o.to_string()).collect()
+}
+
+const EASY: &str = r#"{"exchange": {"J": ["1 meV"]}}, {"anisotropy": {"K": "0.2 meV", "axis": [0, 0, 1]}}"#;
+
+fn with(more: &str) -> String {
+    format!("[{EASY}{}{more}]", if more.is_empty() { "" } else { ", " })
+}
+
+#[test]
+fn an_easy_axis_has_mirrors_of_spins_and_of_the_chain() {
+    let h = energy(r#"{"sites": 6}"#, &with(""));
+    let spins = ["m_x → −m_x", "m_z → −m_z", "m_xz → −m_xz"];
+    let mirrored = spins.map(|s| format!("mirrored chain with {s}"));
+    let all: Vec<String> =
+        spins.iter().map(|s| s.to_string()).chain(["mirrored chain".into()]).chain(mirrored).collect();
+    assert_eq!(names(&h), all);
+    assert_eq!(group(&h).axes(), [[0.0, 0.0, 1.0]]);
+}
+
+#[test]
+fn a_field_leaves_the_operations_that_keep_it() {
+    let along = energy(r#"{"sites": 6}"#, &with(r#"{"zeeman": {"B": ["0 T", "0 T", "1 T"]}}"#));
+    assert_eq!(names(&along), ["m_x → −m_x", "mirrored chain", "mirrored chain with m_x → −m_x"]);
+    let across = energy(r#"{"sites": 1}"#, &with(r#"{"zeeman": {"B": ["1 T", "0 T", "0 T"]}}"#));
+    assert_eq!(names(&across), ["m_y → −m_y", "m_z → −m_z", "m_yz → −m_yz"]);
+    let tilted = energy(r#"{"sites": 1}"#, &with(r#"{"zeeman": {"B": ["1 T", "1 T", "1 T"]}}"#));
+    assert_eq!(names(&tilted), ["m mirrored along [0.707, -0.707, 0.000]"]);
+}
+
+#[test]
+fn a_bond_with_a_handedness_is_mirrored_with_its_spins_turned() {
+    let h = energy(r#"{"sites": 5}"#, &with(r#"{"dmi": {"D": "0.1 meV", "direction": [0, 1, 0]}}"#));
+    // y is D's: m_y ↦ −m_y turns no neighbours' sense of turning, m ↦ −m neither; a mirrored chain needs a turn about x or z
+    let all = [
+        "m_y → −m_y",
+        "m_xz → −m_xz",
+        "m_xyz → −m_xyz",
+        "mirrored chain with m_x → −m_x",
+        "mirrored chain with m_xy → −m_xy",
+        "mirrored chain with m_z → −m_z",
+        "mirrored chain with m_yz → −m_yz",
+    ];
+    let mut found = names(&h);
+    found.sort();
+    let mut expected = all.map(String::from);
+    expected.sort();
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn a_ring_has_shifts_and_one_defect_leaves_its_own_mirror() {
+    for sites in [3, 7, 200] {
+        let ring = format!(r#"{{"sites": {sites}, "periodic": true}}"#);
+        let h = energy(&ring, &with(""));
+        assert_eq!(group(&h).order(), 4 * sites * 2);
+        let defect = r#"{"anisotropy": {"K": "0.1 meV", "axis": [0, 0, 1], "sites": [1]}}"#;
+        let found = names(&energy(&ring, &with(defect)));
+        assert_eq!(found.len(), 7);
+        let two = r#"{"anisotropy": {"K": "0.1 meV", "axis": [0, 0, 1], "sites": [0, 1]}}"#;
+        assert_eq!(group(&energy(&ring, &with(two))).order(), 8);
+    }
+    let every_third = r#"{"anisotropy": {"K": "0.1 meV", "axis": [0, 0, 1], "sites": [0, 3, 6, 9]}}"#;
+    let h = energy(r#"{"sites": 12, "periodic": true}"#, &with(every_third));
+    let g = group(&h);
+    assert_eq!((g.order(), g.shifts()[0].order), (4 * 4 * 2, 4));
+    assert_eq!(g.shifts()[0].operation.to_string(), "shifted by 3 sites");
+}
+
+#[test]
+fn neighbours_whose_axes_are_crossed_go_over_into_each_other_by_a_shift_and_a_turn() {
+    let crossed = r#"[{"exchange": {"J": ["1 meV"]}},
+        {"anisotropy": {"K": "0.2 meV", "axis": [1, 0, 0], "sites": [0, 2, 4, 6]}},
+        {"anisotropy": {"K": "0.2 meV", "axis": [0, 0, 1], "sites": [1, 3, 5, 7]}}]"#;
+    let g = group(&energy(r#"{"sites": 8, "periodic": true}"#, crossed));
+    assert_eq!(g.shifts()[0].order, 8);
+    assert_eq!(g.shifts()[0].operation.to_string(), "shifted by a site with m mirrored along [0.707, 0.000, -0.707]");
+    assert_eq!(g.order(), 8 * 8 * 2);
+}
+
+#[test]
+fn an_antiferromagnet_is_mirrored_and_reversed() {
+    let terms = r#"[{"exchange": {"J": ["-1 meV"]}}, {"anisotropy": {"K": "0.2 meV", "axis": [0, 0, 1]}}]"#;
+    for sites in [4, 5] {
+        let h = energy(&format!(r#"{{"sites": {sites}}}"#), terms);
+        let g = group(&h);
+        let neel: Vec<_> = (0..sites).map(|i| [0.0, 0.0, if i % 2 == 0 { 1.0 } else { -1.0 }]).collect();
+        let neel = Spins::from_vectors(&neel).unwrap();
+        let kept = g.classes().iter().filter(|o| o.apply(neel.as_slice()) == neel.as_slice());
+        assert_eq!((g.order(), kept.count()), (8, 4));
+    }
+}
+
+#[test]
+fn frozen_spins_stay_what_they_are() {
+    let up = |list: &str| format!(r#"{{"sites": 5, "frozen": [{{"sites": {list}, "direction": [0, 0, 1]}}]}}"#);
+    assert_eq!(names(&energy(&up("[0]"), &with(""))), ["m_x → −m_x"]);
+    assert_eq!(names(&energy(&up("[0, 4]"), &with(""))).len(), 3);
+    let vacant = r#"{"sites": 5, "vacant": [1, 3]}"#;
+    let h = energy(vacant, &with(""));
+    assert_eq!(group(&h).order(), 8);
+    for o in group(&h).operations() {
+        let m = Spins::random(5, 3);
+        let moved = o.apply(m.as_slice());
+        assert!([1, 3, 6, 8, 11, 13].iter().all(|c| moved[*c] == m.as_slice()[*c]));
+        assert!([0, 5, 10].map(|c| o.apply_field(m.as_slice())[c + 1]).iter().all(|v| *v == 0.0));
+    }
+}
+
+#[test]
+fn a_cubic_site_has_forty_eight_operations_however_its_axes_lie() {
+    for axes in ["[[1, 0, 0], [0, 1, 0]]", "[[1, 1, 0], [-1, 1, 0]]", "[[1, 2, 2], [2, 1, -2]]"] {
+        let cubic = format!(r#"{{"cubic_anisotropy": {{"K": "0.2 meV", "axes": {axes}}}}}"#);
+        let h = energy(r#"{"sites": 3}"#, &format!(r#"[{{"exchange": {{"J": ["1 meV"]}}}}, {cubic}]"#));
+        assert_eq!(group(&h).order(), 96, "{axes}");
+    }
+}
+
+#[test]
+fn exchange_alone_can_be_reversed_and_what_is_uneven_has_nothing() {
+    let h = energy(r#"{"sites": 4}"#, r#"[{"exchange": {"J": ["1 meV"]}}]"#);
+    assert_eq!(names(&h), ["m_xyz → −m_xyz", "mirrored chain", "mirrored chain with m_xyz → −m_xyz"]);
+    let uneven = r#"[{"exchange": {"J": [["1 meV", "-2 meV", "0.7 meV"]]}},
+        {"anisotropy": {"K": "0.3 meV", "axis": [1, 2, 3]}}, {"anisotropy": {"K": "0.2 meV", "axis": [3, -1, 1]}},
+        {"zeeman": {"B": ["1 T", "-0.5 T", "2 T"]}}]"#;
+    assert_eq!(group(&energy(r#"{"sites": 4}"#, uneven)).order(), 1);
+}
+
+#[test]
+fn dipoles_know_the_direction_of_their_chain() {
+    let terms = with(r#"{"dipolar": {}}"#);
+    for (ring, places) in [(false, 2), (true, 12)] {
+        let chain = format!(r#"{{"sites": 6, "spacing": "0.3 nm", "periodic": {ring}}}"#);
+        assert_eq!(group(&energy(&chain, &terms)).order(), 8 * places);
+    }
+}
+
+#[test]
+fn a_ring_of_unlike_sites_costs_no_more_than_an_even_one() {
+    // axes of random strength, no two sites alike; half and half, every site like one other
+    let sites = 2000;
+    let random = |seed: u64| Spins::random(sites, seed).vectors();
+    let list = |v: Vec<String>| format!("[{}]", v.join(", "));
+    let strengths = list(random(5).iter().map(|v| format!("\"{} meV\"", 1.0 + 0.3 * v[2])).collect());
+    let half = list((0..sites).map(|i| format!("\"{} meV\"", if i < sites / 2 { 0.2 } else { 0.1 })).collect());
+    let ring = format!(r#"{{"sites": {sites}, "periodic": true}}"#);
+    for (k, order) in [(&strengths, 4), (&half, 8)] {
+        let terms =
+            format!(r#"[{{"exchange": {{"J": ["1 meV"]}}}}, {{"anisotropy": {{"K": {k}, "axis": [0, 0, 1]}}}}]"#);
+        assert_eq!(group(&energy(&ring, &terms)).order(), order);
+    }
+}
