@@ -32,8 +32,8 @@ pub(super) fn add(h: &Hamiltonian, basis: &TangentBasis, precise: bool, matrix: 
 
 /// All pairs but those of neighbours that have a block.
 fn add_pairs(pairs: &dyn AllPairs, rows: &Rows, matrix: &mut Matrix) {
-    for i in 0..rows.len() {
-        for j in i + 1..rows.len() {
+    for j in 0..rows.len() {
+        for i in 0..j {
             add_pair(i, j, pairs.pair(i, j), rows, matrix);
         }
     }
@@ -42,7 +42,8 @@ fn add_pairs(pairs: &dyn AllPairs, rows: &Rows, matrix: &mut Matrix) {
 #[inline]
 fn add_pair(i: usize, j: usize, k: [f64; 3], rows: &Rows, matrix: &mut Matrix) {
     let entry = |p: &Vector, q: &Vector| p[0] * k[0] * q[0] + p[1] * k[1] * q[1] + p[2] * k[2] * q[2];
-    matrix.add_block(j, i, rows[j].map(|q| rows[i].map(|p| entry(&p, &q))));
+    let ([e, f], [p, q]) = (&rows[i], &rows[j]);
+    matrix.add_block(j, i, [[entry(e, p), entry(f, p)], [entry(e, q), entry(f, q)]]);
 }
 
 fn rows(h: &Hamiltonian, pairs: &dyn AllPairs, basis: &TangentBasis) -> Rows {

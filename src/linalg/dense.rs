@@ -42,6 +42,16 @@ impl Dense {
         self.entries[i.max(j) * self.order + i.min(j)] += v;
     }
 
+    /// Adds a block to the rows 2i, 2i + 1 and the columns 2j, 2j + 1, where i > j, and to its mirror image.
+    #[inline]
+    pub fn add_block(&mut self, i: usize, j: usize, block: [[f64; 2]; 2]) {
+        for (r, [first, second]) in block.into_iter().enumerate() {
+            let at = (2 * i + r) * self.order + 2 * j;
+            self.entries[at] += first;
+            self.entries[at + 1] += second;
+        }
+    }
+
     /// Entry (i, j).
     pub fn get(&self, i: usize, j: usize) -> f64 {
         self.entries[i.max(j) * self.order + i.min(j)]

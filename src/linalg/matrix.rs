@@ -107,6 +107,7 @@ impl Matrix {
     pub fn add_block(&mut self, i: usize, j: usize, block: [[f64; 2]; 2]) {
         match self {
             Matrix::Band(band, places) => band.add_block(places.of(i), places.of(j), block),
+            Matrix::Dense(dense) => dense.add_block(i, j, block),
             _ => {
                 for (k, v) in block.into_iter().flatten().enumerate() {
                     self.add(2 * i + k / 2, 2 * j + k % 2, v);
