@@ -7,6 +7,11 @@ use crate::threads::{MADE, apiece};
 use multiversion::multiversion;
 use rayon::prelude::*;
 
+/// Spins of two states that are the same differ by less (rad): relaxed states to far below it, and distinct ones by far more.
+pub const SAME: f64 = 1e-3;
+/// Spins of two states that are given as one and the same differ by less (rad).
+pub const IDENTICAL: f64 = 1e-9;
+
 /// Each spin m ← Exp_m(s v), image by image (slabs of 3N numbers).
 pub fn move_points(points: &mut [f64], v: &[f64], slab: usize, s: f64) {
     let images = points.par_chunks_mut(slab).zip(v.par_chunks(slab)).with_min_len(apiece(slab, MADE));
@@ -29,6 +34,34 @@ pub fn rotate_sites(m: &mut [f64], sites: impl Iterator<Item = usize>, axis: Dir
     for i in sites {
         let v = rotate(m.as_read().get(i), axis, angle);
         m.set(i, vector::unit_or(v, v));
+    }
+}
+
+/// The turn about the unit axis k that brings a nearest to b, by its sine and cosine times one size: Σ k·(a × b) and
+/// Σ (a·b − (k·a)(k·b)). The size is what Σ (a·b − (k·a)(k·b)) is after it.
+pub fn turn_towards(a: Components, b: Components, axis: Vector) -> (f64, f64) {
+    let (mut sine, mut cosine) = ([0.0; TILE], [0.0; TILE]);
+    let (mut sines, mut cosines) = (0.0, 0.0);
+    for first in (0..a.sites()).step_by(TILE) {
+        let range = first..a.sites().min(first + TILE);
+        let (sine, cosine) = (&mut sine[..range.len()], &mut cosine[..range.len()]);
+        turns(a.range(range.clone()), b.range(range), axis, sine, cosine);
+        (sines, cosines) = (sines + slab::sum(sine), cosines + slab::sum(cosine));
+    }
+    (sines, cosines)
+}
+
+#[multiversion(targets("x86_64+avx2"))]
+fn turns(a: Components, b: Components, [x, y, z]: Vector, sine: &mut [f64], cosine: &mut [f64]) {
+    let n = sine.len();
+    let (ax, ay, az) = (&a.x[..n], &a.y[..n], &a.z[..n]);
+    let (bx, by, bz) = (&b.x[..n], &b.y[..n], &b.z[..n]);
+    let cosine = &mut cosine[..n];
+    for i in 0..n {
+        let turn = (ay[i] * bz[i] - az[i] * by[i], az[i] * bx[i] - ax[i] * bz[i], ax[i] * by[i] - ay[i] * bx[i]);
+        sine[i] = x * turn.0 + y * turn.1 + z * turn.2;
+        let along = (x * ax[i] + y * ay[i] + z * az[i]) * (x * bx[i] + y * by[i] + z * bz[i]);
+        cosine[i] = ax[i] * bx[i] + ay[i] * by[i] + az[i] * bz[i] - along;
     }
 }
 

@@ -1,20 +1,16 @@
 //! The rotation gauge: images of a system with a symmetry axis may turn freely about it; each is turned to lie as near to
 //! its predecessor as possible.
 //!
-//! About one axis, the angle of the plane vector (Σ (a_x b_x + a_y b_y), Σ (b_x a_y − b_y a_x)), x and y across the axis,
-//! brings b nearest to a. Without it a start with azimuthal noise does not relax, at any length. Where the energy has no axis
+//! Without it a start with azimuthal noise does not relax, at any length. Where the energy has no axis
 //! at all (full rotation symmetry) the three axes are treated in turn, a few times.
 
-use crate::field::{Components, ComponentsMut, TILE};
+use crate::field::{Components, ComponentsMut};
 use crate::geometry::Vector;
-use crate::linalg::slab;
 use crate::path::Path;
+use crate::sphere::turn_towards;
 use crate::threads::{READ, apiece};
 use multiversion::multiversion;
 use rayon::prelude::*;
-
-/// A turn, by its sine and cosine times one size.
-type Turn = (f64, f64);
 
 /// Turns every image between the ends about the given symmetry axes towards the image before it.
 pub fn align_rotations(path: &mut Path, axes: &[Vector]) {
@@ -30,7 +26,7 @@ pub fn align_rotations(path: &mut Path, axes: &[Vector]) {
                 // what is known is of the first axis, before any turn
                 let turn = known[k - 1]
                     .take()
-                    .unwrap_or_else(|| overlap(Components::new(reference), Components::new(image), axis));
+                    .unwrap_or_else(|| turn_towards(Components::new(image), Components::new(reference), axis));
                 turned |= turn_by(image, axis, turn);
             }
         }
@@ -41,13 +37,15 @@ pub fn align_rotations(path: &mut Path, axes: &[Vector]) {
 }
 
 /// The turns of all images but the last towards the one before, as long as that has not been turned itself.
-fn overlaps_as_they_are(path: &Path, axis: Vector) -> Vec<Option<Turn>> {
+fn overlaps_as_they_are(path: &Path, axis: Vector) -> Vec<Option<(f64, f64)>> {
     let pairs = (1..path.images() - 1).into_par_iter().with_min_len(apiece(path.image(0).len(), READ));
-    pairs.map(|k| Some(overlap(Components::new(path.image(k - 1)), Components::new(path.image(k)), axis))).collect()
+    pairs
+        .map(|k| Some(turn_towards(Components::new(path.image(k)), Components::new(path.image(k - 1)), axis)))
+        .collect()
 }
 
 /// Turns an image, if it is by more than rounding; says whether it was.
-fn turn_by(image: &mut [f64], axis: Vector, (sine, cosine): Turn) -> bool {
+fn turn_by(image: &mut [f64], axis: Vector, (sine, cosine): (f64, f64)) -> bool {
     let size = (sine * sine + cosine * cosine).sqrt();
     if size < 1e-8 * image.len() as f64 / 3.0 || sine.abs() < 1e-15 * size && cosine > 0.0 {
         return false;
@@ -55,33 +53,6 @@ fn turn_by(image: &mut [f64], axis: Vector, (sine, cosine): Turn) -> bool {
     let image = ComponentsMut::new(image);
     turn(image.x, image.y, image.z, axis, (sine / size, cosine / size));
     true
-}
-
-/// Σ axis·(b × a) and Σ (a·b − (a·axis)(b·axis)): the sine and cosine of the turn that brings b to a, times one size.
-fn overlap(a: Components, b: Components, axis: Vector) -> Turn {
-    let (mut sine, mut cosine) = ([0.0; TILE], [0.0; TILE]);
-    let (mut sines, mut cosines) = (0.0, 0.0);
-    for first in (0..a.sites()).step_by(TILE) {
-        let range = first..a.sites().min(first + TILE);
-        let (sine, cosine) = (&mut sine[..range.len()], &mut cosine[..range.len()]);
-        overlaps(a.range(range.clone()), b.range(range), axis, sine, cosine);
-        (sines, cosines) = (sines + slab::sum(sine), cosines + slab::sum(cosine));
-    }
-    (sines, cosines)
-}
-
-#[multiversion(targets("x86_64+avx2"))]
-fn overlaps(a: Components, b: Components, [x, y, z]: Vector, sine: &mut [f64], cosine: &mut [f64]) {
-    let n = sine.len();
-    let (ax, ay, az) = (&a.x[..n], &a.y[..n], &a.z[..n]);
-    let (bx, by, bz) = (&b.x[..n], &b.y[..n], &b.z[..n]);
-    let cosine = &mut cosine[..n];
-    for i in 0..n {
-        let turn = (by[i] * az[i] - bz[i] * ay[i], bz[i] * ax[i] - bx[i] * az[i], bx[i] * ay[i] - by[i] * ax[i]);
-        sine[i] = x * turn.0 + y * turn.1 + z * turn.2;
-        let along = (x * ax[i] + y * ay[i] + z * az[i]) * (x * bx[i] + y * by[i] + z * bz[i]);
-        cosine[i] = ax[i] * bx[i] + ay[i] * by[i] + az[i] * bz[i] - along;
-    }
 }
 
 /// Turns every vector about a unit axis by an angle of known sine and cosine, and makes it of unit length.

@@ -13,16 +13,13 @@ use crate::output::canvas::Look;
 use crate::path::guess::{GuessContext, moving_sites};
 use crate::path::largest_angle;
 use crate::rates::RateSettings;
+use crate::sphere::{IDENTICAL, SAME};
 use crate::spins::Spins;
 use crate::state::{Sense, StateContext, StateSpec};
 use std::time::Instant;
 
 /// Largest torque on a site (meV) that is taken for meant: 1e20 meV is 16 mJ.
 const LARGEST_MEV: f64 = 1e20;
-/// States closer than this are the same (rad, any spin).
-const SAME: f64 = 1e-9;
-/// Frozen spins closer than this agree, such as the tails of two walls (rad).
-const AGREE: f64 = 1e-3;
 
 /// The energy of a lattice's spins and two states of these, as a config has them.
 #[derive(Debug)]
@@ -66,7 +63,7 @@ impl Loaded {
         let started = Instant::now();
         let States { hamiltonian, scales, initial, final_state, sense } = self.states(true)?;
         let final_state = final_state.unwrap_or_else(|| initial.clone());
-        if largest_angle(initial.as_slice(), final_state.as_slice()) < SAME {
+        if largest_angle(initial.as_slice(), final_state.as_slice()) < IDENTICAL {
             let message = "the initial and the final state are identical: there is no path between them";
             return Err(here(Error::invalid("final", message)));
         }
@@ -278,7 +275,7 @@ fn frozen(lattice: &Lattice, initial: &Spins, final_state: Spins) -> Result<Spin
     let mut m = final_state.as_slice().to_vec();
     for (k, i) in lattice.frozen.iter().enumerate().flat_map(|(k, f)| f.sites.iter().map(move |i| (k, *i))) {
         let apart = angle(initial.get(i), final_state.get(i));
-        if apart > AGREE {
+        if apart > SAME {
             let message = format!(
                 "site {i} is frozen, but the final state has it {:.3} degrees away from where the initial state has it: give \
                  it a \"direction\" or make the two states agree there",

@@ -4,7 +4,8 @@ use super::disk::{self, File};
 use super::manifest::{Owned, There, hash};
 use super::{Format, HistoryCsv, PathCsv, PathNpz, RunReport};
 use crate::error::{Error, Result};
-use serde_json::{Map, Value, json};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// How their names begin.
@@ -27,6 +28,31 @@ pub struct StoppedRun<'a> {
     pub reason: &'a str,
 }
 
+/// What `partial.json` holds; a number that is not finite is null.
+#[derive(Serialize, Deserialize)]
+#[allow(non_snake_case)]
+struct Partial {
+    partial: bool,
+    name: String,
+    version: String,
+    config_sha256: String,
+    converged: bool,
+    certified: bool,
+    stop_reason: String,
+    stage: String,
+    iteration: Option<usize>,
+    images: Option<usize>,
+    highest_image_above_initial_meV: Option<f64>,
+    largest_predicted_rotation_rad: Option<f64>,
+    manifest: Tables,
+}
+
+/// The hashes of the tables.
+#[derive(Serialize, Deserialize)]
+struct Tables {
+    files: BTreeMap<String, String>,
+}
+
 /// `partial.json`, and tables and spins of the band as it stood, if there was one.
 pub fn partial_files(run: &StoppedRun, band: Option<&RunReport>) -> Result<Vec<File>> {
     let mut files = Vec::new();
@@ -35,25 +61,23 @@ pub fn partial_files(run: &StoppedRun, band: Option<&RunReport>) -> Result<Vec<F
             files.push(File { name: name(format.as_ref()), bytes: format.render(report)? });
         }
     }
-    let hashes: Map<String, Value> = files.iter().map(|f| (f.name.clone(), hash(&f.name, &f.bytes).into())).collect();
     let last = band.and_then(|report| report.outcome.history.last());
-    let number = |x: Option<f64>| x.filter(|x| x.is_finite()).map_or(Value::Null, |x| json!(x));
-    let summary = json!({
-        "partial": true,
-        "name": run.name,
-        "version": run.version,
-        "config_sha256": run.config_sha256,
-        "converged": false,
-        "certified": false,
-        "stop_reason": run.reason,
-        "stage": run.stage,
-        "iteration": last.map(|row| row.iteration),
-        "images": last.map(|row| row.images),
-        "highest_image_above_initial_meV": number(last.map(|row| row.highest_image_mev)),
-        "largest_predicted_rotation_rad": number(last.map(|row| row.largest_predicted_rotation_rad)),
-        "manifest": {"files": hashes},
-    });
-    let mut bytes = serde_json::to_vec_pretty(&summary).map_err(|e| Error::Numerical(e.to_string()))?;
+    let partial = Partial {
+        partial: true,
+        name: run.name.into(),
+        version: run.version.into(),
+        config_sha256: run.config_sha256.into(),
+        converged: false,
+        certified: false,
+        stop_reason: run.reason.into(),
+        stage: run.stage.into(),
+        iteration: last.map(|row| row.iteration),
+        images: last.map(|row| row.images),
+        highest_image_above_initial_meV: last.map(|row| row.highest_image_mev),
+        largest_predicted_rotation_rad: last.map(|row| row.largest_predicted_rotation_rad),
+        manifest: Tables { files: files.iter().map(|f| (f.name.clone(), hash(&f.name, &f.bytes))).collect() },
+    };
+    let mut bytes = serde_json::to_vec_pretty(&partial).map_err(|e| Error::Numerical(e.to_string()))?;
     bytes.push(b'\n');
     // the first to be written and the last to go: whatever else is there, it has its hash
     files.insert(0, File { name: MARK.into(), bytes });
@@ -89,16 +113,12 @@ fn owned(directory: &Path) -> Result<Option<Owned>> {
     if disk::kind(&path)? != disk::Kind::File {
         return Ok(None);
     }
-    let value: Value = serde_json::from_slice(&disk::read(&path)?).unwrap_or_default();
-    if value["partial"] != true {
+    let Ok(Partial { partial: true, manifest, .. }) = serde_json::from_slice(&disk::read(&path)?) else {
         return Ok(None);
-    }
+    };
     let mut owned = Owned::default();
-    for format in formats() {
-        let name = name(format.as_ref());
-        if let Some(hash) = value["manifest"]["files"][&name].as_str() {
-            owned.add([(name.as_str(), hash)]);
-        }
+    for name in formats().iter().map(|format| name(format.as_ref())) {
+        owned.add(manifest.files.get_key_value(&name).map(|(name, hash)| (name.as_str(), hash.as_str())));
     }
     Ok(Some(owned))
 }

@@ -5,13 +5,11 @@
 //! the saddle, rotations about a symmetry axis (and shifts, where they are zero modes) apart: those are in the volume of zero modes.
 
 use crate::energy::Hamiltonian;
-use crate::field::{Components, ComponentsMut};
-use crate::geometry::{Direction, Vector, rotate, vector};
+use crate::field::Components;
+use crate::geometry::{Direction, Vector, vector};
 use crate::lattice::{Lattice, SiteSymmetry};
+use crate::sphere::{SAME, rotate_sites, turn_towards};
 use crate::spins::Spins;
-
-/// Spins of two states that are the same differ by less (rad).
-const SAME: f64 = 1e-3;
 
 /// How many saddles are alike, and by what.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -184,19 +182,12 @@ fn is_shifted(ring: &Lattice, a: &[f64], b: &[f64], axes: &[Vector], off: f64) -
 
 /// a, turned about the axis to where it is nearest to b.
 fn turned(a: &[f64], b: &[f64], axes: &[Vector]) -> Vec<f64> {
-    let [axis] = axes else { return a.to_vec() };
-    let Ok(direction) = Direction::new(*axis) else { return a.to_vec() };
-    let (p, q) = (Components::new(a), Components::new(b));
-    let (mut sine, mut cosine) = (0.0, 0.0);
-    for i in 0..p.sites() {
-        let (u, v) = (p.get(i), q.get(i));
-        sine += vector::dot(*axis, vector::cross(u, v));
-        cosine += vector::dot(u, v) - vector::dot(*axis, u) * vector::dot(*axis, v);
-    }
-    let angle = libm::atan2(sine, cosine);
-    let mut out = vec![0.0; a.len()];
-    for i in 0..p.sites() {
-        ComponentsMut::new(&mut out).set(i, rotate(p.get(i), direction, angle));
+    let mut out = a.to_vec();
+    if let [axis] = axes
+        && let Ok(direction) = Direction::new(*axis)
+    {
+        let (sine, cosine) = turn_towards(Components::new(a), Components::new(b), *axis);
+        rotate_sites(&mut out, 0..a.len() / 3, direction, libm::atan2(sine, cosine));
     }
     out
 }

@@ -11,11 +11,12 @@
 use super::clock::{fraction, next_axis, ways};
 use super::{FirstGuess, GuessContext};
 use crate::error::Result;
-use crate::field::ComponentsMut;
+use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, Quaternion, Vector, vector};
 use crate::linalg::eigen_symmetric;
 use crate::path::Path;
 use crate::registry::Described;
+use crate::sphere::turn_towards;
 use crate::spins::Spins;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -42,22 +43,19 @@ const AS_GOOD: f64 = 1e-9;
 /// The angle of the turn about an axis that brings a nearest to b (rad, −π to π), and Σ b·R a after it. Where no angle is better
 /// than another it is a half turn, or none if no spin has a part normal to the axis.
 pub fn best_turn(a: &Spins, b: &Spins, axis: Direction) -> (f64, f64) {
-    turn((0..a.sites()).map(|i| (a.get(i), b.get(i))), axis)
+    turn(Components::new(a.as_slice()), Components::new(b.as_slice()), axis)
 }
 
-fn turn(pairs: impl Iterator<Item = (Vector, Vector)>, axis: Direction) -> (f64, f64) {
+fn turn(a: Components, b: Components, axis: Direction) -> (f64, f64) {
     let k = axis.vector();
-    let (mut sine, mut cosine, mut fixed, mut lever, mut count) = (0.0, 0.0, 0.0, 0.0, 0);
-    for (p, q) in pairs {
-        let along = vector::dot(k, p) * vector::dot(k, q);
-        sine += vector::dot(k, vector::cross(p, q));
-        cosine += vector::dot(p, q) - along;
-        fixed += along;
+    let (sine, cosine) = turn_towards(a, b, k);
+    let (mut fixed, mut lever) = (0.0, 0.0);
+    for (p, q) in (0..a.sites()).map(|i| (a.get(i), b.get(i))) {
+        fixed += vector::dot(k, p) * vector::dot(k, q);
         lever += vector::norm(vector::cross(k, p)) * vector::norm(vector::cross(k, q));
-        count += 1;
     }
     let size = (sine * sine + cosine * cosine).sqrt();
-    let angle = if lever < AS_GOOD * count as f64 {
+    let angle = if lever < AS_GOOD * a.sites() as f64 {
         0.0
     } else if size < AS_GOOD * lever {
         PI
@@ -69,11 +67,11 @@ fn turn(pairs: impl Iterator<Item = (Vector, Vector)>, axis: Direction) -> (f64,
 }
 
 /// Axis and angle of the rotation that brings a nearest to b; of several as good, one near a turn about `axis`.
-fn best_rotation(pairs: &[(Vector, Vector)], axis: Direction) -> (Direction, f64) {
+fn best_rotation(a: Components, b: Components, axis: Direction) -> (Direction, f64) {
     let mut s = [[0.0; 3]; 3];
-    for (p, q) in pairs {
-        for (row, x) in s.iter_mut().zip(p) {
-            *row = vector::add(*row, vector::scale(*x, *q));
+    for i in 0..a.sites() {
+        for (row, x) in s.iter_mut().zip(a.get(i)) {
+            *row = vector::add(*row, vector::scale(x, b.get(i)));
         }
     }
     let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = s;
@@ -84,12 +82,12 @@ fn best_rotation(pairs: &[(Vector, Vector)], axis: Direction) -> (Direction, f64
         [xy - yx, zx + xz, yz + zy, zz - xx - yy],
     ];
     let (values, vectors) = eigen_symmetric(&horn.concat(), 4);
-    let tolerance = AS_GOOD * pairs.len() as f64;
+    let tolerance = AS_GOOD * a.sites() as f64;
     let best: Vec<&Vec<f64>> =
         values.iter().zip(&vectors).filter(|(v, _)| **v >= values[3] - tolerance).map(|(_, q)| q).collect();
     let mut rotation = [0.0; 4];
     for k in [axis, next_axis(axis), next_axis(next_axis(axis))] {
-        let wanted = Quaternion::from_axis_angle(k, turn(pairs.iter().copied(), k).0).components();
+        let wanted = Quaternion::from_axis_angle(k, turn(a, b, k).0).components();
         rotation = [0.0; 4];
         for q in &best {
             let overlap: f64 = q.iter().zip(&wanted).map(|(x, y)| x * y).sum();
@@ -110,11 +108,15 @@ fn best_rotation(pairs: &[(Vector, Vector)], axis: Direction) -> (Direction, f64
 impl FirstGuess for Rotation {
     fn path(&self, a: &Spins, b: &Spins, images: usize, context: &GuessContext) -> Result<Path> {
         let frozen = context.states.lattice.is_frozen();
-        let free: Vec<(Vector, Vector)> =
-            (0..a.sites()).filter(|i| !frozen[*i]).map(|i| (a.get(i), b.get(i))).collect();
+        let is_free = |k: usize| !frozen[k % frozen.len()];
+        let free = |s: &Spins| -> Vec<f64> {
+            s.as_slice().iter().enumerate().filter(|(k, _)| is_free(*k)).map(|(_, x)| *x).collect()
+        };
+        let (p, q) = (free(a), free(b));
+        let (p, q) = (Components::new(&p), Components::new(&q));
         let (axis, angle) = match self.axis {
-            Some(axis) => (axis, turn(free.iter().copied(), axis).0),
-            None => best_rotation(&free, context.default_axis),
+            Some(axis) => (axis, turn(p, q, axis).0),
+            None => best_rotation(p, q, context.default_axis),
         };
         let back = Quaternion::from_axis_angle(axis, -angle);
         let unturned: Vec<Vector> = (0..a.sites()).map(|i| back.rotate(b.get(i))).collect();
