@@ -10,6 +10,7 @@ use spinneb::lattice::Chain;
 use spinneb::rates::{Crossing, RateSettings, Theory, saddle_rates};
 use spinneb::spins::Spins;
 use spinneb::stationary::{Spectrum, refine};
+use spinneb::symmetry::Group;
 use std::time::Instant;
 
 fn main() {
@@ -50,15 +51,16 @@ fn measure(sites: usize) {
         theories: Theory::ALL.to_vec(),
         moments_mub: vec![2.0; sites],
     };
+    let start = Instant::now();
     let crossing = Crossing {
         saddle: &saddle.state,
         valley: &saddle.valley,
         spectrum: &spectrum,
         minima: [&minima[0], &minima[1]],
         minima_spectra: [&spectra[0], &spectra[1]],
+        group: &Group::of(&h, minima[0].as_slice(), &settings.moments_mub),
         doubt: None,
     };
-    let start = Instant::now();
     let [forward, _] = saddle_rates((&h).into(), 0, &crossing, &settings);
     let seconds = start.elapsed().as_secs_f64();
     let hz = |p: Option<spinneb::rates::Prefactor>| p.map_or(f64::NAN, |p| p.hz_at(3.0));

@@ -431,6 +431,7 @@ fn a_saddle_of_higher_index_has_no_rate() {
         spectrum: &spectrum,
         minima: [&minima[0], &minima[1]],
         minima_spectra: [&spectra[0], &spectra[1]],
+        group: &spinneb::symmetry::Group::of(h, minima[0].as_slice(), &[]),
         doubt: None,
     };
     let [forward, backward] =
@@ -642,6 +643,7 @@ fn a_state_beside_a_saddle_that_is_no_minimum_has_no_rate() {
             spectrum: &spectrum,
             minima: [&minima[0], &minima[1]],
             minima_spectra: [&spectra[0], &spectra[1]],
+            group: &spinneb::symmetry::Group::of(h, minima[0].as_slice(), &[]),
             doubt: None,
         };
         let [forward, _] = spinneb::rates::saddle_rates(h.into(), 0, &crossing, problem.rates.as_ref().expect("rates"));

@@ -14,6 +14,7 @@ use crate::rates::{
 };
 use crate::spins::Spins;
 use crate::stationary::{self, Refined, State};
+use crate::symmetry::Group;
 
 /// A stored energy above the initial state and that of the stored spins differ by less than this part of the scale.
 const AGREE: f64 = 1e-9;
@@ -43,20 +44,22 @@ impl Known<'_> {
 /// The rates over every saddle and over the whole path.
 pub fn of_path(known: &Known, settings: &RateSettings) -> Rates {
     let doubt = known.doubt();
-    let saddles: Vec<_> = match known.links.is_empty() || known.no_barrier.is_some() {
-        true => known.saddles.iter().enumerate().flat_map(|(k, s)| unproven(known, k, s, settings)).collect(),
-        false => known.links.iter().flat_map(|l| proven(known, l, settings)).collect(),
+    let group = known.links.first().map(|l| Group::of(&known.h, l.before.spins.as_slice(), &settings.moments_mub));
+    let saddles: Vec<_> = match group.as_ref().filter(|_| known.no_barrier.is_none()) {
+        None => known.saddles.iter().enumerate().flat_map(|(k, s)| unproven(known, k, s, settings)).collect(),
+        Some(group) => known.links.iter().flat_map(|l| proven(known, group, l, settings)).collect(),
     };
-    let transitions = transitions(&saddles, &orbits(known, &saddles, settings), settings, doubt.as_deref());
+    let orbits = orbits(known, group.as_ref(), &saddles);
+    let transitions = transitions(&saddles, &orbits, settings, doubt.as_deref());
     Rates { settings: settings.clone(), saddles, transitions }
 }
 
 /// How many of its saddles and minima symmetry makes, both ends kept. A path over one saddle needs no count: the saddles between
 /// the same two minima are counted with it.
-fn orbits(known: &Known, rates: &[SaddleRate], settings: &RateSettings) -> Orbits {
+fn orbits(known: &Known, group: Option<&Group>, rates: &[SaddleRate]) -> Orbits {
     let alone = |by: &str| Equivalents { count: 1, by: by.into() };
     let (links, h) = (known.links, known.h);
-    let (Some(first), Some(last)) = (links.first(), links.last()) else {
+    let (Some(group), Some(first), Some(last)) = (group, links.first(), links.last()) else {
         return Orbits { saddles: Vec::new(), minima: Vec::new(), paths: alone("not sought") };
     };
     if links.len() == 1 || known.doubt().is_some() {
@@ -64,7 +67,7 @@ fn orbits(known: &Known, rates: &[SaddleRate], settings: &RateSettings) -> Orbit
     }
     let ends = [first.before.spins.as_slice(), last.after.spins.as_slice()];
     let slides = |k: usize| rates[2 * k].saddle_zeros.iter().any(|z| z.0 == ZeroKind::Translation);
-    let like = |m: &[f64], slides: bool| equivalent_saddles(&h, m, ends, &settings.moments_mub, slides);
+    let like = |m: &[f64], slides: bool| equivalent_saddles(h.lattice(), group, m, ends, slides);
     let between: Vec<Equivalents> =
         links[..links.len() - 1].iter().map(|l| like(l.after.spins.as_slice(), false)).collect();
     let saddles = links.iter().enumerate().map(|(k, l)| like(&l.saddle.refined.state.m, slides(k)).count).collect();
@@ -72,7 +75,7 @@ fn orbits(known: &Known, rates: &[SaddleRate], settings: &RateSettings) -> Orbit
     Orbits { saddles, minima, paths: between[0].clone() }
 }
 
-fn proven(known: &Known, link: &Pass, settings: &RateSettings) -> [SaddleRate; 2] {
+fn proven(known: &Known, group: &Group, link: &Pass, settings: &RateSettings) -> [SaddleRate; 2] {
     let h = known.h;
     let doubt = link.doubt(h).map(|doubt| doubt.to_string());
     let m = &link.saddle.refined.state.m;
@@ -83,6 +86,7 @@ fn proven(known: &Known, link: &Pass, settings: &RateSettings) -> [SaddleRate; 2
         spectrum: &link.spectrum,
         minima: [&link.before.spins, &link.after.spins],
         minima_spectra: [&link.before.spectrum, &link.after.spectrum],
+        group,
         doubt: doubt.as_deref(),
     };
     saddle_rates(h, number, &crossing, settings)

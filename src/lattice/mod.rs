@@ -24,7 +24,7 @@ pub use grid::{Grid, Shift};
 pub use selection::Selection;
 pub use sites::{Frozen, SiteMoment, SiteSection};
 pub use spec::LatticeSpec;
-pub use symmetry::{Motion, SiteSymmetry};
+pub use symmetry::Motion;
 
 use crate::error::Result;
 use crate::geometry::{Direction, Vector, vector};

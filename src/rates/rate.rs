@@ -12,6 +12,7 @@ use super::{
 use crate::energy::Evaluator;
 use crate::spins::Spins;
 use crate::stationary::{Spectrum, State};
+use crate::symmetry::Group;
 use crate::units::K_B;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -35,6 +36,8 @@ pub struct Crossing<'a> {
     pub minima: [&'a Spins; 2],
     /// Their modes.
     pub minima_spectra: [&'a Spectrum; 2],
+    /// The symmetry of the energy and the moments.
+    pub group: &'a Group,
     /// What stands against its certificate; nothing if it has one.
     pub doubt: Option<&'a str>,
 }
@@ -253,13 +256,14 @@ impl Well {
     fn new(
         h: Evaluator,
         state: State,
+        group: &Group,
         settings: &RateSettings,
         spectrum: &Spectrum,
         valley: Option<&[f64]>,
         name: &'static str,
     ) -> Result<Well, Refusal> {
         let thermal_mev = K_B * settings.temperatures_k.iter().copied().fold(f64::INFINITY, f64::min);
-        let zeros = zero_modes(&h, &state, &settings.moments_mub, spectrum.flat, spectrum.floor_mev, thermal_mev)
+        let zeros = zero_modes(&h, &state, group, spectrum.flat, spectrum.floor_mev, thermal_mev)
             .map_err(|unknown| Refusal::Volume(name, unknown))?;
         let directions: Vec<Vec<f64>> = zeros.iter().flat_map(|z| z.modes.clone()).collect();
         let unstable = match valley {
@@ -299,14 +303,30 @@ fn computed(
     if let Some(reason) = unfit(crossing) {
         return Err(reason);
     }
-    let top = Well::new(h, crossing.saddle.clone(), settings, crossing.spectrum, Some(crossing.valley), "the saddle")?;
+    let top = Well::new(
+        h,
+        crossing.saddle.clone(),
+        crossing.group,
+        settings,
+        crossing.spectrum,
+        Some(crossing.valley),
+        "the saddle",
+    )?;
     let well = |side: usize| {
         let (state, spectrum) =
             (State::at(h, crossing.minima[side].as_slice().to_vec()), crossing.minima_spectra[side]);
         if let Some(reason) = no_minimum(spectrum, state.max_torque_mev(), ["before", "after"][side]) {
             return Err(reason);
         }
-        Well::new(h, state, settings, spectrum, None, ["the minimum before it", "the minimum after it"][side])
+        Well::new(
+            h,
+            state,
+            crossing.group,
+            settings,
+            spectrum,
+            None,
+            ["the minimum before it", "the minimum after it"][side],
+        )
     };
     let wells = [well(0)?, well(1)?];
     let Some(unstable) = top.unstable.clone() else {
@@ -348,7 +368,7 @@ fn computed(
     let frequencies = Theory::ALL.map(&mut frequency);
     let translating = top.zeros.iter().any(|z| z.kind == ZeroKind::Translation);
     let minima = crossing.minima.map(|m| m.as_slice());
-    let equivalents = equivalent_saddles(&h, &top.state.m, minima, &settings.moments_mub, translating);
+    let equivalents = equivalent_saddles(h.lattice(), crossing.group, &top.state.m, minima, translating);
     let spread_top = Fluctuations::of_saddle(&h, &top.state, &top.pinned, &unstable);
     let vague = crossing.spectrum.floor_mev / -unstable.eigenvalue_mev;
     let crossover_k = growth.filter(|g| *g > 0.0 && conserved.is_none()).map(crossover_temperature);

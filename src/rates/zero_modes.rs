@@ -9,7 +9,7 @@
 //! [`PINNING`] k_BT while the state moves by a site; its eigenvalue ε gives that energy, ε Σ|dm/dx|²/2π² (a cosine).
 
 use super::UnknownModes;
-use super::symmetry::{is_translation_symmetric, period};
+use super::symmetry::period;
 use super::unstable::nearest_mode;
 use crate::energy::Hamiltonian;
 use crate::field::{Components, ComponentsMut};
@@ -18,6 +18,7 @@ use crate::lattice::Lattice;
 use crate::linalg::remove;
 use crate::linalg::{eigen_symmetric, slab};
 use crate::stationary::State;
+use crate::symmetry::Group;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
@@ -47,13 +48,13 @@ pub struct ZeroMode {
     pub volume: f64,
 }
 
-/// All zero modes of a stationary state. `flat` is how many more eigenvalues than the rotations' are below the rounding error
+/// All zero modes of a stationary state. `group`: that of the energy and the moments. `flat` is how many more eigenvalues than the rotations' are below the rounding error
 /// `floor_mev`; an error, in words, where one of them is no translation, so that nobody knows its volume. `thermal_mev` is the
 /// smallest k_BT of interest.
 pub fn zero_modes(
     h: &Hamiltonian,
     state: &State,
-    moments: &[f64],
+    group: &Group,
     flat: usize,
     floor_mev: f64,
     thermal_mev: f64,
@@ -64,7 +65,7 @@ pub fn zero_modes(
         found.push(ZeroMode { kind: ZeroKind::Rotation, modes: state.zeros.clone(), volume });
     }
     let mut explained = 0;
-    if let Some((mode, eigenvalue_mev)) = translation(h, state, moments, thermal_mev) {
+    if let Some((mode, eigenvalue_mev)) = translation(h, state, group, thermal_mev) {
         explained = usize::from(eigenvalue_mev.abs() <= floor_mev);
         found.push(mode);
     }
@@ -98,10 +99,11 @@ fn overlap(h: &Hamiltonian, m: &[f64], a: Vector, b: Vector) -> f64 {
 }
 
 /// The translation of a ring's state as a zero mode, with its eigenvalue (meV), if it is nearly free.
-fn translation(h: &Hamiltonian, state: &State, moments: &[f64], thermal_mev: f64) -> Option<(ZeroMode, f64)> {
-    if !h.lattice().is_ring() || h.sites() < 7 || !is_translation_symmetric(h, moments) {
+fn translation(h: &Hamiltonian, state: &State, group: &Group, thermal_mev: f64) -> Option<(ZeroMode, f64)> {
+    if !h.lattice().is_ring() || h.sites() < 7 {
         return None;
     }
+    let period = period(group, &state.m)?;
     let mut along = state.basis.coordinates(&derivative(h.lattice(), &state.m));
     let whole = slab::norm(&along);
     remove(&mut along, &state.zeros);
@@ -113,7 +115,7 @@ fn translation(h: &Hamiltonian, state: &State, moments: &[f64], thermal_mev: f64
     let (eigenvalue_mev, mode) = nearest_mode(state, along.clone(), &state.zeros)?;
     let pinning_mev = eigenvalue_mev.abs() * size * size / (2.0 * PI * PI);
     let free = slab::dot(&mode, &along).abs() > IS_TRANSLATION && pinning_mev < PINNING * thermal_mev;
-    let volume = period(h.lattice(), &state.m) as f64 * size;
+    let volume = period as f64 * size;
     free.then_some((ZeroMode { kind: ZeroKind::Translation, modes: vec![mode], volume }, eigenvalue_mev))
 }
 

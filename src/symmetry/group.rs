@@ -70,15 +70,39 @@ impl Group {
         self.classes.len() * self.shifts.iter().map(|s| s.order).product::<usize>()
     }
 
-    /// All operations but the identity, in a fixed order: the classes, then each after the first shift, and so on.
+    /// All operations but the identity, in a fixed order: the classes, then each before the first shift, and so on.
     pub fn operations(&self) -> impl Iterator<Item = Operation> + '_ {
-        (1..self.order()).map(|k| {
-            let (mut shift, class) = (k / self.classes.len(), &self.classes[k % self.classes.len()]);
-            self.shifts.iter().fold(class.clone(), |operation, s| {
-                let count = shift % s.order;
-                shift /= s.order;
-                if count == 0 { operation } else { s.times(count).after(&operation) }
-            })
+        self.classes_within(&self.orders()).skip(1)
+    }
+
+    /// The operations of all classes, each before the products of less than so many of each shift; the identity is the first.
+    pub fn classes_within<'a>(&'a self, until: &[usize]) -> impl Iterator<Item = Operation> + use<'a> {
+        let shifts = self.products(&vec![1; self.shifts.len()], until);
+        shifts.flat_map(|shift| self.classes.iter().map(move |class| shift.after(class)))
+    }
+
+    /// The group that multiples of each shift make.
+    pub fn multiples<'a>(&'a self, of: &[usize]) -> impl Iterator<Item = Operation> + use<'a> {
+        self.products(of, &self.orders())
+    }
+
+    /// Products of shifts, of each no times or a multiple of `steps` less than `until`; the identity is the first.
+    pub fn products<'a>(&'a self, steps: &[usize], until: &[usize]) -> impl Iterator<Item = Operation> + use<'a> {
+        let counts: Vec<usize> = until.iter().zip(steps).map(|(until, step)| until.div_ceil(*step)).collect();
+        let steps = steps.to_vec();
+        (0..counts.iter().product()).map(move |mut k: usize| {
+            self.shifts.iter().zip(&steps).zip(&counts).fold(
+                self.classes[0].clone(),
+                |before, ((shift, step), count)| {
+                    let times = k % count * step;
+                    k /= count;
+                    shift.times(times).after(&before)
+                },
+            )
         })
+    }
+
+    fn orders(&self) -> Vec<usize> {
+        self.shifts.iter().map(|s| s.order).collect()
     }
 }

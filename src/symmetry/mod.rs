@@ -26,6 +26,7 @@ mod frames;
 mod group;
 mod marks;
 mod operation;
+mod same;
 mod search;
 
 pub use group::{Group, Shift};

@@ -24,7 +24,12 @@ pub struct Operation {
 impl Operation {
     /// Whether nothing is moved.
     pub fn is_identity(&self) -> bool {
-        self.motion.is_none() && apart(&self.spin, &UNIT) < SAME
+        self.motion.is_none() && self.moves_sites_alone()
+    }
+
+    /// Whether every spin that moves is the same at another site.
+    pub fn moves_sites_alone(&self) -> bool {
+        apart(&self.spin, &UNIT) < SAME
     }
 
     /// m'_i of component-major spins (3N numbers).
@@ -62,7 +67,7 @@ impl Operation {
 impl fmt::Display for Operation {
     /// "mirrored chain with m_x → −m_x", "shifted by 3 sites", "m turned by 90° about +z".
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match (self.motion.is_none(), apart(&self.spin, &UNIT) < SAME) {
+        match (self.motion.is_none(), self.moves_sites_alone()) {
             (true, true) => f.write_str("nothing moved"),
             (true, false) => f.write_str(&of_spins(&self.spin)),
             (false, true) => f.write_str(&of_sites(&self.motion, &self.grid)),
