@@ -56,7 +56,7 @@ impl Matrix {
     }
 
     /// Makes it a copy of another matrix, in the memory it has if that is of the same kind.
-    pub(super) fn copy_from(&mut self, other: &Matrix) {
+    pub fn copy_from(&mut self, other: &Matrix) {
         match (&mut *self, other) {
             (Matrix::Band(band, places), Matrix::Band(from, order)) => {
                 band.copy_from(from);

@@ -10,8 +10,10 @@ mod pinned;
 mod point;
 mod polish;
 mod relax;
+mod search;
 mod spectrum;
 mod state;
+mod step;
 mod trail;
 mod valley;
 
@@ -22,6 +24,7 @@ pub use pinned::Pinned;
 pub use point::Point;
 pub use polish::polish;
 pub use relax::{Relaxed, WayDown, relax_to_minimum};
+pub use search::{Climb, GaveUp, Limits, Saddle, climb, relax_nearby};
 pub use spectrum::Spectrum;
 pub use state::State;
 pub use valley::{Refined, Verdict, refine};

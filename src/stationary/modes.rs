@@ -111,7 +111,7 @@ impl Frame {
             }
             let (v, longest) = self.step(state, *radius);
             let next = State::at(h, state.moved(&v));
-            let told = state.predicted_mev(&state.basis.coordinates(&v));
+            let told = state.predicted_mev(&state.hessian, &state.basis.coordinates(&v));
             let noise = 256.0 * f64::EPSILON * (state.energy_mev.abs() + h.stiffness_mev());
             let ratio = h.difference_mev(&next.m, &state.m) / told;
             let known = told.abs() > noise;

@@ -104,6 +104,13 @@ impl Point {
         assemble_into(&h, &self.m, &self.gradient, &self.basis, shift, matrix);
     }
 
+    /// g·x + ½ xᵀHx, with the Hessian H here: by how much the energy is to rise along the tangent coordinates x (meV).
+    pub fn predicted_mev(&self, hessian: &Matrix, x: &[f64]) -> f64 {
+        let mut hx = vec![0.0; x.len()];
+        hessian.multiply(x, &mut hx);
+        slab::dot(&self.slope, x) + 0.5 * slab::dot(x, &hx)
+    }
+
     /// Energy above that of another point (meV), summed from differences of densities.
     pub fn above_mev(&self, other: &Point) -> f64 {
         slab::sum_of_differences(&self.density, &other.density)

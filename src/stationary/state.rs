@@ -2,7 +2,7 @@
 
 use super::point::Point;
 use crate::energy::Evaluator;
-use crate::linalg::{Matrix, Mode, lowest_modes, slab};
+use crate::linalg::{Matrix, Mode, lowest_modes};
 use crate::sphere::move_points;
 use serde::{Deserialize, Serialize};
 use std::ops::Deref;
@@ -36,13 +36,6 @@ impl State {
         let mut hessian = Matrix::default();
         point.write_hessian(h, 0.0, &mut hessian);
         State { point, hessian }
-    }
-
-    /// g·x + ½ xᵀHx: by how much the energy is to rise along the tangent coordinates x (meV).
-    pub fn predicted_mev(&self, x: &[f64]) -> f64 {
-        let mut hx = vec![0.0; x.len()];
-        self.hessian.multiply(x, &mut hx);
-        slab::dot(&self.slope, x) + 0.5 * slab::dot(x, &hx)
     }
 
     /// The lowest mode, zero modes apart; none where there is no other direction.

@@ -1,0 +1,195 @@
+//! The search for a stationary state with a wanted number of negative directions, from any state.
+
+use super::point::Point;
+use super::spectrum::Spectrum;
+use super::state::State;
+use super::step::{Region, Step, Wanted};
+use crate::energy::Evaluator;
+use crate::linalg::{Matrix, lowest_from};
+use std::mem::swap;
+
+/// A torque of this part of the stiffness is rounding error. Below the other one, a search ends with a step that does not halve it.
+const SHARP: f64 = 4e-15;
+const LOOSE: f64 = 1e-11;
+/// A Newton step to a saddle that is shorter (rad, any spin) tells its energy, to this part of how far that is.
+const CLOSE: f64 = 0.15;
+const TOLD: f64 = 0.3;
+/// How far a stationary state of too many negative directions is left along the lowest of the wrong ones (rad, any spin).
+const LEAVE: f64 = 0.1;
+
+/// What bounds a climb.
+pub struct Limits<'a> {
+    /// Most steps.
+    pub steps: usize,
+    /// Most steps in a row without a descending mode.
+    pub without_mode: usize,
+    /// Largest rotation of a spin in a step (rad).
+    pub radius: f64,
+    /// A saddle above this energy (meV, above the Hamiltonian's reference) is not wanted.
+    pub ceiling_mev: f64,
+    /// Whether spins (3N, with their energy in meV above the reference) are beside a saddle that is known already.
+    pub known: &'a (dyn Fn(&[f64], f64) -> bool + Sync),
+}
+
+/// Why a search ended without what it looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GaveUp {
+    /// Too many steps.
+    Steps,
+    /// Too many steps without a descending mode.
+    NoMode,
+    /// It headed for a saddle above the ceiling.
+    TooHigh,
+    /// It came beside a known saddle.
+    Known,
+    /// It came to rest where there is no such state.
+    Stuck,
+    /// It was told to stop.
+    Stopped,
+}
+
+/// Where a climb ended.
+#[derive(Debug)]
+pub struct Climb {
+    /// A saddle of index one, or why there is none.
+    pub saddle: Result<Saddle, GaveUp>,
+    /// Hessians that it took.
+    pub steps: usize,
+}
+
+/// A saddle of index one.
+#[derive(Debug)]
+pub struct Saddle {
+    /// Spins, energy and torque.
+    pub point: Point,
+    /// The descending mode: a unit field of 3N numbers.
+    pub mode: Vec<f64>,
+    /// Its curvature (meV), negative.
+    pub curvature_mev: f64,
+}
+
+/// Climbs from any state to a saddle of index one: up along the lowest mode, down along all others.
+pub fn climb(h: Evaluator, start: &[f64], limits: &Limits) -> Climb {
+    let mut search = Search::from(h, start, Wanted::Saddle, limits.radius);
+    let mut without = 0;
+    let ended = search.run(limits.steps, |here, step| {
+        without = if step.negative == 0 { without + 1 } else { 0 };
+        if without > limits.without_mode {
+            return Some(GaveUp::NoMode);
+        }
+        if step.negative != 1 {
+            return None;
+        }
+        if (limits.known)(&here.m, here.energy_mev) {
+            return Some(GaveUp::Known);
+        }
+        let there = here.energy_mev + step.rise_mev - TOLD * step.rise_mev.abs();
+        (step.is_newton && step.rotation < CLOSE && there > limits.ceiling_mev).then_some(GaveUp::TooHigh)
+    });
+    let steps = search.steps;
+    Climb { saddle: ended.and_then(|()| search.saddle()), steps }
+}
+
+/// Relaxes any state to a minimum nearby in so many steps of at most `radius` (rad, any spin), the energy never rising; and the
+/// Hessians that it took. Not the minimum that the steepest descent leads to: that is [`descend`](super::descend)'s.
+pub fn relax_nearby(h: Evaluator, start: &[f64], steps: usize, radius: f64) -> (Result<Point, GaveUp>, usize) {
+    let mut search = Search::from(h, start, Wanted::Minimum, radius);
+    let ended = search.run(steps, |_, _| None);
+    (ended.map(|()| search.here), search.steps)
+}
+
+/// A search on its way.
+struct Search<'a> {
+    h: Evaluator<'a>,
+    wanted: Wanted,
+    region: Region<'a>,
+    here: Point,
+    next: Point,
+    steps: usize,
+}
+
+impl<'a> Search<'a> {
+    fn from(h: Evaluator<'a>, start: &[f64], wanted: Wanted, radius: f64) -> Search<'a> {
+        let here = Point::at(h, start.to_vec());
+        Search { h, wanted, region: Region::new(h, wanted, radius), here, next: Point::default(), steps: 0 }
+    }
+
+    /// Until the torque is rounding error; `each` may end it before any step.
+    fn run(&mut self, most: usize, mut each: impl FnMut(&Point, &Step) -> Option<GaveUp>) -> Result<(), GaveUp> {
+        let [sharp, loose] = [SHARP, LOOSE].map(|part| part * self.h.stiffness_mev());
+        while self.steps < most {
+            if self.h.is_stopped() {
+                return Err(GaveUp::Stopped);
+            }
+            self.steps += 1;
+            let step = self.region.step(&self.here);
+            if let Some(why) = each(&self.here, &step) {
+                return Err(why);
+            }
+            let torque = self.here.max_torque_mev();
+            if torque > loose {
+                // Newton's steps leave the negative directions as many as they are
+                if self.go(&step) && step.is_newton && self.here.max_torque_mev() <= sharp {
+                    return Ok(());
+                }
+            } else if step.negative == self.wanted.negative() {
+                if self.last_digits(torque, sharp) {
+                    return Ok(());
+                }
+            } else if !self.leave(&step) {
+                return Err(GaveUp::Stuck);
+            }
+        }
+        Err(GaveUp::Steps)
+    }
+
+    /// Takes a step, but not one to a minimum that raises the energy; whether it was taken.
+    fn go(&mut self, step: &Step) -> bool {
+        self.next.go(self.h, &self.here, &self.region.v);
+        let risen = self.next.above_mev(&self.here);
+        self.region.judge(step, risen);
+        let taken = self.wanted == Wanted::Saddle || risen <= self.h.rounding_mev();
+        if taken {
+            swap(&mut self.here, &mut self.next);
+        } else {
+            self.region.cut(step);
+        }
+        taken
+    }
+
+    /// Takes a step that lessens a torque of rounding errors; whether it was the last.
+    fn last_digits(&mut self, torque: f64, sharp: f64) -> bool {
+        if torque > sharp {
+            self.next.go(self.h, &self.here, &self.region.v);
+            if self.next.max_torque_mev() < torque {
+                swap(&mut self.here, &mut self.next);
+            }
+        }
+        let left = self.here.max_torque_mev();
+        left <= sharp || left > 0.5 * torque
+    }
+
+    /// Leaves a stationary state along the lowest of its wrong modes; not one that has none too many.
+    fn leave(&mut self, step: &Step) -> bool {
+        let wanted = self.wanted.negative();
+        if step.negative > wanted {
+            self.region.along(&self.here, wanted, LEAVE);
+            self.here.move_by(self.h, &self.region.v);
+        }
+        step.negative > wanted
+    }
+
+    /// Where it is, if that is a saddle of index one.
+    fn saddle(self) -> Result<Saddle, GaveUp> {
+        let mut room = Matrix::default();
+        if Spectrum::negatives(self.h, &self.here, &mut room) != 1 {
+            return Err(GaveUp::Stuck);
+        }
+        let state = State::of(self.h, self.here);
+        let mut u = Vec::new();
+        let curvature_mev = lowest_from(&state.hessian, self.h.stiffness_mev(), &state.zeros, 1e-8, &mut u, &mut room);
+        let mut mode = state.field(&u);
+        self.h.hold_frozen(&mut mode);
+        Ok(Saddle { point: state.point, mode, curvature_mev })
+    }
+}

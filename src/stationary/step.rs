@@ -1,0 +1,185 @@
+//! Steps towards a stationary state with a wanted number of negative directions, inside a trust region.
+//!
+//! ```text
+//! s = −Σ_k ± (g_k/|λ_k|) u_k      up (−) along the lowest mode if one negative direction is wanted, down along all others
+//! ```
+//! is Newton's step −H⁻¹g with its parts along the wrong modes reversed: one factorisation where the number of negative directions
+//! is the wanted one, and the modes in question where it is not. It is cut to the trust radius, which follows how well the model
+//! told the energy. (Cerjan, Miller, J. Chem. Phys. 75, 2800 (1981), doi:10.1063/1.442352; Wales, J. Chem. Phys. 101, 3750 (1994),
+//! doi:10.1063/1.467559.)
+
+use super::border::pin;
+use super::point::Point;
+use crate::energy::Evaluator;
+use crate::linalg::{Factors, Matrix, lowest_from, remove, slab};
+use crate::sphere::rotation_of;
+use std::mem::take;
+use std::ops::Range;
+
+/// More modes than this are not reversed one by one: a shift makes the step one down the energy.
+const MODES: usize = 8;
+/// How sharp a mode must be to be reversed, in parts of the stiffness.
+const MODE: f64 = 1e-5;
+/// The model's error, in parts of |g||s|, below which the radius is doubled, and above which it is half the step.
+const GOOD: f64 = 0.15;
+const POOR: f64 = 0.3;
+
+/// What a stationary state is wanted to be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wanted {
+    /// A minimum: no negative direction.
+    Minimum,
+    /// A saddle of index one.
+    Saddle,
+}
+
+impl Wanted {
+    /// How many negative directions that is.
+    pub fn negative(self) -> usize {
+        usize::from(self == Wanted::Saddle)
+    }
+}
+
+/// A trust region, with the memory for steps inside it.
+#[derive(Debug)]
+pub struct Region<'a> {
+    h: Evaluator<'a>,
+    wanted: Wanted,
+    /// Largest rotation of a spin in a step (rad), now and ever.
+    radius: f64,
+    largest: f64,
+    hessian: Matrix,
+    room: Matrix,
+    /// The lowest modes when they were last needed (3N each).
+    modes: Vec<Vec<f64>>,
+    x: Vec<f64>,
+    /// The step (3N).
+    pub v: Vec<f64>,
+}
+
+/// A step.
+#[derive(Clone, Copy, Debug)]
+pub struct Step {
+    /// Negative directions where it begins, zero modes apart.
+    pub negative: usize,
+    /// Largest rotation of a spin (rad).
+    pub rotation: f64,
+    /// It is Newton's, not cut, and there are as many negative directions as wanted.
+    pub is_newton: bool,
+    /// By how much the energy is to rise (meV).
+    pub rise_mev: f64,
+    /// |g||s| (meV).
+    size_mev: f64,
+}
+
+impl<'a> Region<'a> {
+    /// Of steps no longer than `radius` (rad, any spin).
+    pub fn new(h: Evaluator<'a>, wanted: Wanted, radius: f64) -> Region<'a> {
+        let [hessian, room] = [(); 2].map(|()| Matrix::default());
+        let (modes, x, v) = (Vec::new(), Vec::new(), Vec::new());
+        Region { h, wanted, radius, largest: radius, hessian, room, modes, x, v }
+    }
+
+    /// The step from a point, in `v`.
+    pub fn step(&mut self, here: &Point) -> Step {
+        here.write_hessian(self.h, 0.0, &mut self.hessian);
+        let negative = self.newton(here);
+        match (self.wanted, negative) {
+            (Wanted::Minimum, 0) | (Wanted::Saddle, 1) => {}
+            (Wanted::Saddle, 0) => self.reverse(here, 0..1),
+            (Wanted::Saddle, 2..=MODES) => self.reverse(here, 1..negative),
+            (Wanted::Minimum, 1..=MODES) => self.reverse(here, 0..negative),
+            _ => self.shifted(here),
+        }
+        here.write_field(&self.x, &mut self.v);
+        self.h.hold_frozen(&mut self.v);
+        let rotation = rotation_of(&self.v);
+        let whole = rotation <= self.radius;
+        if !whole {
+            slab::scale(&mut self.x, self.radius / rotation);
+            slab::scale(&mut self.v, self.radius / rotation);
+        }
+        let rise_mev = here.predicted_mev(&self.hessian, &self.x);
+        let size_mev = slab::norm(&self.x) * slab::norm(&here.slope);
+        let is_newton = whole && negative == self.wanted.negative();
+        Step { negative, rotation: rotation.min(self.radius), is_newton, rise_mev, size_mev }
+    }
+
+    /// Fits the radius to what the energy did (meV) in a step.
+    pub fn judge(&mut self, step: &Step, risen_mev: f64) {
+        let error = (risen_mev - step.rise_mev).abs();
+        if error < GOOD * step.size_mev {
+            self.radius = (2.0 * self.radius).min(self.largest);
+        } else if error > POOR * step.size_mev + 256.0 * f64::EPSILON * self.h.stiffness_mev() {
+            self.radius = 0.5 * step.rotation;
+        }
+    }
+
+    /// Makes the radius a part of a step that is not taken.
+    pub fn cut(&mut self, step: &Step) {
+        self.radius = 0.3 * step.rotation;
+    }
+
+    /// A way along one of the lowest modes (rad, any spin), in `v`.
+    pub fn along(&mut self, here: &Point, mode: usize, rotation: f64) {
+        self.reverse(here, mode..mode + 1);
+        self.v.clone_from(&self.modes[mode]);
+        slab::scale(&mut self.v, rotation / rotation_of(&self.modes[mode]));
+    }
+
+    /// Newton's step in `x`; the negative directions.
+    fn newton(&mut self, here: &Point) -> usize {
+        let mut matrix = take(&mut self.room);
+        matrix.copy_from(&self.hessian);
+        let mut used = Vec::new();
+        for z in &here.zeros {
+            pin(&mut matrix, z, &mut used, self.h.stiffness_mev());
+        }
+        self.solve(here, matrix)
+    }
+
+    /// Solves A x = −g; the negative directions of A.
+    fn solve(&mut self, here: &Point, matrix: Matrix) -> usize {
+        here.write_downhill(&mut self.x);
+        let factors = Factors::solving_sized(matrix, self.h.stiffness_mev(), &mut self.x, 1);
+        remove(&mut self.x, &here.zeros);
+        let negatives = factors.negatives();
+        self.room = factors.into_memory();
+        negatives
+    }
+
+    /// Reverses the parts of `x` along some of the lowest modes.
+    fn reverse(&mut self, here: &Point, which: Range<usize>) {
+        let mut known = here.zeros.clone();
+        self.modes.resize_with(self.modes.len().max(which.end), Vec::new);
+        for (k, mode) in self.modes.iter_mut().enumerate().take(which.end) {
+            let mut u = Vec::new();
+            if !mode.is_empty() {
+                here.basis.write_coordinates(mode, &mut u);
+            }
+            lowest_from(&self.hessian, self.h.stiffness_mev(), &known, MODE, &mut u, &mut self.room);
+            here.write_field(&u, mode);
+            self.h.hold_frozen(mode);
+            if which.contains(&k) {
+                let along = slab::dot(&u, &self.x);
+                slab::add_scaled(&mut self.x, -2.0 * along, &u);
+            }
+            known.push(u);
+        }
+    }
+
+    /// The step of the least shift, in fours, that makes the Hessian positive definite.
+    fn shifted(&mut self, here: &Point) {
+        let scale = self.h.stiffness_mev();
+        let mut shift = 1e-3 * scale;
+        while shift < 1e6 * scale {
+            let mut matrix = take(&mut self.room);
+            matrix.copy_from(&self.hessian);
+            matrix.shift(shift);
+            if self.solve(here, matrix) == 0 {
+                break;
+            }
+            shift *= 4.0;
+        }
+    }
+}
