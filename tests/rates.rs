@@ -335,6 +335,31 @@ fn saddles_that_symmetry_makes_alike_are_counted() {
 }
 
 #[test]
+fn a_nucleus_on_a_ring_counts_at_every_place_that_the_energy_and_the_ends_allow() {
+    let paths = |problem: Problem| {
+        let sites = problem.hamiltonian.sites();
+        let outcome = solve(&with(problem, settings(sites, 2.0, 0.1, 1.0)));
+        outcome.rates.expect("rates").transitions[0].equivalents.clone()
+    };
+    // of an antiferromagnet, whose ends a shift by one site exchanges, and with m_z ↦ −m_z keeps: at each of 16 sites
+    let mut antiferromagnet = Build::ring(16);
+    antiferromagnet.terms[0] = Box::new(Exchange::uniform(&antiferromagnet.lattice, &[-1.0]));
+    let neel = |sign: f64| {
+        let up = |i: usize| [0.0, 0.0, if i % 2 == 0 { sign } else { -sign }];
+        Spins::from_vectors(&(0..16).map(up).collect::<Vec<_>>()).expect("unit vectors")
+    };
+    let found = paths(antiferromagnet.easy(0.5).problem(neel(1.0), neel(-1.0)));
+    assert_eq!((found.count, found.by.as_str()), (16, "mirrored chain with m_z → −m_z, 8 shifts of the ring"));
+    // every other site stronger: a pair of a strong and a weak spin, either one first, at 12 places
+    let mut uneven = Build::ring(24).easy(0.6);
+    for site in (0..24).step_by(2) {
+        uneven = uneven.defect(site, 0.1);
+    }
+    let found = paths(uneven.reversal());
+    assert_eq!((found.count, found.by.as_str()), (24, "mirrored chain, shifted by a site, 12 shifts of the ring"));
+}
+
+#[test]
 fn a_nucleus_that_slides_freely_has_a_translation_for_a_zero_mode() {
     let k = 0.02;
     let problem = Build::ring(120).easy(k).field([0.0, 0.0, -k]).reversal();

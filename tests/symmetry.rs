@@ -2,8 +2,10 @@
 
 use spinneb::energy::{Hamiltonian, Medium, TermSpec};
 use spinneb::geometry::Direction;
+use spinneb::landscape::Minimum;
 use spinneb::lattice::Chain;
 use spinneb::spins::Spins;
+use spinneb::stationary::relax_to_minimum;
 use spinneb::symmetry::{Group, Operation};
 use spinneb::units::Moment;
 
@@ -177,6 +179,33 @@ fn dipoles_know_the_direction_of_their_chain() {
     for (ring, places) in [(false, 2), (true, 12)] {
         let chain = format!(r#"{{"sites": 6, "spacing": "0.3 nm", "periodic": {ring}}}"#);
         assert_eq!(group(&energy(&chain, &terms)).order(), 8 * places);
+    }
+}
+
+#[test]
+fn images_of_a_minimum_are_minima_of_the_same_energy() {
+    let terms = with(
+        r#"{"anisotropy": {"K": "-0.3 meV", "axis": [1, 2, 0]}}, {"dmi": {"D": "0.4 meV", "direction": [0, 0, 1]}},
+        {"dipolar": {}}"#,
+    );
+    let h = energy(r#"{"sites": 9, "spacing": "0.3 nm", "direction": [1, 2, 0], "periodic": true}"#, &terms);
+    let group = group(&h);
+    assert!(group.order() >= 72, "{}", group.order());
+    let relaxed = relax_to_minimum((&h).into(), &Spins::random(9, 5), 1e-12).unwrap().spins;
+    let minimum = Minimum::examine((&h).into(), &relaxed);
+    assert!(minimum.is_proven());
+    for operation in group.operations() {
+        let spins = Spins::from_components(&operation.apply(relaxed.as_slice())).unwrap();
+        let image = Minimum::examine((&h).into(), &spins);
+        assert!(image.is_proven() && (image.energy_mev - minimum.energy_mev).abs() < 1e-12, "{operation}");
+        // a tangent field is taken to one, and the force with the state
+        let v: Vec<f64> = (0..27).map(|k| libm::sin(k as f64)).collect();
+        let (mut moved, mut tangent) = (operation.apply_field(&v), v);
+        spinneb::field::project(relaxed.as_slice(), &mut tangent);
+        spinneb::field::project(spins.as_slice(), &mut moved);
+        let off = operation.apply_field(&tangent).iter().zip(&moved).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(off < 1e-14, "{operation}: {off}");
+        assert!(group.takes(&operation, relaxed.as_slice(), spins.as_slice(), 1e-9));
     }
 }
 
