@@ -99,19 +99,30 @@ pub struct Exchange {
     pub families: Vec<Couplings>,
 }
 
-/// One component's share of one family, on a run of sites whose partners are as far ahead as behind.
+/// One family's share on a run of sites, from the first on, whose partners are a step ahead and as far behind.
 #[multiversion(targets("x86_64+avx2"))]
-fn add_run(first: usize, step: isize, j: &[f64], x: &[f64], g: &mut [f64], density: &mut [f64]) {
+fn add_run(
+    (first, step): (usize, isize),
+    j: &[f64],
+    m: Components,
+    gx: &mut [f64],
+    gy: &mut [f64],
+    gz: &mut [f64],
+    density: &mut [f64],
+) {
     // all of one length to the compiler too, or it keeps the last of each run for a slower loop
-    let n = g.len();
+    let n = gx.len();
     let (ahead, behind) = (at(first, step), at(first, -step));
-    let (here, next, previous) = (&x[first..][..n], &x[ahead..][..n], &x[behind..][..n]);
-    let (jp, jm, density) = (&j[first..][..n], &j[behind..][..n], &mut density[..n]);
-    for k in 0..n {
-        let up = here[k] - 1f64.copysign(jp[k]) * next[k];
-        let down = here[k] - 1f64.copysign(jm[k]) * previous[k];
-        density[k] += 0.5 * jp[k].abs() * up * up;
-        g[k] += jp[k].abs() * up + jm[k].abs() * down;
+    let [here, next, previous] = [first, ahead, behind].map(|k| m.range(k..k + n));
+    let (jp, jm) = (&j[first..][..n], &j[behind..][..n]);
+    let (gy, gz, density) = (&mut gy[..n], &mut gz[..n], &mut density[..n]);
+    for i in 0..n {
+        let (p, q, s, t) = (jp[i].abs(), jm[i].abs(), 1f64.copysign(jp[i]), 1f64.copysign(jm[i]));
+        let (ux, uy, uz) = (here.x[i] - s * next.x[i], here.y[i] - s * next.y[i], here.z[i] - s * next.z[i]);
+        gx[i] += p * ux + q * (here.x[i] - t * previous.x[i]);
+        gy[i] += p * uy + q * (here.y[i] - t * previous.y[i]);
+        gz[i] += p * uz + q * (here.z[i] - t * previous.z[i]);
+        density[i] = density[i] + 0.5 * p * ux * ux + 0.5 * p * uy * uy + 0.5 * p * uz * uz;
     }
 }
 
@@ -159,9 +170,8 @@ impl EnergyTerm for Exchange {
             for segment in family.segments(range.clone()) {
                 let (sites, run) = (segment.sites.clone(), segment.sites.start - first..segment.sites.end - first);
                 if let Some(step) = segment.even() {
-                    add_run(sites.start, step, j, m.x, &mut g.x[run.clone()], &mut density[run.clone()]);
-                    add_run(sites.start, step, j, m.y, &mut g.y[run.clone()], &mut density[run.clone()]);
-                    add_run(sites.start, step, j, m.z, &mut g.z[run.clone()], &mut density[run]);
+                    let [x, y, z] = [&mut *g.x, &mut *g.y, &mut *g.z].map(|c| &mut c[run.clone()]);
+                    add_run((sites.start, step), j, m, x, y, z, &mut density[run]);
                     continue;
                 }
                 for i in sites {
