@@ -115,8 +115,14 @@ impl<'a> Medium<'a> {
         Ok(2.0 * a.over_length(self.lattice.bond_section_nm2(sites)? / self.lattice.known_spacing_nm()?).0)
     }
 
-    /// [`moments_mub`](Self::moments_mub), 0 where a site is vacant.
+    /// [`moments_mub`](Self::moments_mub), 0 where a site is vacant, for moments that act on each other; an error where they stand
+    /// in no chain.
     pub fn acting_moments_mub(&self) -> Result<Vec<f64>> {
+        if !self.lattice.grid.is_row() {
+            let message =
+                "moments act on each other along a chain only: give the lattice as one, or leave this term out";
+            return Err(Error::invalid("", message));
+        }
         let (mut moments, vacant) = (self.moments_mub()?, &self.lattice.vacant);
         moments.iter_mut().zip(vacant).filter(|(_, vacant)| **vacant).for_each(|(moment, _)| *moment = 0.0);
         Ok(moments)

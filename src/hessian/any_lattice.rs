@@ -141,3 +141,15 @@ fn the_hessian_of_a_ladder_its_index_determinant_and_solutions_are_those_of_its_
         assert!(slab::max_abs(&y) < 1e-12 / smallest, "{n} sites: {:e}", slab::max_abs(&y));
     }
 }
+
+#[test]
+fn moments_that_act_on_each_other_are_refused_where_they_stand_in_no_chain() {
+    for (name, closed) in [("dipolar", false), ("demag", true)] {
+        let mut ladder = Lattice::ladder(5, closed);
+        (ladder.spacing_nm, ladder.sections_nm) = (Some(1.0), Some(vec![[1.0; 2]; 10]));
+        ladder.moments_mub = vec![Some(2.0); 10];
+        let term: TermSpec = serde_json::from_str(&format!("{{\"{name}\": {{}}}}")).unwrap();
+        let said = term.member().build(&Medium::new(&ladder, None, None)).unwrap_err().to_string();
+        assert!(said.contains("along a chain only"), "{said}");
+    }
+}
