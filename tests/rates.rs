@@ -345,7 +345,7 @@ fn a_nucleus_on_a_ring_counts_at_every_place_that_the_energy_and_the_ends_allow(
     let mut antiferromagnet = Build::ring(16);
     antiferromagnet.terms[0] = Box::new(Exchange::uniform(&antiferromagnet.lattice, &[-1.0]));
     let neel = |sign: f64| {
-        let up = |i: usize| [0.0, 0.0, if i % 2 == 0 { sign } else { -sign }];
+        let up = |i: usize| [0.0, 0.0, if i.is_multiple_of(2) { sign } else { -sign }];
         Spins::from_vectors(&(0..16).map(up).collect::<Vec<_>>()).expect("unit vectors")
     };
     let found = paths(antiferromagnet.easy(0.5).problem(neel(1.0), neel(-1.0)));

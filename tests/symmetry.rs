@@ -128,10 +128,10 @@ fn neighbours_whose_axes_are_crossed_go_over_into_each_other_by_a_shift_and_a_tu
 #[test]
 fn an_antiferromagnet_is_mirrored_and_reversed() {
     let terms = r#"[{"exchange": {"J": ["-1 meV"]}}, {"anisotropy": {"K": "0.2 meV", "axis": [0, 0, 1]}}]"#;
-    for sites in [4, 5] {
+    for sites in [4_usize, 5] {
         let h = energy(&format!(r#"{{"sites": {sites}}}"#), terms);
         let g = group(&h);
-        let neel: Vec<_> = (0..sites).map(|i| [0.0, 0.0, if i % 2 == 0 { 1.0 } else { -1.0 }]).collect();
+        let neel: Vec<_> = (0..sites).map(|i| [0.0, 0.0, if i.is_multiple_of(2) { 1.0 } else { -1.0 }]).collect();
         let neel = Spins::from_vectors(&neel).unwrap();
         let kept = g.classes().iter().filter(|o| o.apply(neel.as_slice()) == neel.as_slice());
         assert_eq!((g.order(), kept.count()), (8, 4));

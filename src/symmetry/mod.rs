@@ -16,6 +16,8 @@
 //! must take the Σ_i ∂E/∂m_i of uniform states to each other. If p goes with one R, it goes with R R' for every R' that goes with no
 //! motion at all, and with no others; if a shift is an operation, so are its multiples. So the group is held as a few generators.
 //!
+//! An operation costs a gradient to try; a search some dozens to a few hundred, and no memory beyond a few states.
+//!
 //! # What is not found
 //! Matrices that are of none of these frames (a ring whose anisotropy turns by 30° from site to site); operations that turn each
 //! site by another matrix (an open chain with D along its one axis, whose spins can be reflected in planes that turn from

@@ -32,10 +32,16 @@ impl Operation {
         apart(&self.spin, &UNIT) < SAME
     }
 
+    /// p(i).
+    #[inline]
+    pub fn source(&self, i: usize) -> usize {
+        self.motion.of(&self.grid, i)
+    }
+
     /// m'_i of component-major spins (3N numbers).
     #[inline]
     pub fn at(&self, m: Components, i: usize) -> Vector {
-        if self.held[i] { m.get(i) } else { times(&self.spin, m.get(self.motion.of(&self.grid, i))) }
+        if self.held[i] { m.get(i) } else { times(&self.spin, m.get(self.source(i))) }
     }
 
     /// m' of component-major spins (3N numbers).

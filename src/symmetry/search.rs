@@ -175,7 +175,7 @@ impl<'a> Search<'a> {
         let near = |a: Vector, b: Vector, most: f64| slab::max_abs(&vector::sub(a, b)) <= most;
         let state = Components::new(self.state);
         let frozen = |i: &usize| self.h.is_frozen(*i) && !self.h.lattice().vacant[*i];
-        let image = |v: Components, i: usize| times(&o.spin, v.get(o.motion.of(self.grid(), i)));
+        let image = |v: Components, i: usize| times(&o.spin, v.get(o.source(i)));
         if !(0..n).filter(frozen).all(|i| near(image(state, i), state.get(i), SAME)) {
             return false;
         }
