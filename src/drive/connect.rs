@@ -281,7 +281,7 @@ fn uphill(h: Evaluator, band: &Band, end: usize, next: usize, c: f64) -> Vec<Sad
         }
         let mut v = tau.clone();
         slab::scale(&mut v, START / rotation_of(&tau));
-        let refined = follow_modes(h, &state.moved(&v), c)?;
+        let refined = follow_modes(h, &state.moved(&v))?;
         let (energy_mev, s) = (refined.state.energy_mev, band.path().reaction_coordinate()[end]);
         if end > next {
             slab::scale(&mut tau, -1.0);

@@ -47,7 +47,7 @@ pub fn lowered(h: Evaluator, links: &[Pass], c: f64) -> Result<Option<Vec<Pass>>
 fn beside(h: Evaluator, link: &Pass, c: f64) -> Result<Option<Pass>> {
     let saddle = &link.saddle.refined.state;
     for start in turned_walls(h, &saddle.m, APART * c) {
-        let found = recorded(h, "saddle beside", &[&start], || Ok(saddle_at(h, &start, c)))?;
+        let found = recorded(h, "saddle beside", &[&start], || Ok(saddle_at(h, &start)))?;
         let below = |f: &Saddle| saddle.above_mev(&f.refined.state) > LOWER * c;
         let Some(found) = found.into_iter().next().filter(|f| f.is_saddle(c) && below(f)) else { continue };
         let mut lower = Pass::recorded(h, found, c)?;
@@ -63,8 +63,8 @@ fn beside(h: Evaluator, link: &Pass, c: f64) -> Result<Option<Pass>> {
 }
 
 /// The saddle near a state, if there is one.
-fn saddle_at(h: Evaluator, m: &[f64], c: f64) -> Vec<Saddle> {
-    let found = follow_modes(h, m, c).map(|refined| Saddle {
+fn saddle_at(h: Evaluator, m: &[f64]) -> Vec<Saddle> {
+    let found = follow_modes(h, m).map(|refined| Saddle {
         top: Peak {
             m: m.to_vec(),
             tau: refined.valley.clone(),

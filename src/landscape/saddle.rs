@@ -45,7 +45,7 @@ impl Saddle {
             return;
         }
         for start in [self.refined.state.m.clone(), self.top.m.clone()] {
-            if let Some(refined) = follow_modes(h, &start, c).filter(|r| rest(r) <= 1.0) {
+            if let Some(refined) = follow_modes(h, &start).filter(|r| rest(r) <= 1.0) {
                 let found = Saddle { top: self.top.clone(), refined };
                 if found.is_stationary(c) {
                     *self = found;
@@ -59,7 +59,7 @@ impl Saddle {
         let refined = refine(h, &top.m, &top.tau, c);
         let mut found = Saddle { top, refined };
         if !found.is_stationary(c) {
-            if let Some(refined) = follow_modes(h, &found.top.m, c) {
+            if let Some(refined) = follow_modes(h, &found.top.m) {
                 found.refined = refined;
             }
             return found;
@@ -97,7 +97,7 @@ impl Saddle {
             let better = found.is_stationary(c) && Spectrum::of(h, &found.refined.state, 0).negative <= 1;
             better.then_some(found)
         };
-        better(refine(h, &start, &self.refined.valley, c)).or_else(|| better(follow_modes(h, &start, c)?))
+        better(refine(h, &start, &self.refined.valley, c)).or_else(|| better(follow_modes(h, &start)?))
     }
 
     /// Stationary to machine precision, and still the start's saddle.

@@ -2,46 +2,30 @@
 //!
 //! A valley bends, so that a step along a soft mode first costs torque across it.
 
-use super::border::pin;
-use super::state::State;
+use super::point::Point;
+use super::step::{Region, Wanted};
 use crate::energy::Evaluator;
-use crate::linalg::remove;
-use crate::sphere::rotation_of;
 
 /// Most steps.
 const STEPS: usize = 6;
 /// A longer step (rad, any spin) is no last digit.
 const FARTHEST: f64 = 0.05;
 
-/// The stationary point that `state` all but is, the zero modes left as they are. A state from which Newton's method leads far
+/// The stationary point that `here` all but is, the zero modes left as they are. A point from which Newton's method leads far
 /// away, or nowhere, is given back as it came.
-pub fn polish(h: Evaluator, state: State) -> State {
-    let mut best = state.clone();
-    let mut state = state;
+pub fn polish(h: Evaluator, mut here: Point) -> Point {
+    let mut region = Region::new(h, Wanted::Minimum, FARTHEST);
+    let mut best = here.clone();
     for _ in 0..STEPS {
-        if best.max_torque_mev() <= 4e-15 * h.stiffness_mev() {
+        // a NaN is no small rotation either
+        let is_near = region.plain(&here) < FARTHEST;
+        if best.max_torque_mev() <= 4e-15 * h.stiffness_mev() || !is_near {
             break;
         }
-        let Some(next) = newton(h, &state) else { break };
-        if next.max_torque_mev() < best.max_torque_mev() {
-            best = next.clone();
+        here.move_by(h, &region.v);
+        if here.max_torque_mev() < best.max_torque_mev() {
+            best.clone_from(&here);
         }
-        state = next;
     }
     best
-}
-
-fn newton(h: Evaluator, state: &State) -> Option<State> {
-    let mut matrix = state.hessian.clone();
-    let mut used = Vec::new();
-    for z in &state.zeros {
-        pin(&mut matrix, z, &mut used, h.stiffness_mev());
-    }
-    let mut x = state.downhill();
-    remove(&mut x, &state.zeros);
-    matrix.factor().solve(&mut x, 1);
-    remove(&mut x, &state.zeros);
-    let v = state.field(&x);
-    // a NaN is no small rotation either
-    (rotation_of(&v) < FARTHEST).then(|| State::at(h, state.moved(&v)))
 }

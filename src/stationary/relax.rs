@@ -103,7 +103,7 @@ fn stationary(h: Evaluator, mut p: Point, tolerance_mev: f64, steps: &mut usize,
     }
     if p.max_torque_mev() > tolerance_mev && p.max_torque_mev() < NEARLY * tolerance_mev {
         // the shift makes steps along a valley that is all but flat short
-        p = polish(h, State::of(h, p)).point;
+        p = polish(h, p);
     }
     Ok(p)
 }

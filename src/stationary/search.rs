@@ -99,23 +99,23 @@ pub fn relax_nearby(h: Evaluator, start: &[f64], steps: usize, radius: f64) -> (
 }
 
 /// A search on its way.
-struct Search<'a> {
+pub(super) struct Search<'a> {
     h: Evaluator<'a>,
     wanted: Wanted,
     region: Region<'a>,
     here: Point,
     next: Point,
-    steps: usize,
+    pub steps: usize,
 }
 
 impl<'a> Search<'a> {
-    fn from(h: Evaluator<'a>, start: &[f64], wanted: Wanted, radius: f64) -> Search<'a> {
+    pub fn from(h: Evaluator<'a>, start: &[f64], wanted: Wanted, radius: f64) -> Search<'a> {
         let here = Point::at(h, start.to_vec());
         Search { h, wanted, region: Region::new(h, wanted, radius), here, next: Point::default(), steps: 0 }
     }
 
     /// Until the torque is rounding error; `each` may end it before any step.
-    fn run(&mut self, most: usize, mut each: impl FnMut(&Point, &Step) -> Option<GaveUp>) -> Result<(), GaveUp> {
+    pub fn run(&mut self, most: usize, mut each: impl FnMut(&Point, &Step) -> Option<GaveUp>) -> Result<(), GaveUp> {
         let [sharp, loose] = [SHARP, LOOSE].map(|part| part * self.h.stiffness_mev());
         while self.steps < most {
             if self.h.is_stopped() {
@@ -180,7 +180,7 @@ impl<'a> Search<'a> {
     }
 
     /// Where it is, if that is a saddle of index one.
-    fn saddle(self) -> Result<Saddle, GaveUp> {
+    pub fn saddle(self) -> Result<Saddle, GaveUp> {
         let mut room = Matrix::default();
         if Spectrum::negatives(self.h, &self.here, &mut room) != 1 {
             return Err(GaveUp::Stuck);

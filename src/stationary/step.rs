@@ -80,6 +80,14 @@ impl<'a> Region<'a> {
         Region { h, wanted, radius, largest: radius, hessian, room, modes, x, v }
     }
 
+    /// Newton's step from a point, in `v`, wherever it leads; its largest rotation of a spin (rad).
+    pub fn plain(&mut self, here: &Point) -> f64 {
+        here.write_hessian(self.h, 0.0, &mut self.hessian);
+        self.newton(here);
+        here.write_field(&self.x, &mut self.v);
+        rotation_of(&self.v)
+    }
+
     /// The step from a point, in `v`.
     pub fn step(&mut self, here: &Point) -> Step {
         here.write_hessian(self.h, 0.0, &mut self.hessian);

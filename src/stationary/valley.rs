@@ -373,7 +373,7 @@ impl Search<'_> {
 
     fn report(mut self, verdict: Verdict, steps: usize) -> Refined {
         if verdict != Verdict::Left {
-            self.state = polish(self.h, self.state);
+            self.state = State::of(self.h, polish(self.h, self.state.point));
             self.tau = unit_tangent(&self.state.m, &self.tau);
         }
         let t = self.state.basis.coordinates(&self.tau);
