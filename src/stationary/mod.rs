@@ -1,4 +1,7 @@
-//! Saddles to machine precision, and what kind of saddle they are.
+//! Minima and saddles to machine precision, and what kind of stationary state they are.
+//!
+//! From any state one search, in steps inside a trust region, leads to a stationary state with a wanted number of negative directions
+//! (`search`, `step`): climbs, relaxations nearby, mode following and last digits are uses of it.
 //!
 //! A wall that can slide gives a chain's Hessian one eigenvalue of either sign that may be 1e-12 of the others. Plain Newton
 //! oscillates there; so the soft mode is split off (Lyapunov–Schmidt): Newton across it, a safeguarded search along it.

@@ -127,6 +127,9 @@ impl<'a> Search<'a> {
                 return Err(why);
             }
             let torque = self.here.max_torque_mev();
+            if !torque.is_finite() {
+                return Err(GaveUp::Stuck);
+            }
             if torque > loose {
                 // Newton's steps leave the negative directions as many as they are
                 if self.go(&step) && step.is_newton && self.here.max_torque_mev() <= sharp {

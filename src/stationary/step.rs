@@ -1,10 +1,12 @@
 //! Steps towards a stationary state with a wanted number of negative directions, inside a trust region.
 //!
 //! ```text
-//! s = −Σ_k ± (g_k/|λ_k|) u_k      up (−) along the lowest mode if one negative direction is wanted, down along all others
+//! to a saddle    s = −Σ_k ± (g_k/|λ_k|) u_k      up (−) along the lowest mode, down along all others
+//! to a minimum   s = −(H + μ)⁻¹ g                μ = 0 where H is positive definite
 //! ```
-//! is Newton's step −H⁻¹g with its parts along the wrong modes reversed: one factorisation where the number of negative directions
-//! is the wanted one, and the modes in question where it is not. It is cut to the trust radius, which follows how well the model
+//! The first is Newton's step −H⁻¹g with its parts along the wrong modes reversed: one factorisation where the number of negative
+//! directions is the wanted one, and the modes in question where it is not. Reversal on the way to a minimum takes more steps than a
+//! shift, and longer. A step is cut to the trust radius, which follows how well the model
 //! told the energy. (Cerjan, Miller, J. Chem. Phys. 75, 2800 (1981), doi:10.1063/1.442352; Wales, J. Chem. Phys. 101, 3750 (1994),
 //! doi:10.1063/1.467559.)
 
@@ -16,7 +18,7 @@ use crate::sphere::rotation_of;
 use std::mem::take;
 use std::ops::Range;
 
-/// More modes than this are not reversed one by one: a shift makes the step one down the energy.
+/// More modes than this are not reversed one by one: the step is one to a minimum.
 const MODES: usize = 8;
 /// How sharp a mode must be to be reversed, in parts of the stiffness.
 const MODE: f64 = 1e-5;
@@ -96,7 +98,6 @@ impl<'a> Region<'a> {
             (Wanted::Minimum, 0) | (Wanted::Saddle, 1) => {}
             (Wanted::Saddle, 0) => self.reverse(here, 0..1),
             (Wanted::Saddle, 2..=MODES) => self.reverse(here, 1..negative),
-            (Wanted::Minimum, 1..=MODES) => self.reverse(here, 0..negative),
             _ => self.shifted(here),
         }
         here.write_field(&self.x, &mut self.v);
