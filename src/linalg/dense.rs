@@ -42,9 +42,11 @@ impl Dense {
         self.entries[i.max(j) * self.order + i.min(j)] += v;
     }
 
-    /// Adds a block to the rows 2i, 2i + 1 and the columns 2j, 2j + 1, where i > j, and to its mirror image.
+    /// Adds a block to the rows 2i, 2i + 1 and the columns 2j, 2j + 1, another site's, and to its mirror image.
     #[inline]
     pub fn add_block(&mut self, i: usize, j: usize, block: [[f64; 2]; 2]) {
+        let [[a, b], [c, d]] = block;
+        let (i, j, block) = if i > j { (i, j, block) } else { (j, i, [[a, c], [b, d]]) };
         for (r, [first, second]) in block.into_iter().enumerate() {
             let at = (2 * i + r) * self.order + 2 * j;
             self.entries[at] += first;
