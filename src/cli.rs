@@ -160,6 +160,10 @@ pub struct Run {
     #[arg(long, value_name = "KEY.PATH=JSON")]
     pub set: Vec<String>,
 
+    /// How long passes below the best of the first paths are looked for, in place of the config's `search.effort`
+    #[arg(long, value_enum)]
+    pub effort: Option<Looking>,
+
     /// Replace results that are in the folder
     #[arg(long)]
     pub force: bool,
@@ -345,6 +349,27 @@ pub struct List {
 
     /// One entry, with all its keys
     pub name: Option<String>,
+}
+
+/// How long is looked for lower passes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Looking {
+    /// Not at all
+    None,
+    /// Until 8 searches in a row brought no news
+    Quick,
+    /// Until 24 searches in a row brought no news, 40 once something was found
+    Normal,
+    /// Until 100 searches in a row brought no news
+    Thorough,
+}
+
+impl Looking {
+    /// As `--set` has it.
+    pub fn setting(self) -> String {
+        let word = self.to_possible_value().map(|value| value.get_name().to_string()).unwrap_or_default();
+        format!("search.effort=\"{word}\"")
+    }
 }
 
 /// What can be listed.

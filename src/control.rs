@@ -2,7 +2,7 @@
 //! recorded of it.
 
 use crate::error::{Error, Result};
-use crate::record::{Fingerprint, Keep, Recorder, Ticket};
+use crate::record::{Count, Fingerprint, Keep, Recorder, Ticket};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::sync::Arc;
@@ -12,6 +12,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 #[derive(Debug, Default)]
 pub struct Control {
     evaluations: AtomicUsize,
+    hessians: AtomicUsize,
     stop: Arc<AtomicBool>,
     recorder: Recorder,
 }
@@ -49,6 +50,16 @@ impl Control {
         self.evaluations.load(Ordering::Relaxed)
     }
 
+    /// Gradients and Hessians computed so far.
+    pub fn evaluated(&self) -> Count {
+        Count { evaluations: self.evaluations(), hessians: self.hessians.load(Ordering::Relaxed) }
+    }
+
+    /// One more Hessian.
+    pub(crate) fn count_hessian(&self) {
+        self.hessians.fetch_add(1, Ordering::Relaxed);
+    }
+
     /// One more gradient.
     pub(crate) fn count(&self) {
         self.evaluations.fetch_add(1, Ordering::Relaxed);
@@ -62,8 +73,8 @@ pub struct Call<'a> {
     control: Option<&'a Control>,
     /// The record, where this call is recorded.
     record: Option<(&'a Recorder, Ticket)>,
-    /// Evaluations before it.
-    before: usize,
+    /// What was evaluated before it.
+    before: Count,
 }
 
 impl<'a> Call<'a> {
@@ -77,7 +88,7 @@ impl<'a> Call<'a> {
             let ticket = control.recorder.begin_call(|print| input(print.text(kind)))?;
             Some((&control.recorder, ticket))
         });
-        Call { control, record, before: control.map_or(0, Control::evaluations) }
+        Call { control, record, before: control.map(Control::evaluated).unwrap_or_default() }
     }
 
     /// Its result, if it is recorded and `check` takes it. What it evaluated counts as in the run that computed it.
@@ -92,9 +103,10 @@ impl<'a> Call<'a> {
         recorder.underway(ticket, check).map(|found| self.counted(found))
     }
 
-    fn counted<T>(&self, (found, evaluations): (T, usize)) -> T {
+    fn counted<T>(&self, (found, count): (T, Count)) -> T {
         if let Some(control) = self.control {
-            control.evaluations.store(self.before + evaluations, Ordering::Relaxed);
+            control.evaluations.store(self.before.evaluations + count.evaluations, Ordering::Relaxed);
+            control.hessians.store(self.before.hessians + count.hessians, Ordering::Relaxed);
         }
         found
     }
@@ -106,7 +118,7 @@ impl<'a> Call<'a> {
             return Ok(());
         }
         if let Some((recorder, ticket)) = self.record {
-            recorder.save_with(|| state().map(|state| ticket.sealed(self.evaluations(), &state)));
+            recorder.save_with(|| state().map(|state| ticket.sealed(self.count(), &state)));
         }
         Err(Error::Stopped)
     }
@@ -114,20 +126,21 @@ impl<'a> Call<'a> {
     /// Saves where it stands, if it is time to.
     pub fn save_if_due<T: Serialize>(&self, state: impl FnOnce() -> T) {
         if let Some((recorder, ticket)) = self.record {
-            recorder.save_if_due(|| ticket.sealed(self.evaluations(), &state()));
+            recorder.save_if_due(|| ticket.sealed(self.count(), &state()));
         }
     }
 
     /// Records its result.
     pub fn finish<T: Serialize>(&self, result: impl FnOnce() -> T) {
         if let Some((recorder, ticket)) = self.record {
-            recorder.add(ticket.sealed(self.evaluations(), &result()));
+            recorder.add(ticket.sealed(self.count(), &result()));
         }
     }
 
     /// So far.
-    fn evaluations(&self) -> usize {
-        self.control.map_or(0, Control::evaluations) - self.before
+    fn count(&self) -> Count {
+        let now = self.control.map(Control::evaluated).unwrap_or_default();
+        Count { evaluations: now.evaluations - self.before.evaluations, hessians: now.hessians - self.before.hessians }
     }
 }
 

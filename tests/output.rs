@@ -2,10 +2,11 @@
 
 use spinneb::drive::{
     Barrier, EndPoint, HistoryRow, ImageTable, IntermediateMinimum, Outcome, ProfilePoint, RejectedPath, SaddlePoint,
-    StopCode, Work,
+    SearchReport, StopCode, Work,
 };
 use spinneb::files::disk;
 use spinneb::geometry::Direction;
+use spinneb::landscape::Effort;
 use spinneb::lattice::{Chain, Lattice};
 use spinneb::output::canvas::{Look, Style};
 use spinneb::output::{
@@ -69,6 +70,15 @@ fn outcome(path: Path, length: f64, energy: impl Fn(f64) -> f64) -> Outcome {
         initial: end(0.0),
         final_state: end(energy(length)),
         intermediate_minima: Vec::new(),
+        search: SearchReport {
+            effort: Effort::Quick,
+            searches: 8,
+            quiet: 8,
+            minima: 3,
+            saddles: 2,
+            lowered_by_mev: 0.125,
+            spent: false,
+        },
         rejected_paths: Vec::new(),
         rates: None,
         images: ImageTable {
@@ -274,6 +284,15 @@ fn the_summary_is_exactly_so() {
       "zero_modes": 0
     }
   ],
+  "search": {
+    "effort": "quick",
+    "searches": 8,
+    "quiet": 8,
+    "minima": 3,
+    "saddles": 2,
+    "lowered_by_meV": 0.125,
+    "spent": false
+  },
   "rejected_paths": [
     {
       "guess": "rotation",

@@ -147,6 +147,7 @@ fn one(arguments: &Arguments, sweep: &Sweep, dir: &Path, point: usize) -> Result
         out: None,
         threads: arguments.threads,
         set: Vec::new(),
+        effort: None,
         force: arguments.force,
         quiet: arguments.quiet,
         json: arguments.json,

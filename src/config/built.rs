@@ -76,6 +76,7 @@ impl Loaded {
         problem.smooth = config.path.smooth;
         problem.refine = config.saddle.refine;
         problem.certify = config.saddle.certify;
+        problem.search = config.effort().map_err(here)?;
         problem.neb = config.neb.settings();
         problem.rates = self.rates(problem.hamiltonian.lattice())?;
         self.affordable(needed_bytes(&problem, &scales), Some(expected_images(&problem, &scales)))?;

@@ -1,18 +1,21 @@
 //! What a run will take, before it runs.
 //!
 //! ```text
-//! gradients = 15 images + 280 saddles        time = gradients × 2.5 (one gradient with its factorised Hessian) + figures
+//! gradients = (1 + d)(15 images + 280 saddles) + 480        time = gradients × 2.5 (one gradient with its factorised Hessian) + figures
 //! ```
 //! A band converges in about 15 gradients of each image, whatever its length (8 to 26 in the shipped configs), and finding the seat of
 //! a saddle, its proof and the descents to its two minima take about 280. An automatic path is refined once. One saddle is taken for
 //! granted, but a wall narrower than `PINNED` sites rests on every site that it passes: there are as many saddles, and four images
-//! to each. The gradient is measured; eigenvalues and proofs are in the factor 2.5, and figures take what the constants say on a usual
+//! to each. The search for lower passes takes some
+//! 480, and as much as the path for each of the d domains that its ends consist of, through which it may lead; 0 for both where there
+//! is none. The gradient is measured; eigenvalues and proofs are in the factor 2.5, and figures take what the constants say on a usual
 //! machine. With these the shipped configs take what is said within a factor of 3 (`cargo bench --bench estimate`); paths through many
 //! minima, and ends that are far from their minima, take longer.
 
 use super::{Loaded, expected_images};
-use crate::drive::{Images, Problem, Scales};
+use crate::drive::{Images, Problem, Scales, third_states};
 use crate::hessian::{TangentBasis, assemble_shifted};
+use crate::landscape::Effort;
 use crate::linalg::Matrix;
 use crate::path::guess::moving_sites;
 use std::time::Instant;
@@ -21,6 +24,8 @@ use std::time::Instant;
 const A_IMAGE: usize = 15;
 /// Gradients for a saddle.
 const A_SADDLE: usize = 280;
+/// Gradients for the search below a path: some 24 climbs.
+const A_SEARCH: usize = 480;
 /// A wall of less than this many sites has a saddle between any two sites: its energy varies as exp(−π²δ) from one to the next.
 const PINNED: f64 = 2.0;
 /// Images to each of them.
@@ -57,7 +62,15 @@ impl Estimate {
             Images::Auto => (2 * start - 1).max(IMAGES_A_SADDLE * saddles),
         };
         let saddles = saddles.min(images / 2);
-        Estimate { images, saddles, evaluations: A_IMAGE * images + A_SADDLE * saddles }
+        let path = A_IMAGE * images + A_SADDLE * saddles;
+        let evaluations = match problem.search {
+            Effort::None => path,
+            _ => {
+                path * (1 + third_states(&problem.hamiltonian, [&problem.initial, &problem.final_state]).len())
+                    + A_SEARCH
+            }
+        };
+        Estimate { images, saddles, evaluations }
     }
 
     /// Time of one processor (s); the threads share all of it but the figures.

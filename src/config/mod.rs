@@ -21,6 +21,7 @@ pub mod physics;
 pub mod rates;
 mod refusals;
 mod schema;
+mod search;
 mod set;
 mod strict;
 pub mod sweep;
@@ -37,6 +38,7 @@ pub use parts::PartMaterial;
 pub use path::{ImageCount, PathConfig};
 pub use rates::{RatesConfig, Temperatures};
 pub use schema::{Key, SCHEMA_FILE, keys, schema};
+pub use search::SearchConfig;
 pub use text::Text;
 
 use crate::energy::TermSpec;
@@ -76,6 +78,9 @@ pub struct Config {
     /// The first path.
     #[serde(default)]
     pub path: PathConfig,
+    /// How long passes below the best of the first paths are looked for.
+    #[serde(default)]
+    pub search: Option<SearchConfig>,
     /// How the band is relaxed.
     #[serde(default)]
     pub neb: NebConfig,

@@ -37,6 +37,7 @@ const KEYS: &str = r#"{
   "initial": {"uniform": {"direction": [0, 0, 1]}}, "final": {"uniform": {"direction": [0, 0, -1]}},
   "path": {"images": 20}, "noise": {"amplitude": "2 deg", "seed": 1}, "smooth": 0.3,
   "neb": {"max_evaluations": 20000}, "climb": true, "tolerance": 1e-6, "optimiser": {"implicit": {}},
+  "search": {"effort": "normal"},
   "saddle": {"refine": true, "certify": true},
   "rates": {"temperatures": ["4 K", "300 K"]}, "damping": 0.1, "g_factor": 2.0, "theory": ["htst"],
   "output": {"formats": ["csv", "npz"]}, "plots": ["svg", "png"], "style": "paper", "width_mm": 85,

@@ -17,6 +17,7 @@ mod relaxed;
 mod report;
 mod run;
 mod scales;
+mod search;
 mod stop;
 mod stored;
 mod verdict;
@@ -30,6 +31,7 @@ pub use relaxed::{RelaxedState, relaxed_state};
 pub use report::partial;
 pub use run::{FEWEST_IMAGES, run};
 pub use scales::Scales;
+pub use search::third_states;
 pub use stop::Stop;
 pub use verdict::{StopCode, Verdict};
 

@@ -1,6 +1,7 @@
 //! What a run found: everything that is written to disk is a function of an [`Outcome`].
 
 use super::StopCode;
+use crate::landscape::Effort;
 use crate::path::Path;
 use crate::rates::Rates;
 use crate::spins::Spins;
@@ -35,6 +36,8 @@ pub struct Outcome {
     pub intermediate_minima: Vec<IntermediateMinimum>,
     /// Rates and lifetimes, where they were asked for.
     pub rates: Option<Rates>,
+    /// What the search for lower passes came to.
+    pub search: SearchReport,
     /// Other paths that were tried.
     pub rejected_paths: Vec<RejectedPath>,
     /// The spins.
@@ -177,6 +180,25 @@ pub struct HistoryRow {
     pub highest_image_mev: f64,
     /// Path length (rad).
     pub length_rad: f64,
+}
+
+/// What the search for lower passes came to.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SearchReport {
+    /// How long was looked.
+    pub effort: Effort,
+    /// Climbs.
+    pub searches: usize,
+    /// How many of them, the last ones, brought no news.
+    pub quiet: usize,
+    /// Minima known in the end, images by symmetry counted.
+    pub minima: usize,
+    /// Saddles known in the end, images by symmetry counted.
+    pub saddles: usize,
+    /// By how much the barrier is lower than that of the best of the first paths (meV).
+    pub lowered_by_mev: f64,
+    /// The search ended because it had done as much work as it may.
+    pub spent: bool,
 }
 
 /// What a run cost.

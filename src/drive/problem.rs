@@ -3,6 +3,7 @@
 use super::Scales;
 use crate::control::Control;
 use crate::energy::{Evaluator, Hamiltonian};
+use crate::landscape::Effort;
 use crate::optimise::{Implicit, OptimiserSpec};
 use crate::path::guess::{GuessSpec, NoiseSpec};
 use crate::rates::RateSettings;
@@ -37,6 +38,8 @@ pub struct Problem {
     pub refine: bool,
     /// Prove what kind of saddle each is, and where the descents from it lead.
     pub certify: bool,
+    /// How long passes below the best of the first paths are looked for.
+    pub search: Effort,
     /// How the band is relaxed.
     pub neb: NebSettings,
     /// Rates over the saddles; none if absent.
@@ -64,6 +67,7 @@ impl Problem {
             smooth: None,
             refine: true,
             certify: true,
+            search: Effort::default(),
             neb,
             rates: None,
             warnings: Vec::new(),
@@ -92,8 +96,10 @@ impl Problem {
             let energy = h.energy_gradient(spins.as_slice(), &mut gradient);
             print = print.real(energy).row(&gradient).row(spins.as_slice());
         }
-        let Problem { relax_ends, images, guess, noise, smooth, refine, certify, neb, .. } = self;
-        print.text(&format!("{relax_ends} {images:?} {guess:?} {noise:?} {smooth:?} {refine} {certify} {neb:?}"))
+        let Problem { relax_ends, images, guess, noise, smooth, refine, certify, search, neb, .. } = self;
+        print.text(&format!(
+            "{relax_ends} {images:?} {guess:?} {noise:?} {smooth:?} {refine} {certify} {search:?} {neb:?}"
+        ))
     }
 
     /// Whether the maxima are followed to their saddles.

@@ -9,8 +9,8 @@ use super::relaxation::{height, prominent_maxima};
 use super::{Partial, Problem, Verdict};
 use crate::band::{Band, Extremum, Profile};
 use crate::energy::Evaluator;
-use crate::landscape::Doubt;
 use crate::landscape::Saddle;
+use crate::landscape::{Doubt, Effort};
 use crate::landscape::{Minimum, Pass};
 use crate::linalg::slab;
 use crate::path::Path;
@@ -70,6 +70,7 @@ pub fn outcome(
     c: Candidate,
     found: &[Saddle],
     proof: Proof,
+    search: SearchReport,
     rejected_paths: Vec<RejectedPath>,
 ) -> Outcome {
     let h = run.problem.evaluator();
@@ -113,6 +114,7 @@ pub fn outcome(
         saddles,
         intermediate_minima,
         rates,
+        search,
         rejected_paths,
         ..course.outcome(&verdict, run.end_points(&proof.ends), run.work(iterations))
     }
@@ -208,6 +210,7 @@ impl Course {
             final_state,
             intermediate_minima: Vec::new(),
             rates: None,
+            search: SearchReport { effort: Effort::None, ..SearchReport::default() },
             rejected_paths: Vec::new(),
             path: self.path,
             images: self.images,

@@ -25,6 +25,7 @@ use crate::path::{Path, distance};
 use crate::spins::Spins;
 use crate::stationary::{Relaxed, relax_to_minimum};
 use crate::threads::both;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// Neighbouring images of an automatic path are at most this far apart, any spin (rad).
@@ -63,15 +64,15 @@ pub fn run(problem: &Problem, observer: &mut dyn Observer) -> Result<Outcome> {
 }
 
 /// A path with what is known of it.
-struct Settled<'a> {
-    candidate: Candidate<'a>,
+pub(super) struct Settled<'a> {
+    pub(super) candidate: Candidate<'a>,
     found: Vec<Saddle>,
-    proof: Proof,
+    pub(super) proof: Proof,
 }
 
 impl Settled<'_> {
     /// The highest that the path is known to pass above its first image (meV): an image or a saddle.
-    fn seen_mev(&self) -> f64 {
+    pub(super) fn seen_mev(&self) -> f64 {
         let reference = self.candidate.band.energies_mev()[0];
         let saddles = self.proof.links.iter().map(|l| l.saddle.refined.state.energy_mev - reference);
         saddles.fold(self.candidate.top_mev(), f64::max)
@@ -85,18 +86,20 @@ fn over(c: &Candidate, links: &[Pass]) -> f64 {
     saddles.fold((e[e.len() - 1] - e[0]).max(0.0), f64::max) + 1e-6 * height(&c.band)
 }
 
-struct Run<'a, 'o> {
-    problem: &'a Problem,
-    observer: &'o mut dyn Observer,
-    started: Instant,
-    ends: [Relaxed; 2],
-    scales: Scales,
-    axes: Vec<Vector>,
-    laplacian: Option<Laplacian>,
-    axis: Direction,
-    warnings: Vec<String>,
-    lowest_top: f64,
-    silent: Silent,
+pub(super) struct Run<'a, 'o> {
+    pub(super) problem: &'a Problem,
+    pub(super) observer: &'o mut dyn Observer,
+    pub(super) started: Instant,
+    pub(super) ends: [Relaxed; 2],
+    pub(super) scales: Scales,
+    pub(super) axes: Vec<Vector>,
+    pub(super) laplacian: Option<Arc<Laplacian>>,
+    pub(super) axis: Direction,
+    pub(super) warnings: Vec<String>,
+    pub(super) lowest_top: f64,
+    /// Every certified pass that was met.
+    pub(super) met: Vec<Pass>,
+    pub(super) silent: Silent,
 }
 
 impl<'a, 'o> Run<'a, 'o> {
@@ -122,7 +125,8 @@ impl<'a, 'o> Run<'a, 'o> {
         let (a, b) = (ends[0].spins.as_slice(), ends[1].spins.as_slice());
         let scales = recorded(h, "scales", &[a, b], || Ok(Scales::of_ends(h, a, b)))?;
         let axes = h.symmetry_axes_at(a);
-        let laplacian = needs_laplacian(&problem.neb.optimiser).then(|| Laplacian::new(&h, scales.stiffness_mev));
+        let laplacian =
+            needs_laplacian(&problem.neb.optimiser).then(|| Arc::new(Laplacian::new(&h, scales.stiffness_mev)));
         let mut run = Run {
             problem,
             observer,
@@ -134,13 +138,14 @@ impl<'a, 'o> Run<'a, 'o> {
             axis: Direction::X,
             warnings,
             lowest_top: f64::INFINITY,
+            met: Vec::new(),
             silent: Silent,
         };
         run.axis = turning_axis(problem, &run.ends[0].spins, &run.ends[1].spins, &run.context());
         Ok(run)
     }
 
-    fn context(&self) -> GuessContext<'a> {
+    pub(super) fn context(&self) -> GuessContext<'a> {
         GuessContext { states: self.problem.states(&self.scales), default_axis: self.axis }
     }
 
@@ -189,12 +194,13 @@ impl<'a, 'o> Run<'a, 'o> {
             others.push(left.candidate);
         }
         others.append(&mut candidates);
-        let rejected = others.iter().map(|c| rejection(c, &best.candidate, scale)).collect();
-        Ok(report::outcome(self.prepared(), best.candidate, &best.found, best.proof, rejected))
+        let mut rejected: Vec<RejectedPath> = others.iter().map(|c| rejection(c, &best.candidate, scale)).collect();
+        let search = self.search(&mut best, &mut rejected)?;
+        Ok(report::outcome(self.prepared(), best.candidate, &best.found, best.proof, search, rejected))
     }
 
     /// A path in full: as many images as it needs, its saddles, and what could be proven of them.
-    fn settle(&mut self, mut c: Candidate<'a>) -> Result<Settled<'a>> {
+    pub(super) fn settle(&mut self, mut c: Candidate<'a>) -> Result<Settled<'a>> {
         self.relax_resolved(&mut c, FIRST)?;
         let found = self.all_saddles(&c)?;
         if self.problem.certify && self.problem.seeks_saddles() {
@@ -286,7 +292,7 @@ impl<'a, 'o> Run<'a, 'o> {
     }
 
     /// The path from stretch to stretch in the place of the band, if all of it is proven; says whether it took the place.
-    fn join(&mut self, c: &mut Candidate<'a>, proof: &Proof) -> Result<bool> {
+    pub(super) fn join(&mut self, c: &mut Candidate<'a>, proof: &Proof) -> Result<bool> {
         let h = self.problem.evaluator();
         if !proof.doubts.is_empty() || !self.problem.relax_ends {
             return Ok(false);
@@ -296,7 +302,7 @@ impl<'a, 'o> Run<'a, 'o> {
             settings: &self.problem.neb,
             scales: self.scales,
             axes: &self.axes,
-            laplacian: self.laplacian.as_ref(),
+            laplacian: self.laplacian.as_deref(),
         };
         let ends = [&self.ends[0].spins, &self.ends[1].spins];
         let joined = joined(h, &proof.links, ends, self.problem.images, 0.9 * RESOLVED, &tools)?;
@@ -354,6 +360,7 @@ impl<'a, 'o> Run<'a, 'o> {
             doubts.extend(unproven.map(|(_, which)| Doubt::NoMinimum(which)));
         }
         doubts.dedup_by_key(|doubt| doubt.to_string());
+        self.met.extend(sequence.links.iter().filter(|pass| pass.doubt(h).is_none()).cloned());
         Ok(Proof { ends, links: sequence.links, doubts })
     }
 
@@ -363,7 +370,7 @@ impl<'a, 'o> Run<'a, 'o> {
             climb: self.problem.neb.climb && !self.problem.refine,
             scales: self.scales,
             axes: &self.axes,
-            laplacian: self.laplacian.as_ref(),
+            laplacian: self.laplacian.as_deref(),
             history,
             observer: if quiet { &mut self.silent } else { &mut *self.observer },
         }
@@ -396,11 +403,11 @@ impl<'a, 'o> Run<'a, 'o> {
         let stop = Stop::Converged { rotation: 0.0, tolerance: self.problem.neb.tolerance };
         let c = Candidate::new("rotation".into(), band, stop);
         let proof = Proof { ends, links: Vec::new(), doubts: vec![Doubt::CostlyTurn] };
-        Ok(Some(report::outcome(self.prepared(), c, &[], proof, Vec::new())))
+        Ok(Some(report::outcome(self.prepared(), c, &[], proof, SearchReport::default(), Vec::new())))
     }
 
     /// The natural first paths, the most promising first: a few evaluations each, the best two followed to their saddles.
-    fn natural(&mut self) -> Result<Vec<Candidate<'a>>> {
+    pub(super) fn natural(&mut self) -> Result<Vec<Candidate<'a>>> {
         let mut tried = Vec::new();
         let context = self.context();
         let guesses = natural_guesses(self.problem, &self.ends[0].spins, &self.ends[1].spins, &context);

@@ -3,7 +3,7 @@
 use super::Hamiltonian;
 use crate::control::{Call, Control};
 use crate::field::Components;
-use crate::record::Fingerprint;
+use crate::record::{Count, Fingerprint};
 use std::ops::{Deref, Range};
 
 /// A [`Hamiltonian`] whose gradients are counted by a [`Control`], if there is one.
@@ -41,6 +41,18 @@ impl<'a> Evaluator<'a> {
     ) -> f64 {
         self.count();
         self.hamiltonian.density_gradient(m, g, density, rows, each)
+    }
+
+    /// What was counted so far.
+    pub fn evaluated(&self) -> Count {
+        self.control.map(Control::evaluated).unwrap_or_default()
+    }
+
+    /// Counts a Hessian.
+    pub(crate) fn count_hessian(&self) {
+        if let Some(control) = self.control {
+            control.count_hessian();
+        }
     }
 
     /// Whether what uses this energy is to stop.

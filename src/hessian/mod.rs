@@ -19,3 +19,16 @@ mod free;
 pub use assembly::{Assembly, assemble, assemble_into, assemble_shifted};
 pub use basis::{BasisTile, TangentBasis};
 pub use free::Free;
+
+use crate::energy::Hamiltonian;
+
+/// About how many operations it takes to factorise a Hessian, dense or of a row of sites.
+pub fn factorisation_flops(h: &Hamiltonian) -> f64 {
+    let order = 2.0 * h.sites() as f64;
+    let width = match (h.coupling().pairs().is_some(), h.coupling().tail(true)) {
+        (true, None) => return order * order * order / 3.0,
+        (_, Some(tail)) => 4.0 * h.reach() as f64 + 2.0 + tail.cost() as f64,
+        (false, None) => 4.0 * h.reach() as f64 + 2.0,
+    };
+    order * width * width
+}

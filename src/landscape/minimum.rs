@@ -2,9 +2,12 @@
 
 use super::turns::{turned, turns};
 use crate::energy::Evaluator;
+use crate::field::Components;
+use crate::geometry::vector;
 use crate::path::largest_angle;
 use crate::spins::Spins;
 use crate::stationary::{Spectrum, State};
+use crate::symmetry::Operation;
 use crate::threads::both;
 use serde::{Deserialize, Serialize};
 
@@ -64,13 +67,36 @@ impl Minimum {
 
     /// Whether `other` has the same spins, perhaps after a rotation about the symmetry axes.
     pub fn is_identical(&self, h: Evaluator, other: &Minimum) -> bool {
-        largest_angle(self.spins.as_slice(), other.spins.as_slice()) < SAME || self.is_turned(h, other)
+        is_same_state(h, self.spins.as_slice(), other.spins.as_slice())
     }
 
     /// Whether a rotation about the symmetry axes makes `other` of this minimum.
     pub fn is_turned(&self, h: Evaluator, other: &Minimum) -> bool {
-        let a = self.spins.as_slice();
-        let turn = turns(h, &other.spins, &self.spins);
-        !turn.is_empty() && largest_angle(a, turned(&other.spins, &turn).as_slice()) < SAME
+        is_turned(h, &self.spins, &other.spins)
     }
+
+    /// What a symmetry of the energy makes of it.
+    pub fn image(&self, operation: &Operation) -> Minimum {
+        let spins = Spins::from_unit_components(&operation.apply(self.spins.as_slice()));
+        Minimum { spins, spectrum: self.spectrum.clone(), ..*self }
+    }
+}
+
+/// Whether two states have the same spins, perhaps after a rotation about the symmetry axes.
+pub fn is_same_state(h: Evaluator, a: &[f64], b: &[f64]) -> bool {
+    let (p, q) = (Components::new(a), Components::new(b));
+    if (0..h.sites()).all(|i| vector::norm(vector::sub(p.get(i), q.get(i))) < SAME) {
+        return true;
+    }
+    // what a rotation about the axis leaves as it is tells most states apart
+    match h.symmetry_axes() {
+        [] => false,
+        [axis] if (0..h.sites()).any(|i| vector::dot(*axis, vector::sub(p.get(i), q.get(i))).abs() > SAME) => false,
+        _ => is_turned(h, &Spins::from_unit_components(a), &Spins::from_unit_components(b)),
+    }
+}
+
+fn is_turned(h: Evaluator, a: &Spins, b: &Spins) -> bool {
+    let turn = turns(h, b, a);
+    !turn.is_empty() && largest_angle(a.as_slice(), turned(b, &turn).as_slice()) < SAME
 }

@@ -6,6 +6,7 @@ use crate::error::Result;
 use crate::linalg::slab;
 use crate::spins::Spins;
 use crate::stationary::{Spectrum, descend, relax_to_minimum};
+use crate::symmetry::Operation;
 use serde::{Deserialize, Serialize};
 
 /// How many eigenvalues of a saddle are reported.
@@ -91,6 +92,19 @@ impl Pass {
         let Saddle { top, refined } = &saddle;
         let [m, valley, tau] = [&refined.state.m, &refined.valley, &top.tau].map(Vec::clone);
         recorded(h, "descents", &[&m, &valley, &tau], || Pass::of(h, saddle, c))
+    }
+
+    /// What a symmetry of the energy makes of it.
+    pub fn image(&self, h: Evaluator, operation: &Operation) -> Pass {
+        let spins = |s: &Spins| Spins::from_unit_components(&operation.apply(s.as_slice()));
+        Pass {
+            saddle: self.saddle.image(h, operation),
+            spectrum: self.spectrum.clone(),
+            before: self.before.image(operation),
+            after: self.after.image(operation),
+            ways: self.ways.each_ref().map(|way| way.iter().map(spins).collect()),
+            ..*self
+        }
     }
 
     /// Exchanges its two sides: which of them the path comes from is not always plain at the saddle itself.

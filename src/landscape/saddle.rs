@@ -8,7 +8,8 @@ use crate::linalg::{Matrix, lowest_modes, slab};
 use crate::path::largest_angle;
 use crate::sphere::rotation_of;
 use crate::spins::Spins;
-use crate::stationary::{Refined, Spectrum, Verdict, follow_modes, refine};
+use crate::stationary::{self, Climb, Limits, Refined, Spectrum, State, Verdict, climb, follow_modes, refine};
+use crate::symmetry::Operation;
 use serde::{Deserialize, Serialize};
 
 /// A mode of less than this part of c is shallow.
@@ -36,6 +37,39 @@ impl Saddle {
             found.refined.index = Spectrum::negatives(h, &found.refined.state, &mut Matrix::default());
         }
         found
+    }
+
+    /// The saddle of index one that a climb from any state leads to, if it leads to one within the limits.
+    pub fn climbed(h: Evaluator, start: &[f64], limits: &Limits) -> Option<Saddle> {
+        let Climb { saddle, steps } = climb(h, start, limits);
+        let stationary::Saddle { point, mode, curvature_mev } = saddle.ok()?;
+        let top = Peak { m: start.to_vec(), tau: mode.clone(), energy_mev: point.energy_mev, s: 0.0, image: 0 };
+        let rotation_rad = largest_angle(start, &point.m);
+        let refined = Refined {
+            verdict: Verdict::Saddle,
+            valley: mode,
+            steps,
+            factorisations: steps,
+            index: 1,
+            curvature_mev,
+            rotation_rad,
+            state: State::of(h, point),
+        };
+        Some(Saddle { top, refined })
+    }
+
+    /// Its spins (3N).
+    pub fn spins(&self) -> &[f64] {
+        &self.refined.state.m
+    }
+
+    /// What a symmetry of the energy makes of it.
+    pub fn image(&self, h: Evaluator, operation: &Operation) -> Saddle {
+        let Saddle { top, refined } = self;
+        let (m, tau) = (operation.apply(&top.m), operation.apply_field(&top.tau));
+        let state = State::at(h, operation.apply(self.spins()));
+        let valley = operation.apply_field(&refined.valley);
+        Saddle { top: Peak { m, tau, ..*top }, refined: Refined { state, valley, ..*refined } }
     }
 
     /// Follows the modes of a saddle that the valley's search left where sliding over the lattice still has a torque.

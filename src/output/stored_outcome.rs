@@ -4,9 +4,9 @@ use super::columns::{Columns, WAY_OUT};
 use super::number::Number;
 use super::read::{bytes, shown, text};
 use super::stored_run::history;
-use super::summary::{End, Minimum, Rejected, Saddle, State, Summary};
+use super::summary::{End, Minimum, Rejected, Saddle, Search, State, Summary};
 use crate::drive::{
-    Barrier, EndPoint, ImageTable, IntermediateMinimum, Outcome, ProfilePoint, RejectedPath, SaddlePoint,
+    Barrier, EndPoint, ImageTable, IntermediateMinimum, Outcome, ProfilePoint, RejectedPath, SaddlePoint, SearchReport,
 };
 use crate::error::{Error, Result};
 use crate::files;
@@ -73,6 +73,7 @@ impl StoredOutcome {
                 .map(minimum)
                 .collect(),
             rates: None,
+            search: summary.search.map(searched).unwrap_or_default(),
             rejected_paths: summary.rejected_paths.into_iter().map(rejected).collect(),
             path: SpinPath::new(&path),
             images,
@@ -85,6 +86,11 @@ impl StoredOutcome {
         };
         Ok(Ok(StoredOutcome { outcome, minima }))
     }
+}
+
+fn searched(found: Search) -> SearchReport {
+    let Search { effort, searches, quiet, minima, saddles, lowered_by_meV, spent } = found;
+    SearchReport { effort, searches, quiet, minima, saddles, lowered_by_mev: lowered_by_meV.0, spent }
 }
 
 fn point(s: &State, moved: Option<Number>) -> EndPoint {

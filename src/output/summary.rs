@@ -11,8 +11,11 @@ use super::number::Number;
 use super::rates_summary::{self, RateEntry, TransitionEntry};
 use super::read::{shown, text};
 use super::{Certainty, Format, RunReport};
-use crate::drive::{Barrier, EndPoint, IntermediateMinimum, Outcome, RejectedPath, SaddlePoint, StopCode, Work};
+use crate::drive::{
+    Barrier, EndPoint, IntermediateMinimum, Outcome, RejectedPath, SaddlePoint, SearchReport, StopCode, Work,
+};
 use crate::error::{Error, Result};
+use crate::landscape::Effort;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -70,6 +73,8 @@ pub struct Summary {
     pub(super) initial: End,
     pub(super) r#final: End,
     pub(super) intermediate_minima: Vec<Minimum>,
+    /// What the search for lower passes came to; nothing of version 0.1.0.
+    pub(super) search: Option<Search>,
     pub(super) rejected_paths: Vec<Rejected>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) rates: Option<Vec<RateEntry>>,
@@ -111,6 +116,23 @@ pub(super) struct Saddle {
     pub negative_modes: Option<usize>,
     pub zero_modes: Option<usize>,
     pub lowest_eigenvalues_meV: Vec<Number>,
+}
+
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[allow(non_snake_case)]
+pub(super) struct Search {
+    pub effort: Effort,
+    pub searches: usize,
+    pub quiet: usize,
+    pub minima: usize,
+    pub saddles: usize,
+    pub lowered_by_meV: Number,
+    pub spent: bool,
+}
+
+fn search(found: &SearchReport) -> Search {
+    let SearchReport { effort, searches, quiet, minima, saddles, lowered_by_mev, spent } = *found;
+    Search { effort, searches, quiet, minima, saddles, lowered_by_meV: Number(lowered_by_mev), spent }
 }
 
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -180,6 +202,7 @@ impl Summary {
             initial: end(&outcome.initial),
             r#final: end(&outcome.final_state),
             intermediate_minima: outcome.intermediate_minima.iter().map(minimum).collect(),
+            search: Some(search(&outcome.search)),
             rejected_paths: outcome.rejected_paths.iter().map(rejected).collect(),
             rates: outcome.rates.as_ref().map(rates_summary::saddles),
             transition_rates: outcome.rates.as_ref().map(rates_summary::transitions),

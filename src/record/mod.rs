@@ -21,6 +21,7 @@ mod recorder;
 pub use checkpoint::{Checkpoint, FOLDER, Identity};
 pub use fingerprint::Fingerprint;
 pub use lock::Lock;
+pub use recorder::Count;
 pub use recorder::Recorder;
 pub(crate) use recorder::{MOST, Ticket};
 

@@ -1,8 +1,8 @@
 //! Answers calls from a record, and records them.
 
 use super::{Fingerprint, Keep};
-use serde::Serialize;
 use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Records the calls of a run in a [`Keep`], or does not.
@@ -91,7 +91,7 @@ impl Recorder {
         &self,
         ticket: Ticket,
         check: impl FnOnce(T) -> Option<T>,
-    ) -> Option<(T, usize)> {
+    ) -> Option<(T, Count)> {
         let mut record = self.record()?;
         let k = record.done;
         let found = ticket.opened(&record.keep.finished(k)?, check)?;
@@ -105,7 +105,7 @@ impl Recorder {
         &self,
         ticket: Ticket,
         check: impl FnOnce(T) -> Option<T>,
-    ) -> Option<(T, usize)> {
+    ) -> Option<(T, Count)> {
         let mut record = self.record()?;
         let k = record.done;
         ticket.opened(&record.keep.underway(k)?, check)
@@ -124,6 +124,15 @@ impl Recorder {
     }
 }
 
+/// What was evaluated of single states.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Count {
+    /// Gradients.
+    pub evaluations: usize,
+    /// Hessians.
+    pub hessians: usize,
+}
+
 /// What identifies a call: its input.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ticket(u32);
@@ -131,20 +140,20 @@ pub(crate) struct Ticket(u32);
 impl Ticket {
     /// A record: the fingerprint of the input, the evaluations of the call so far, and its result or where it stands. What
     /// cannot be written is no record of anything.
-    pub(crate) fn sealed(self, evaluations: usize, content: &impl Serialize) -> Vec<u8> {
-        postcard::to_allocvec(&(self.0, evaluations, content)).unwrap_or_default()
+    pub(crate) fn sealed(self, count: Count, content: &impl Serialize) -> Vec<u8> {
+        postcard::to_allocvec(&(self.0, count, content)).unwrap_or_default()
     }
 
     /// What a record holds, with its evaluations; nothing if it is of another input, or not understood to its last byte.
-    fn opened<T: DeserializeOwned>(self, record: &[u8], check: impl FnOnce(T) -> Option<T>) -> Option<(T, usize)> {
+    fn opened<T: DeserializeOwned>(self, record: &[u8], check: impl FnOnce(T) -> Option<T>) -> Option<(T, Count)> {
         // the input first: where it is another, what follows need not be understood
         let (print, _) = postcard::take_from_bytes::<u32>(record).ok()?;
         if print != self.0 {
             return None;
         }
-        let ((_, evaluations, content), rest) = postcard::take_from_bytes::<(u32, usize, T)>(record).ok()?;
-        (rest.is_empty() && evaluations <= MOST).then_some(())?;
-        Some((check(content)?, evaluations))
+        let ((_, count, content), rest) = postcard::take_from_bytes::<(u32, Count, T)>(record).ok()?;
+        (rest.is_empty() && count.evaluations.max(count.hessians) <= MOST).then_some(())?;
+        Some((check(content)?, count))
     }
 }
 
@@ -158,11 +167,11 @@ mod tests {
     #[test]
     fn what_was_written_is_read_to_the_bit_and_never_less_or_more_than_that() {
         let rows = vec![vec![0.1, -0.0, f64::MIN_POSITIVE], Vec::new(), vec![f64::INFINITY, f64::NAN]];
-        let bytes = Ticket(7).sealed(3, &(true, 1.0 / 3.0, &rows));
+        let bytes = Ticket(7).sealed(Count { evaluations: 3, hessians: 2 }, &(true, 1.0 / 3.0, &rows));
         type Content = (bool, f64, Vec<Vec<f64>>);
         let read = |bytes: &[u8]| Ticket(7).opened::<Content>(bytes, Some);
-        let ((yes, x, again), evaluations) = read(&bytes).unwrap();
-        assert_eq!((evaluations, yes, x.to_bits()), (3, true, (1.0f64 / 3.0).to_bits()));
+        let ((yes, x, again), count) = read(&bytes).unwrap();
+        assert_eq!((count.evaluations, count.hessians, yes, x.to_bits()), (3, 2, true, (1.0f64 / 3.0).to_bits()));
         let bits = |rows: &[Vec<f64>]| rows.iter().flatten().map(|x| x.to_bits()).collect::<Vec<_>>();
         assert_eq!((again.len(), bits(&again)), (3, bits(&rows)));
         for cut in 0..bytes.len() {
@@ -171,7 +180,7 @@ mod tests {
         assert!(read(&[&bytes[..], &[0]].concat()).is_none());
         assert!(Ticket(8).opened::<Content>(&bytes, Some).is_none());
         // a length of 2⁶³ numbers asks for no memory
-        let mut endless = bytes[..11].to_vec();
+        let mut endless = bytes[..12].to_vec();
         endless.extend([0xff; 9]);
         endless.push(1);
         assert!(read(&endless).is_none());

@@ -101,6 +101,7 @@ impl Point {
 
     /// The Riemannian Hessian plus shift·1 in tangent coordinates (meV), in the memory of `matrix`.
     pub fn write_hessian(&self, h: Evaluator, shift: f64, matrix: &mut Matrix) {
+        h.count_hessian();
         assemble_into(&h, &self.m, &self.gradient, &self.basis, shift, matrix);
     }
 

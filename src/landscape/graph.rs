@@ -1,0 +1,363 @@
+//! Everything that was found, as one graph, and what is asked of it.
+//!
+//! Nodes are minima, each state one of its own: up and down are two. Edges are passes: certified saddles with the minima that their
+//! two descents reach. The images of both under the symmetry of lattice and energy are nodes and edges too, without a search. A
+//! pass with the same minimum on both sides is an edge that no route takes.
+
+use super::{Minimum, Pass, Saddle, is_same_state};
+use crate::energy::Evaluator;
+use crate::path::largest_angle;
+use crate::symmetry::Operation;
+
+/// Minima and saddles with energies that differ by more than this part of the stiffness are not compared.
+const ENERGY: f64 = 1e-9;
+
+/// A climb that comes so near to a saddle (rad, any spin) ends there.
+const BESIDE: f64 = 0.05;
+/// Passes count as lower by more than this part of the height, and of the stiffness.
+const LOWER: f64 = 1e-7;
+const ROUNDING: f64 = 1e-10;
+
+/// A pass, or an image of one.
+#[derive(Clone, Debug)]
+pub struct Edge {
+    /// The minima that it joins.
+    pub ends: [usize; 2],
+    /// Energy of its saddle above the landscape's reference (meV).
+    pub height_mev: f64,
+    /// Which pass.
+    pub pass: usize,
+    /// Which image of it; the pass itself if absent.
+    pub by: Option<usize>,
+    /// The saddle's spins (3N).
+    pub saddle: Vec<f64>,
+}
+
+/// A way over passes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Route {
+    /// Edges in order, and whether each is gone from its second end to its first.
+    pub steps: Vec<(usize, bool)>,
+    /// The highest of its saddles above the landscape's reference (meV).
+    pub top_mev: f64,
+}
+
+/// Minima and passes.
+#[derive(Debug)]
+pub struct Landscape<'a> {
+    h: Evaluator<'a>,
+    /// Energies are counted from that of this state (3N).
+    reference: Vec<f64>,
+    reference_mev: f64,
+    operations: Vec<Operation>,
+    minima: Vec<Minimum>,
+    heights_mev: Vec<f64>,
+    passes: Vec<Pass>,
+    edges: Vec<Edge>,
+}
+
+impl<'a> Landscape<'a> {
+    /// Of an energy with these symmetries, so far with nothing in it; energies are counted from that of the state `reference`.
+    pub fn new(h: Evaluator<'a>, reference: &[f64], operations: Vec<Operation>) -> Landscape<'a> {
+        Landscape {
+            h,
+            reference: reference.to_vec(),
+            reference_mev: h.hamiltonian().energy_mev(reference) - h.reference_mev(),
+            operations,
+            minima: Vec::new(),
+            heights_mev: Vec::new(),
+            passes: Vec::new(),
+            edges: Vec::new(),
+        }
+    }
+
+    /// The energy.
+    pub fn evaluator(&self) -> Evaluator<'a> {
+        self.h
+    }
+
+    /// All minima, images counted.
+    pub fn minima(&self) -> &[Minimum] {
+        &self.minima
+    }
+
+    /// Energies of the minima above the reference (meV).
+    pub fn heights_mev(&self) -> &[f64] {
+        &self.heights_mev
+    }
+
+    /// All passes and their images.
+    pub fn edges(&self) -> &[Edge] {
+        &self.edges
+    }
+
+    /// Energy of a state above the reference (meV).
+    pub fn height_mev(&self, m: &[f64]) -> f64 {
+        self.h.difference_mev(m, &self.reference)
+    }
+
+    /// Energy of the state from which energies are counted, above the Hamiltonian's own reference (meV).
+    pub fn reference_mev(&self) -> f64 {
+        self.reference_mev
+    }
+
+    /// Whether a state of this height is so near to a known saddle that a climb from it would end there.
+    pub fn is_beside_a_saddle(&self, m: &[f64], height_mev: f64) -> bool {
+        let near = BESIDE * BESIDE * self.h.stiffness_mev() * self.h.sites() as f64;
+        let beside = |e: &Edge| (e.height_mev - height_mev).abs() < near && largest_angle(&e.saddle, m) < BESIDE;
+        self.edges.iter().any(beside)
+    }
+
+    /// By how much a pass must be lower than one of this height to count as lower (meV).
+    pub fn tolerance_mev(&self, height_mev: f64) -> f64 {
+        (ROUNDING * self.h.stiffness_mev()).max(LOWER * height_mev.abs())
+    }
+
+    /// The minimum that this one is, which is put in with its images if it is new.
+    pub fn add_minimum(&mut self, minimum: &Minimum) -> usize {
+        let known = self.minima.len();
+        let place = self.place(minimum);
+        if place == known {
+            for k in 0..self.operations.len() {
+                self.place(&minimum.image(&self.operations[k]));
+            }
+        }
+        place
+    }
+
+    /// The node of a minimum, a new one if there is none yet.
+    fn place(&mut self, minimum: &Minimum) -> usize {
+        let height = self.height_mev(minimum.spins.as_slice());
+        let near = ENERGY * self.h.stiffness_mev();
+        let alike =
+            |k: &usize| (self.heights_mev[*k] - height).abs() < near && self.minima[*k].is_same(self.h, minimum);
+        if let Some(known) = (0..self.minima.len()).find(alike) {
+            return known;
+        }
+        self.minima.push(minimum.clone());
+        self.heights_mev.push(height);
+        self.minima.len() - 1
+    }
+
+    /// Puts a certified pass in, with its minima and all its images; false if its saddle is known.
+    pub fn add(&mut self, pass: Pass) -> bool {
+        if self.knows(&pass.saddle) {
+            return false;
+        }
+        let ends = [&pass.before, &pass.after].map(|minimum| self.add_minimum(minimum));
+        let height_mev = self.height_mev(pass.saddle.spins());
+        let number = self.passes.len();
+        self.edges.push(Edge { ends, height_mev, pass: number, by: None, saddle: pass.saddle.spins().to_vec() });
+        for k in 0..self.operations.len() {
+            let saddle = self.operations[k].apply(pass.saddle.spins());
+            if self.knows_state(&saddle, height_mev) {
+                continue;
+            }
+            let ends = [&pass.before, &pass.after].map(|minimum| self.place(&minimum.image(&self.operations[k])));
+            self.edges.push(Edge { ends, height_mev, pass: number, by: Some(k), saddle });
+        }
+        self.passes.push(pass);
+        true
+    }
+
+    /// Whether a saddle is as high as this.
+    pub fn has_height(&self, height_mev: f64) -> bool {
+        self.edges.iter().any(|e| (e.height_mev - height_mev).abs() < ENERGY * self.h.stiffness_mev())
+    }
+
+    /// Whether a saddle is known.
+    pub fn knows(&self, saddle: &Saddle) -> bool {
+        self.knows_state(saddle.spins(), self.height_mev(saddle.spins()))
+    }
+
+    fn knows_state(&self, m: &[f64], height_mev: f64) -> bool {
+        let near = ENERGY * self.h.stiffness_mev();
+        self.edges.iter().any(|e| (e.height_mev - height_mev).abs() < near && is_same_state(self.h, &e.saddle, m))
+    }
+
+    /// The route whose highest saddle is lowest; of several the one over the fewest passes.
+    pub fn route(&self, from: usize, to: usize) -> Option<Route> {
+        let mut order: Vec<usize> = (0..self.edges.len()).collect();
+        order.sort_by(|p, q| self.edges[*p].height_mev.total_cmp(&self.edges[*q].height_mev));
+        let mut parts = Parts::of(self.minima.len());
+        let last = order.iter().position(|&k| {
+            let [a, b] = self.edges[k].ends;
+            parts.join(a, b);
+            parts.root(from) == parts.root(to)
+        })?;
+        let top_mev = self.edges[order[last]].height_mev;
+        Some(Route { steps: self.shortest(&order[..=last], from, to)?, top_mev })
+    }
+
+    /// The way over the fewest of some edges; of several the one with the lowest sum of heights.
+    fn shortest(&self, allowed: &[usize], from: usize, to: usize) -> Option<Vec<(usize, bool)>> {
+        let mut ways: Vec<Vec<(usize, bool)>> = vec![Vec::new(); self.minima.len()];
+        for &k in allowed {
+            let [a, b] = self.edges[k].ends;
+            ways[a].push((k, false));
+            ways[b].push((k, true));
+        }
+        // so many edges on the way to a minimum, the sum of their heights, and the last of them
+        let mut reached: Vec<Option<(f64, (usize, bool))>> = vec![None; self.minima.len()];
+        let mut front = vec![(from, 0.0)];
+        let mut seen = vec![false; self.minima.len()];
+        seen[from] = true;
+        while !seen[to] {
+            let mut next: Vec<usize> = Vec::new();
+            for (here, sum) in front {
+                for &(edge, backward) in &ways[here] {
+                    let there = self.edges[edge].ends[usize::from(!backward)];
+                    let sum = sum + self.edges[edge].height_mev;
+                    if !seen[there] && reached[there].is_none_or(|(least, _)| sum < least) {
+                        next.push(there);
+                        reached[there] = Some((sum, (edge, backward)));
+                    }
+                }
+            }
+            next.sort_unstable();
+            next.dedup();
+            next.iter().for_each(|k| seen[*k] = true);
+            front = next.into_iter().filter_map(|k| Some((k, reached[k]?.0))).collect();
+            if front.is_empty() {
+                return None;
+            }
+        }
+        let mut steps = Vec::new();
+        let mut here = to;
+        while here != from {
+            let (_, (edge, backward)) = reached[here]?;
+            steps.push((edge, backward));
+            here = self.edges[edge].ends[usize::from(backward)];
+        }
+        steps.reverse();
+        Some(steps)
+    }
+
+    /// Which minima are joined by passes below a height (meV): a number for each that those joined with it share.
+    pub fn parts_below(&self, height_mev: f64) -> Vec<usize> {
+        let mut parts = Parts::of(self.minima.len());
+        for edge in self.edges.iter().filter(|e| e.height_mev < height_mev) {
+            parts.join(edge.ends[0], edge.ends[1]);
+        }
+        (0..self.minima.len()).map(|k| parts.root(k)).collect()
+    }
+
+    /// The passes of a route, each in the direction in which the route goes over it.
+    pub fn passes_of(&self, route: &Route) -> Vec<Pass> {
+        let pass = |&(k, backward): &(usize, bool)| {
+            let Edge { pass, by, .. } = &self.edges[k];
+            let mut pass = match by {
+                Some(by) => self.passes[*pass].image(self.h, &self.operations[*by]),
+                None => self.passes[*pass].clone(),
+            };
+            if backward {
+                pass.reverse();
+            }
+            pass
+        };
+        route.steps.iter().map(pass).collect()
+    }
+}
+
+/// Sets that are joined bit by bit.
+struct Parts(Vec<usize>);
+
+impl Parts {
+    fn of(count: usize) -> Parts {
+        Parts((0..count).collect())
+    }
+
+    fn root(&mut self, mut k: usize) -> usize {
+        while self.0[k] != k {
+            self.0[k] = self.0[self.0[k]];
+            k = self.0[k];
+        }
+        k
+    }
+
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.0[a.max(b)] = a.min(b);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::energy::{Anisotropy, EnergyTerm, Hamiltonian};
+    use crate::geometry::Direction;
+    use crate::lattice::Chain;
+    use crate::spins::Spins;
+    use crate::stationary::Limits;
+    use crate::symmetry::Group;
+
+    /// One spin with an easy axis z and a hard axis x: minima ±z, saddles ±y.
+    fn spin() -> Hamiltonian {
+        let lattice = Chain::open(1).resolve().unwrap();
+        let terms: Vec<Box<dyn EnergyTerm>> = vec![
+            Box::new(Anisotropy::uniform(1, 1.0, Direction::Z)),
+            Box::new(Anisotropy::uniform(1, -0.5, Direction::X)),
+        ];
+        Hamiltonian::new(&lattice, terms).unwrap()
+    }
+
+    fn pass(h: &Hamiltonian) -> Pass {
+        let start = Spins::from_vectors(&[[0.1, 0.9, 0.2]]).unwrap();
+        let limits =
+            Limits { steps: 40, without_mode: 8, radius: 0.5, ceiling_mev: f64::INFINITY, known: &|_, _| false };
+        let saddle = Saddle::climbed(h.into(), start.as_slice(), &limits).unwrap();
+        Pass::of(h.into(), saddle, 1.0).unwrap()
+    }
+
+    #[test]
+    fn a_pass_brings_its_images_by_symmetry_and_joins_minima_without_another_search() {
+        let h = spin();
+        let up = Spins::from_vectors(&[[0.0, 0.0, 1.0]]).unwrap();
+        for (operations, saddles) in [(Vec::new(), 1), (Group::of(&h, up.as_slice(), &[]).operations().collect(), 2)] {
+            let mut land = Landscape::new((&h).into(), up.as_slice(), operations);
+            let a = land.add_minimum(&Minimum::examine((&h).into(), &up));
+            assert!(land.add(pass(&h)) && !land.add(pass(&h)));
+            assert_eq!((land.minima().len(), land.edges().len()), (2, saddles));
+            let route = land.route(a, 1 - a).unwrap();
+            assert!((route.top_mev - 1.0).abs() < 1e-12 && route.steps.len() == 1, "{route:?}");
+            let passes = land.passes_of(&route);
+            assert!(passes[0].before.is_identical((&h).into(), &land.minima()[a]));
+            assert_eq!(land.parts_below(0.9), [0, 1]);
+            assert_eq!(land.parts_below(1.1), [0, 0]);
+            let back = land.route(1 - a, a).unwrap();
+            assert_eq!(back.steps[0].1, !route.steps[0].1);
+        }
+    }
+
+    #[test]
+    fn a_route_is_over_the_lowest_highest_pass_and_then_over_the_fewest() {
+        let h = spin();
+        let up = Spins::from_vectors(&[[0.0, 0.0, 1.0]]).unwrap();
+        let mut land = Landscape::new((&h).into(), up.as_slice(), Vec::new());
+        let minimum = Minimum::examine((&h).into(), &up);
+        land.minima = vec![minimum; 5];
+        let edge = |a: usize, b: usize, height_mev: f64| Edge {
+            ends: [a, b],
+            height_mev,
+            pass: 0,
+            by: None,
+            saddle: Vec::new(),
+        };
+        land.edges = vec![
+            edge(0, 4, 5.0),
+            edge(0, 1, 2.0),
+            edge(2, 1, 3.0),
+            edge(2, 4, 1.0),
+            edge(1, 1, 0.5),
+            edge(1, 3, 1.0),
+            edge(3, 2, 1.5),
+        ];
+        let route = land.route(0, 4).unwrap();
+        assert_eq!((route.top_mev, &route.steps[..]), (2.0, &[(1, false), (5, false), (6, false), (3, false)][..]));
+        land.edges[6].height_mev = 3.5;
+        let route = land.route(0, 4).unwrap();
+        assert_eq!((route.top_mev, &route.steps[..]), (3.0, &[(1, false), (2, true), (3, false)][..]));
+        land.edges.truncate(2);
+        assert_eq!(land.route(0, 3), None);
+    }
+}

@@ -1,0 +1,173 @@
+//! The search for lower passes: rivals by turns, until they bring no news.
+//!
+//! T is the highest saddle of the best route known. A rival names a state from which a saddle below T may be reached; from there a
+//! climb goes to one, descents from it to its two minima, and both go into the landscape: the route may then have a lower T.
+//! News is a lower T, or a saddle of an energy that none had before; the search ends after so many searches in a row without any.
+//! Searches are made in batches, each batch from what is known before it, its searches side by side: what is found does not depend
+//! on how many threads there are.
+
+use super::rivals::{Cut, Rival, rivals};
+use super::{Landscape, Pass, Saddle};
+use crate::energy::{Evaluator, Stored, recorded};
+use crate::error::Result;
+use crate::path::guess::GuessContext;
+use crate::record::Count;
+use crate::stationary::Limits;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Most steps of a climb, most of them in a row without a descending mode, and the largest rotation of a spin in one (rad).
+const STEPS: usize = 40;
+const WITHOUT_MODE: usize = 8;
+const RADIUS: f64 = 0.5;
+/// Searches of a batch.
+const BATCH: usize = 8;
+/// The seed of everything random in a search.
+const SEED: u64 = 0x5ea2c4;
+
+/// How long lower passes are looked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Effort {
+    /// Not at all.
+    None,
+    /// Until 8 searches in a row brought no news.
+    Quick,
+    /// Until 24 searches in a row brought no news, 40 once a saddle was found.
+    #[default]
+    Normal,
+    /// Until 100 searches in a row brought no news.
+    Thorough,
+}
+
+impl Effort {
+    /// So many searches in a row without news end a search.
+    fn quiet(self, found: bool) -> usize {
+        match (self, found) {
+            (Effort::None, _) => 0,
+            (Effort::Quick, _) => 8,
+            (Effort::Normal, false) => 24,
+            (Effort::Normal, true) => 40,
+            (Effort::Thorough, _) => 100,
+        }
+    }
+}
+
+/// What a search is given.
+#[derive(Clone, Copy, Debug)]
+pub struct Settings<'a> {
+    /// How long.
+    pub effort: Effort,
+    /// Most gradients and Hessians of single states.
+    pub most: Count,
+    /// As high as the best path known is (meV above the landscape's reference), for as long as no route is.
+    pub top_mev: f64,
+    /// Stiffness scale c (meV).
+    pub c: f64,
+    /// What first paths need to know.
+    pub context: GuessContext<'a>,
+}
+
+/// What a search came to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Searched {
+    /// How many climbs.
+    pub searches: usize,
+    /// How many of them, the last ones, brought no news.
+    pub quiet: usize,
+    /// Its work ended it before they did.
+    pub spent: bool,
+}
+
+/// Looks for passes below the top of the route between two minima.
+pub fn search(land: &mut Landscape, [from, to]: [usize; 2], settings: &Settings) -> Result<Searched> {
+    let h = land.evaluator();
+    let mut done = Searched::default();
+    let mut random = ChaCha8Rng::seed_from_u64(SEED);
+    let mut rivals = rivals();
+    let passes = land.edges().len();
+    let mut lowest = f64::INFINITY;
+    let before = h.evaluated();
+    let is_spent = |now: Count| {
+        now.evaluations - before.evaluations >= settings.most.evaluations
+            || now.hessians - before.hessians >= settings.most.hessians
+    };
+    loop {
+        let top_mev = land.route(from, to).map_or(settings.top_mev, |route| route.top_mev);
+        if top_mev < lowest - land.tolerance_mev(top_mev) {
+            (lowest, done.quiet) = (top_mev, 0);
+        }
+        let wanted = settings.effort.quiet(land.edges().len() > passes);
+        done.spent = is_spent(h.evaluated());
+        if done.quiet >= wanted || done.spent {
+            break;
+        }
+        let cut = Cut::of(land, [from, to], top_mev - land.tolerance_mev(top_mev), settings.context);
+        let count = BATCH.min(wanted - done.quiet);
+        let mut next = |k: usize| {
+            let turn = (done.searches + k) % rivals.len();
+            rivals[turn].start(&cut, &mut random)
+        };
+        let starts: Vec<Vec<f64>> = (0..count).filter_map(&mut next).collect();
+        let input: Vec<&[f64]> = starts.iter().map(Vec::as_slice).collect();
+        let below = cut.top_mev;
+        let caught: Vec<Caught> = recorded(h, "searches", &input, || {
+            starts.par_iter().map(|start| climb(land, start, below, settings.c)).collect()
+        })?;
+        if starts.is_empty() {
+            break;
+        }
+        for Caught(pass) in caught {
+            let news = pass.is_some_and(|pass| bring(land, *pass, below));
+            done.searches += 1;
+            done.quiet = if news { 0 } else { done.quiet + 1 };
+        }
+    }
+    Ok(done)
+}
+
+/// Puts a pass in; whether that is news. One as high as another is most likely an image of it by a symmetry.
+fn bring(land: &mut Landscape, pass: Pass, below: f64) -> bool {
+    let height = land.height_mev(pass.saddle.spins());
+    if height >= below || pass.doubt(land.evaluator()).is_some() {
+        return false;
+    }
+    let new = !land.has_height(height);
+    land.add(pass) && new
+}
+
+/// What a search found.
+#[derive(Serialize, Deserialize)]
+struct Caught(Option<Box<Pass>>);
+
+impl Stored for Caught {
+    fn restored(self, h: Evaluator) -> Option<Self> {
+        match self.0 {
+            Some(pass) => pass.restored(h).map(|pass| Caught(Some(Box::new(pass)))),
+            None => Some(self),
+        }
+    }
+}
+
+/// The pass that a climb from a state leads to, if that is a new one below a height (meV).
+fn climb(land: &Landscape, start: &[f64], below: f64, c: f64) -> Result<Caught> {
+    let h = land.evaluator();
+    let limits = Limits {
+        steps: STEPS,
+        without_mode: WITHOUT_MODE,
+        radius: RADIUS,
+        ceiling_mev: land.reference_mev() + below,
+        known: &|m, energy_mev| land.is_beside_a_saddle(m, energy_mev - land.reference_mev()),
+    };
+    let Some(saddle) = Saddle::climbed(h, start, &limits) else { return Ok(Caught(None)) };
+    if land.height_mev(saddle.spins()) >= below || land.knows(&saddle) {
+        return Ok(Caught(None));
+    }
+    Ok(Caught(Some(Box::new(Pass::of(h, saddle, c)?))))
+}
+
+/// The rivals of a search, in the order of their turns.
+pub(super) type Rivals = Vec<Box<dyn Rival>>;

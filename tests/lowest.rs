@@ -1,0 +1,121 @@
+//! The lowest barrier: searches below the top of the first paths, against independent enumerations.
+
+use serde_json::{Value, json};
+use spinneb::config::load_text;
+use spinneb::drive::{Outcome, Silent, run};
+use spinneb::landscape::Effort;
+
+/// The outcome of a config with an effort.
+fn solve(config: &Value, effort: Effort) -> Outcome {
+    let loaded = load_text("test.json".as_ref(), config.to_string()).unwrap();
+    let mut problem = loaded.problem().unwrap();
+    problem.search = effort;
+    run(&problem, &mut Silent).unwrap()
+}
+
+/// The barrier (meV) of an outcome that must be certified.
+fn certified(outcome: &Outcome) -> f64 {
+    assert!(outcome.certified, "{}: {:?}", outcome.stop_reason, outcome.warnings);
+    outcome.barrier.expect("a barrier").forward_mev
+}
+
+fn chain(sites: usize, periodic: bool, energy: Value, initial: Value, last: Value) -> Value {
+    let material = json!({"name": "test", "source": "a test", "moment": "2 mu_B", "energy": energy});
+    let lattice = json!({"chain": {"sites": sites, "periodic": periodic}});
+    json!({"material": material, "lattice": lattice, "initial": initial, "final": last})
+}
+
+fn up() -> Value {
+    json!({"uniform": {"direction": [0, 0, 1]}})
+}
+
+fn down() -> Value {
+    json!({"uniform": {"direction": [0, 0, -1]}})
+}
+
+fn wall(center: f64, through: i32) -> Value {
+    json!({"domain_wall": {"center": center, "through": [0, through, 0]}})
+}
+
+#[test]
+fn chains_whose_first_paths_are_not_the_lowest_come_to_the_barrier_of_the_enumeration() {
+    let reference: Value = serde_json::from_str(include_str!("reference/lowest.json")).unwrap();
+    let cases = reference["cases"].as_array().unwrap();
+    let mut missed = Vec::new();
+    for case in cases {
+        let (bound, name) = (case["barrier_at_most_meV"].as_f64().unwrap(), &case["name"]);
+        let outcome = solve(&case["config"], Effort::Normal);
+        let found = outcome.barrier.map_or(f64::INFINITY, |barrier| barrier.forward_mev);
+        let search = outcome.search;
+        assert!(search.searches >= 24 && search.quiet >= 24, "{name}: {search:?}");
+        if !outcome.certified || found > bound * (1.0 + 1e-7) {
+            missed.push(format!("{name}: {found} for {bound}"));
+        }
+    }
+    assert!(cases.len() == 61 && missed.len() <= 1, "{missed:?}");
+}
+
+#[test]
+fn a_wall_turns_its_chirality_by_leaving_the_chain_and_coming_back() {
+    let energy = json!([
+        {"exchange": {"J": ["10 meV"]}},
+        {"anisotropy": {"K": "3.6 meV", "axis": [0, 0, 1]}},
+        {"anisotropy": {"K": "-0.72 meV", "axis": [1, 0, 0]}},
+    ]);
+    let config = chain(40, false, energy, wall(19.5, 1), wall(19.5, -1));
+    let in_place = solve(&config, Effort::None);
+    let lower = solve(&config, Effort::Normal);
+    let (turned, hopped) = (certified(&in_place), certified(&lower));
+    assert!(hopped < 0.1 * turned, "{turned} {hopped}");
+    assert!((lower.search.lowered_by_mev - (turned - hopped)).abs() < 1e-9, "{:?}", lower.search);
+    assert!(lower.rejected_paths.iter().any(|path| path.reason.contains("lower")), "{:?}", lower.rejected_paths);
+    // out of the chain is down, and in again up: the highest climb is that of a wall into a chain without one
+    assert!(lower.highest_climb.unwrap().forward_mev > 10.0 * turned);
+}
+
+#[test]
+fn the_two_signs_of_a_dzyaloshinskii_moriya_interaction_on_a_ring_have_one_barrier() {
+    let ring = |d: &str| {
+        let energy = json!([
+            {"exchange": {"J": ["1 meV"]}},
+            {"anisotropy": {"K": "0.2 meV", "axis": [0, 0, 1]}},
+            {"dmi": {"D": d, "direction": [0, 1, 0]}},
+        ]);
+        certified(&solve(&chain(30, true, energy, up(), down()), Effort::Normal))
+    };
+    let (plus, minus) = (ring("0.1 meV"), ring("-0.1 meV"));
+    assert!((plus - minus).abs() < 1e-9 * plus, "{plus} {minus}");
+}
+
+#[test]
+fn a_path_that_could_not_be_proven_is_proven_over_passes_that_were_met() {
+    let energy = json!([
+        {"exchange": {"J": ["10 meV"]}},
+        {"anisotropy": {"K": "0.5 meV", "K2": "0.2 meV", "axis": [0, 0, 1]}},
+    ]);
+    let config = chain(50, false, energy, up(), down());
+    let barrier = certified(&solve(&config, Effort::Normal));
+    let turned = chain(50, false, config["material"]["energy"].clone(), down(), up());
+    let back = certified(&solve(&turned, Effort::Normal));
+    assert!((barrier - back).abs() < 1e-9 * barrier, "{barrier} {back}");
+}
+
+#[test]
+fn a_named_guess_and_kept_ends_are_not_searched_below() {
+    let energy = json!([{"exchange": {"J": ["10 meV"]}}, {"anisotropy": {"K": "0.5 meV", "axis": [0, 0, 1]}}]);
+    let mut config = chain(20, false, energy, up(), down());
+    let effort = |config: &Value| {
+        let loaded = load_text("test.json".as_ref(), config.to_string()).unwrap();
+        loaded.problem().map(|problem| problem.search).map_err(|e| e.to_string())
+    };
+    assert_eq!(effort(&config), Ok(Effort::Normal));
+    config["path"] = json!({"guess": {"geodesic": {}}});
+    assert_eq!(effort(&config), Ok(Effort::None));
+    config["search"] = json!({"effort": "quick"});
+    assert_eq!(effort(&config), Ok(Effort::Quick));
+    config["relax_ends"] = json!(false);
+    let message = effort(&config).unwrap_err();
+    assert!(message.contains("search") && message.contains("relax_ends"), "{message}");
+    config.as_object_mut().unwrap().remove("search");
+    assert_eq!(effort(&config), Ok(Effort::None));
+}
