@@ -6,7 +6,7 @@
 //! Searches are made in batches, each batch from what is known before it, its searches side by side: what is found does not depend
 //! on how many threads there are.
 
-use super::rivals::{Cut, Rival, rivals};
+use super::rivals::{Cut, rivals};
 use super::{Landscape, Pass, Saddle};
 use crate::energy::{Evaluator, Stored, recorded};
 use crate::error::Result;
@@ -168,6 +168,3 @@ fn climb(land: &Landscape, start: &[f64], below: f64, c: f64) -> Result<Caught> 
     }
     Ok(Caught(Some(Box::new(Pass::of(h, saddle, c)?))))
 }
-
-/// The rivals of a search, in the order of their turns.
-pub(super) type Rivals = Vec<Box<dyn Rival>>;

@@ -2,12 +2,9 @@
 
 use super::operation::Operation;
 use super::search::Search;
+use super::shift::Shift;
 use crate::energy::Hamiltonian;
 use crate::geometry::Vector;
-use crate::geometry::matrix::{UNIT, product};
-
-/// Any of the orthogonal matrices tried becomes 1 after so many times.
-const ORDER: usize = 12;
 
 /// The operations that leave an energy as it is.
 #[derive(Debug)]
@@ -15,26 +12,6 @@ pub struct Group {
     axes: Vec<Vector>,
     shifts: Vec<Shift>,
     classes: Vec<Operation>,
-}
-
-/// The shortest shift along a direction.
-#[derive(Clone, Debug)]
-pub struct Shift {
-    /// Once.
-    pub operation: Operation,
-    /// After how many times every site is where it was.
-    pub order: usize,
-}
-
-impl Shift {
-    /// So many times, less than its order.
-    pub fn times(&self, count: usize) -> Operation {
-        let once = &self.operation;
-        let mut motion = once.motion;
-        motion.by = motion.by.map(|by| by * count);
-        let spin = (0..count % ORDER).fold(UNIT, |r, _| product(&r, &once.spin));
-        Operation { motion, spin, ..once.clone() }
-    }
 }
 
 impl Group {

@@ -30,6 +30,8 @@ mod marks;
 mod operation;
 mod same;
 mod search;
+mod shift;
 
-pub use group::{Group, Shift};
+pub use group::Group;
 pub use operation::Operation;
+pub use shift::Shift;

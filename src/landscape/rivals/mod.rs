@@ -4,13 +4,12 @@ mod near;
 mod push;
 
 use super::Landscape;
-use super::search::Rivals;
 use crate::path::guess::GuessContext;
 use rand_chacha::ChaCha8Rng;
 use std::fmt::Debug;
 
 /// All rivals, in the order of their turns.
-pub(super) fn rivals() -> Rivals {
+pub(super) fn rivals() -> Vec<Box<dyn Rival>> {
     vec![Box::<near::Near>::default(), Box::<push::Push>::default()]
 }
 
