@@ -15,11 +15,10 @@ use crate::landscape::Pass;
 use crate::landscape::{turned, turns};
 use crate::optimise::Follows;
 use crate::path::{Path, largest_angle};
+use crate::sphere::SAME;
 use crate::spins::Spins;
 use rayon::prelude::*;
 
-/// Two states of one minimum differ by less (rad, any spin).
-const SAME: f64 = 1e-3;
 /// Rounds of making a stretch's images fewer radians apart.
 const ROUNDS: usize = 12;
 

@@ -24,6 +24,9 @@ const SPINS: usize = 10_000_000;
 const FLOPS: f64 = 5e8;
 const PARTS: usize = 2;
 
+/// Domains with a spin that is further apart are two (rad).
+const DOMAIN: f64 = 0.5;
+
 impl<'a> Run<'a, '_> {
     /// Looks for a route below the top of the best path, and leads the path over it.
     pub(super) fn search(&mut self, best: &mut Settled<'a>, rejected: &mut Vec<RejectedPath>) -> Result<SearchReport> {
@@ -35,15 +38,7 @@ impl<'a> Run<'a, '_> {
         }
         self.observer.stage("looking for lower passes");
         let h = self.problem.evaluator();
-        let own = h.evaluated();
-        let hessians = (FLOPS / factorisation_flops(&h)) as usize;
-        // of the whole run: so many of the whole band
-        let allowed = self.problem.neb.max_evaluations.saturating_mul(best.candidate.band.images());
-        let left = allowed.saturating_sub(own.evaluations);
-        let most = Count {
-            evaluations: (SPINS / h.sites()).max(PARTS * own.evaluations).min(left),
-            hessians: hessians.max(PARTS * own.hessians),
-        };
+        let most = self.allowance(best.candidate.band.images());
         let a = self.ends[0].spins.as_slice();
         let images = IMAGES.min(IMAGE_SPINS / h.sites());
         let mut land = Landscape::new(h, a, Group::of(&h, a, &[]).operations().take(images).collect());
@@ -55,7 +50,7 @@ impl<'a> Run<'a, '_> {
         for pass in std::mem::take(&mut self.met) {
             land.add(pass);
         }
-        if left > 0 {
+        if most.evaluations > 0 {
             self.through_third_states(&mut land, ends, first_mev)?;
         }
         let settings =
@@ -91,11 +86,25 @@ impl<'a> Run<'a, '_> {
         Ok(report)
     }
 
+    /// What the search may evaluate after all that was evaluated for a path of so many images.
+    fn allowance(&self, images: usize) -> Count {
+        let h = self.problem.evaluator();
+        let own = h.evaluated();
+        let hessians = (FLOPS / factorisation_flops(&h)) as usize;
+        // of the whole run: so many of the whole band
+        let allowed = self.problem.neb.max_evaluations.saturating_mul(images);
+        let left = allowed.saturating_sub(own.evaluations);
+        Count {
+            evaluations: (SPINS / h.sites()).max(PARTS * own.evaluations).min(left),
+            hessians: hessians.max(PARTS * own.hessians),
+        }
+    }
+
     /// Ways through the domains that the ends consist of: out of the lattice and in again.
     fn through_third_states(&mut self, land: &mut Landscape<'a>, [a, b]: [usize; 2], top_mev: f64) -> Result<()> {
         let h = self.problem.evaluator();
         for domain in third_states(&h, self.ends.each_ref().map(|end| &end.spins)) {
-            let top = land.route(a, b).map_or(top_mev, |route| route.top_mev.min(top_mev));
+            let top = land.top_mev(a, b).map_or(top_mev, |lowest| lowest.min(top_mev));
             if land.height_mev(domain.as_slice()) >= top {
                 continue;
             }
@@ -175,6 +184,3 @@ pub fn third_states(h: &Hamiltonian, ends: [&Spins; 2]) -> Vec<Spins> {
     }
     found
 }
-
-/// Domains with a spin that is further apart are two (rad).
-const DOMAIN: f64 = 0.5;

@@ -177,6 +177,18 @@ impl<'a> Landscape<'a> {
 
     /// The route whose highest saddle is lowest; of several the one over the fewest passes.
     pub fn route(&self, from: usize, to: usize) -> Option<Route> {
+        let allowed = self.lowest_joining(from, to)?;
+        let top_mev = self.edges[*allowed.last()?].height_mev;
+        Some(Route { steps: self.shortest(&allowed, from, to)?, top_mev })
+    }
+
+    /// Where the highest saddle of that route is (meV above the reference).
+    pub fn top_mev(&self, from: usize, to: usize) -> Option<f64> {
+        self.lowest_joining(from, to)?.last().map(|k| self.edges[*k].height_mev)
+    }
+
+    /// The lowest edges, as few as join two minima, ascending.
+    fn lowest_joining(&self, from: usize, to: usize) -> Option<Vec<usize>> {
         let mut order: Vec<usize> = (0..self.edges.len()).collect();
         order.sort_by(|p, q| self.edges[*p].height_mev.total_cmp(&self.edges[*q].height_mev));
         let mut parts = Parts::of(self.minima.len());
@@ -185,8 +197,8 @@ impl<'a> Landscape<'a> {
             parts.join(a, b);
             parts.root(from) == parts.root(to)
         })?;
-        let top_mev = self.edges[order[last]].height_mev;
-        Some(Route { steps: self.shortest(&order[..=last], from, to)?, top_mev })
+        order.truncate(last + 1);
+        Some(order)
     }
 
     /// The way over the fewest of some edges; of several the one with the lowest sum of heights.

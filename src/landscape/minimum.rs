@@ -5,14 +5,12 @@ use crate::energy::Evaluator;
 use crate::field::Components;
 use crate::geometry::vector;
 use crate::path::largest_angle;
+use crate::sphere::SAME;
 use crate::spins::Spins;
 use crate::stationary::{Spectrum, State};
 use crate::symmetry::Operation;
 use crate::threads::both;
 use serde::{Deserialize, Serialize};
-
-/// Spins of two states of one minimum differ by less (rad).
-const SAME: f64 = 1e-3;
 
 /// A stationary state with its spectrum.
 #[derive(Clone, Debug, Serialize, Deserialize)]

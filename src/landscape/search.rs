@@ -96,7 +96,7 @@ pub fn search(land: &mut Landscape, [from, to]: [usize; 2], settings: &Settings)
             || now.hessians - before.hessians >= settings.most.hessians
     };
     loop {
-        let top_mev = land.route(from, to).map_or(settings.top_mev, |route| route.top_mev);
+        let top_mev = land.top_mev(from, to).unwrap_or(settings.top_mev);
         if top_mev < lowest - land.tolerance_mev(top_mev) {
             (lowest, done.quiet) = (top_mev, 0);
         }
@@ -112,14 +112,14 @@ pub fn search(land: &mut Landscape, [from, to]: [usize; 2], settings: &Settings)
             rivals[turn].start(&cut, &mut random)
         };
         let starts: Vec<Vec<f64>> = (0..count).filter_map(&mut next).collect();
+        if starts.is_empty() {
+            break;
+        }
         let input: Vec<&[f64]> = starts.iter().map(Vec::as_slice).collect();
         let below = cut.top_mev;
         let caught: Vec<Caught> = recorded(h, "searches", &input, || {
             starts.par_iter().map(|start| climb(land, start, below, settings.c)).collect()
         })?;
-        if starts.is_empty() {
-            break;
-        }
         for Caught(pass) in caught {
             let news = pass.is_some_and(|pass| bring(land, *pass, below));
             done.searches += 1;
