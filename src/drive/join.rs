@@ -19,6 +19,8 @@ use crate::sphere::SAME;
 use crate::spins::Spins;
 use rayon::prelude::*;
 
+/// Intervals of a turn about the axis of symmetry.
+const TURN: usize = 16;
 /// Rounds of making a stretch's images fewer radians apart.
 const ROUNDS: usize = 12;
 
@@ -79,19 +81,32 @@ fn stretches(h: Evaluator, links: &[Pass], a: &Spins, b: &Spins) -> Option<Vec<P
         up.extend(link.ways[0].iter().rev().map(turned));
         up.push(saddle.clone());
         let mut there = turned(&link.after.spins);
+        let mut rest = None;
         if k + 1 == links.len() {
             if largest_angle(there.as_slice(), b.as_slice()) > SAME {
-                return None;
+                rest = Some(turned_to(h, &there, b)?);
+            } else {
+                there = b.clone();
             }
-            there = b.clone();
         }
         let mut down = vec![saddle];
         down.extend(link.ways[1].iter().map(turned));
         down.push(there.clone());
         pieces.extend([Path::new(&up), Path::new(&down)]);
+        pieces.extend(rest);
         here = there;
     }
     (!pieces.is_empty()).then_some(pieces)
+}
+
+/// The way from a state to one that a rotation about the axis of symmetry makes of it, as one of a cone to another: flat.
+fn turned_to(h: Evaluator, from: &Spins, to: &Spins) -> Option<Path> {
+    let turns = turns(h, from, to);
+    let [(axis, angle)] = turns[..] else { return None };
+    let mut row: Vec<Spins> = (0..TURN).map(|k| turned(from, &[(axis, angle * k as f64 / TURN as f64)])).collect();
+    let off = largest_angle(turned(from, &turns).as_slice(), to.as_slice());
+    row.push(to.clone());
+    (off < SAME).then(|| Path::new(&row))
 }
 
 /// Images of each stretch, both ends counted: so many that neighbours are at most `apart` (rad, any spin), or so many that all

@@ -394,7 +394,12 @@ impl<'a, 'o> Run<'a, 'o> {
             Images::Count(n) => n,
             Images::Auto => FEWEST_IMAGES,
         };
-        let path = Rotation { axis: None }.path(&self.ends[0].spins, &self.ends[1].spins, images, &self.context())?;
+        // about an axis of symmetry the way is as long as it is; the shortest way between two states of a cone leads across it
+        let axis = match self.axes[..] {
+            [axis] => Direction::new(axis).ok(),
+            _ => None,
+        };
+        let path = Rotation { axis }.path(&self.ends[0].spins, &self.ends[1].spins, images, &self.context())?;
         let mut band = Band::new(h, path);
         band.evaluate();
         if height(&band) > 1e-9 * h.stiffness_mev() {

@@ -3,6 +3,7 @@
 use super::Silent;
 use super::explore::turning_axis;
 use super::outcome::{RejectedPath, SearchReport};
+use super::relaxation::height;
 use super::report::Proof;
 use super::run::{Run, Settled};
 use crate::energy::Hamiltonian;
@@ -47,21 +48,22 @@ impl<'a> Run<'a, '_> {
             return Ok(report);
         }
         let first_mev = best.seen_mev();
+        let unproven = !best.proof.doubts.is_empty();
+        // images may miss a saddle by as much as the path is high
+        let top_mev = if unproven { first_mev + height(&best.candidate.band) } else { first_mev };
         for pass in std::mem::take(&mut self.met) {
             land.add(pass);
         }
         if most.evaluations > 0 {
-            self.through_third_states(&mut land, ends, first_mev)?;
+            self.through_third_states(&mut land, ends, top_mev)?;
         }
-        let settings =
-            Settings { effort, most, top_mev: first_mev, c: self.scales.stiffness_mev, context: self.context() };
+        let settings = Settings { effort, most, top_mev, c: self.scales.stiffness_mev, context: self.context() };
         let searched = search(&mut land, ends, &settings)?;
         report.searches = searched.searches;
         report.quiet = searched.quiet;
         report.spent = searched.spent;
         report.minima = land.minima().len();
         report.saddles = land.edges().len();
-        let unproven = !best.proof.doubts.is_empty();
         let lower = |top_mev: f64| first_mev - top_mev > land.tolerance_mev(first_mev);
         let Some(route) = land.route(ends[0], ends[1]).filter(|route| lower(route.top_mev) || unproven) else {
             return Ok(report);
