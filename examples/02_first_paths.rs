@@ -100,8 +100,15 @@ fn problem(case: &Case) -> Result<Problem> {
         vec![Box::new(Exchange::uniform(&chain, &[J])), Box::new(easy), Box::new(hard)];
     let context = StateContext::new(&chain, (J / (2.0 * K)).sqrt());
     let wall = |(center, through): (f64, Direction)| {
-        let wall =
-            DomainWall { center, width: None, left: None, right: None, through: Some(through), staggered: false };
+        let wall = DomainWall {
+            center: center.into(),
+            width: None,
+            normal: None,
+            left: None,
+            right: None,
+            through: Some(through),
+            staggered: false,
+        };
         StateSpec::DomainWall(wall).build(&context)
     };
     let (a, b) = (wall(case.from)?, wall(case.to)?);

@@ -12,6 +12,7 @@ mod chain;
 mod grid;
 #[cfg(test)]
 mod ladder;
+mod measure;
 mod order;
 mod selection;
 mod sites;
@@ -21,6 +22,7 @@ mod symmetry;
 pub use bonds::{Bond, BondFamily, Segment, at};
 pub use chain::{Chain, MAX_SITES};
 pub use grid::{Grid, Shift};
+pub use measure::shortest;
 pub use selection::Selection;
 pub use sites::{Frozen, SiteMoment, SiteSection};
 pub use spec::LatticeSpec;

@@ -1,9 +1,10 @@
 //! A wall between two domains.
 //!
 //! ```text
-//! φ_i = Φ (2/π) atan exp((i − center)/δ)      from the left direction (φ = 0) to the right one (φ = Φ)
+//! φ_i = Φ (2/π) atan exp((r_i·n − center)/δ)      from the left direction (φ = 0) to the right one (φ = Φ)
 //! ```
-//! the profile of a wall in a uniaxial chain, δ = √(J/2K) sites (L. Landau, E. Lifshitz, Phys. Z. Sowjetunion 8, 153 (1935)).
+//! the profile of a wall in a uniaxial magnet, δ = √(J/2K) sites (L. Landau, E. Lifshitz, Phys. Z. Sowjetunion 8, 153 (1935)), across
+//! the normal n; along a chain r_i·n is the number i of the site.
 //! The spins turn on the great circle of the two directions, the way on which `through` lies (the shorter one if it is "auto").
 //! Opposite directions, 3 rad apart or more, have no great circle of their own: there the spins turn by way of the part of
 //! `through` normal to them, and "auto" is the cheapest of four ways, see [`Sense`].
@@ -12,7 +13,9 @@ use super::sense::{Sense, along_a_domain, auto_or_direction, auto_or_direction_s
 use super::{StateBuilder, StateContext};
 use crate::error::{Error, Result};
 use crate::geometry::{Arc, Direction, Vector, vector};
+use crate::lattice::Lattice;
 use crate::registry::Described;
+use crate::units::Extent;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::f64::consts::FRAC_PI_2;
@@ -30,11 +33,14 @@ const NO_TRACE: f64 = 0.01;
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DomainWall {
-    /// In sites; 39.5 lies between sites 39 and 40.
-    pub center: f64,
+    /// In sites, 39.5 lies between sites 39 and 40: how far the wall is from the origin along its normal.
+    pub center: Extent,
     /// δ in sites; that of the material if absent. 0 is an abrupt wall.
     #[serde(default)]
-    pub width: Option<f64>,
+    pub width: Option<Extent>,
+    /// From left to right, across the wall; +x if absent, in a chain along the chain.
+    #[serde(default)]
+    pub normal: Option<Direction>,
     /// Left of the wall; +z if absent.
     #[serde(default)]
     pub left: Option<Direction>,
@@ -88,8 +94,8 @@ impl DomainWall {
 
 impl StateBuilder for DomainWall {
     fn vectors(&self, context: &StateContext) -> Result<Vec<Vector>> {
-        let width = self.width.unwrap_or(context.wall_width_sites);
-        let fractions = fractions("wall", self.center, width, context.lattice.sites)?;
+        let width = width(self.width, context.lattice)?.unwrap_or(context.wall_width_sites);
+        let fractions = fractions("wall", self.center, width, self.normal, context.lattice)?;
         let ways = self.turn(context)?;
         Ok(fractions.into_iter().map(|f| at(&ways, f)).collect())
     }
@@ -102,7 +108,7 @@ impl StateBuilder for DomainWall {
         let [left, right] = self.domains();
         match self.through {
             None if Arc::new(left, right, Direction::X).angle() >= OPPOSITE => {
-                Sense::across(left, line(left, right), Direction::X.vector()).into()
+                Sense::across(left, line(left, right), self.normal.unwrap_or(Direction::X).vector()).into()
             }
             _ => Vec::new(),
         }
@@ -114,17 +120,30 @@ fn line(left: Vector, right: Vector) -> Vector {
     vector::unit_or(vector::sub(left, right), left)
 }
 
-/// How much of a turn each site has behind it, from 0 to 1: (2/π) atan exp((i − center)/width). An error where the turn lies
-/// wholly outside; `what` names it.
-pub(super) fn fractions(what: &str, center: f64, width: f64, sites: usize) -> Result<Vec<f64>> {
-    if !center.is_finite() {
-        return Err(Error::invalid("center", format!("a {what}'s center is a finite number of sites")));
+/// A width in spacings, where one is given.
+pub(super) fn width(given: Option<Extent>, lattice: &Lattice) -> Result<Option<f64>> {
+    let Some(given) = given else { return Ok(None) };
+    match lattice.spacings(given).map_err(|e| e.within("width"))? {
+        width if width >= 0.0 => Ok(Some(width)),
+        _ => {
+            let message = format!("found {given}, but a width is a number of sites, 0 or more");
+            Err(Error::invalid("width", message))
+        }
     }
-    if !(width.is_finite() && width >= 0.0) {
-        return Err(Error::invalid("width", format!("found {width}, but a width is a number of sites, 0 or more")));
-    }
-    let fraction = |i: usize| {
-        let x = i as f64 - center;
+}
+
+/// How much of a turn across a normal each site has behind it, from 0 to 1: (2/π) atan exp((r_i·n − center)/width). An error where
+/// the turn lies wholly outside; `what` names it.
+pub(super) fn fractions(
+    what: &str,
+    center: Extent,
+    width: f64,
+    normal: Option<Direction>,
+    lattice: &Lattice,
+) -> Result<Vec<f64>> {
+    let place = lattice.coordinate(center).map_err(|e| e.within("center"))?;
+    let fraction = |x: f64| {
+        let x = x - place;
         if width == 0.0 {
             return if x < 0.0 {
                 0.0
@@ -136,16 +155,23 @@ pub(super) fn fractions(what: &str, center: f64, width: f64, sites: usize) -> Re
         }
         libm::atan(libm::exp((x / width).clamp(-700.0, 700.0))) / FRAC_PI_2
     };
-    let (first, last) = (fraction(0), fraction(sites - 1));
-    if first > 1.0 - NO_TRACE || last < NO_TRACE {
+    let coordinates = lattice.coordinates(normal);
+    let first = coordinates.iter().copied().fold(f64::INFINITY, f64::min);
+    let last = coordinates.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if fraction(first) > 1.0 - NO_TRACE || fraction(last) < NO_TRACE {
+        let outside = match normal {
+            None if lattice.grid.is_row() => {
+                format!("wholly outside the chain, whose sites are counted from 0 to {last},")
+            }
+            _ => format!("wholly outside the lattice, which reaches from {first:.4} to {last:.4} along the normal,"),
+        };
         let message = format!(
-            "found {center}, but a {what} there lies wholly outside the chain, whose sites are counted from 0 to {}, and leaves \
-             no trace in it: move it inside, or write {{\"uniform\": {{\"direction\": […]}}}}",
-            sites - 1
+            "found {center}, but a {what} there lies {outside} and leaves no trace in it: move it inside, or write \
+             {{\"uniform\": {{\"direction\": […]}}}}"
         );
         return Err(Error::invalid("center", message));
     }
-    Ok((0..sites).map(fraction).collect())
+    Ok(coordinates.into_iter().map(fraction).collect())
 }
 
 /// The spin at a fraction of the turn.

@@ -1,17 +1,18 @@
 //! A chiral soliton: a wall of 2π, all the way round, between equal surroundings.
 //!
 //! ```text
-//! φ_i = 4 atan exp((i − center)/w)      m_i = cos φ_i d + sin φ_i t,    w = √(J/c) sites
+//! φ_i = 4 atan exp((r_i·n − center)/w)      m_i = cos φ_i d + sin φ_i t,    w = √(J/c) sites
 //! ```
+//! across the normal n (along a chain r_i·n is the number i of the site):
 //! the kink of the sine-Gordon equation J φ'' = c sin φ, which a helimagnet in a field B normal to its helix obeys, where c = μB
 //! (I. E. Dzyaloshinskii, Sov. Phys. JETP 20, 665 (1965); Y. Togawa et al., Phys. Rev. Lett. 108, 107202 (2012),
 //! doi:10.1103/PhysRevLett.108.107202). d is the direction of the surroundings, t the part of `through` normal to it. c is the
 //! curvature of the energy a site as all spins turn from d towards t: μB of a field, 2K of an easy axis, so that w is the δ of a
 //! domain wall in the same energy.
 //!
-//! "auto" is the cheapest of four senses, see [`Sense`]: both ways round the chain, and both ways by way of its own direction.
+//! "auto" is the cheapest of four senses, see [`Sense`]: both ways round the normal, and both ways by way of the normal.
 
-use super::domain_wall::fractions;
+use super::domain_wall::{fractions, width};
 use super::sense::{Sense, along_a_domain, auto_or_direction, auto_or_direction_schema};
 use super::{StateBuilder, StateContext};
 use crate::energy::Hamiltonian;
@@ -19,6 +20,7 @@ use crate::error::{Error, Result};
 use crate::geometry::{Direction, Vector, vector};
 use crate::registry::Described;
 use crate::spins::Spins;
+use crate::units::Extent;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::f64::consts::TAU;
@@ -33,11 +35,14 @@ const SMALL: f64 = 1e-2;
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Soliton {
-    /// In sites; 39.5 lies between sites 39 and 40.
-    pub center: f64,
+    /// In sites, 39.5 lies between sites 39 and 40: how far the soliton is from the origin along its normal.
+    pub center: Extent,
     /// w in sites; that of the energy if absent. 0 is an abrupt turn.
     #[serde(default)]
-    pub width: Option<f64>,
+    pub width: Option<Extent>,
+    /// From left to right, across the soliton; +x if absent, in a chain along the chain.
+    #[serde(default)]
+    pub normal: Option<Direction>,
     /// Where the spins point on both sides; +z if absent.
     #[serde(default)]
     pub domain: Option<Direction>,
@@ -63,8 +68,9 @@ impl Soliton {
 
     /// The width given, or that of the energy for a turn towards `through`.
     fn width(&self, context: &StateContext, through: Vector) -> Result<f64> {
-        let Some(h) = context.hamiltonian.filter(|_| self.width.is_none()) else {
-            return Ok(self.width.unwrap_or(context.wall_width_sites));
+        let given = width(self.width, context.lattice)?;
+        let Some(h) = context.hamiltonian.filter(|_| given.is_none()) else {
+            return Ok(given.unwrap_or(context.wall_width_sites));
         };
         let c = self.curvature(h, through)?;
         if context.exchange_mev > 0.0 && c > 1e-9 * h.stiffness_mev() {
@@ -79,7 +85,7 @@ impl Soliton {
     fn curvature(&self, h: &Hamiltonian, through: Vector) -> Result<f64> {
         let turned = |angle: f64| -> Result<Spins> {
             let spin = self.spin(through, angle);
-            let reversed = |i: usize| self.staggered && i % 2 == 1;
+            let reversed = |i: usize| self.staggered && h.lattice().grid.is_odd(i);
             let all: Vec<Vector> =
                 (0..h.sites()).map(|i| if reversed(i) { vector::scale(-1.0, spin) } else { spin }).collect();
             Spins::from_vectors(&all)
@@ -108,7 +114,7 @@ impl StateBuilder for Soliton {
             return Err(along_a_domain("soliton"));
         }
         let t = vector::unit_or(across, d);
-        let turned = fractions("soliton", self.center, self.width(context, t)?, context.lattice.sites)?;
+        let turned = fractions("soliton", self.center, self.width(context, t)?, self.normal, context.lattice)?;
         Ok(turned.into_iter().map(|f| self.spin(t, TAU * f)).collect())
     }
 
@@ -120,9 +126,12 @@ impl StateBuilder for Soliton {
         if self.through.is_some() {
             return Vec::new();
         }
-        let along = context.lattice.direction().vector();
+        let along = match self.normal {
+            None if context.lattice.grid.is_row() => context.lattice.direction(),
+            normal => normal.unwrap_or(Direction::X),
+        };
         let d = self.surroundings();
-        let [u, minus_u, v, minus_v] = Sense::across(d, d, along);
+        let [u, minus_u, v, minus_v] = Sense::across(d, d, along.vector());
         vec![v, minus_v, u, minus_u]
     }
 }

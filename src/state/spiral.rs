@@ -1,7 +1,7 @@
-//! Spins that turn about an axis from site to site.
+//! Spins that turn about an axis from site to site along a direction n.
 //!
 //! ```text
-//! m_i = cos φ_i u + sin φ_i (k × u),   φ_i = 2π i/period + phase
+//! m_i = cos φ_i u + sin φ_i (k × u),   φ_i = 2π r_i·n/period + phase       (along a chain r_i·n is the number i of the site)
 //! ```
 //! u is the part normal to k of z, or of x where k lies along z.
 
@@ -9,7 +9,7 @@ use super::{StateBuilder, StateContext};
 use crate::error::{Error, Result};
 use crate::geometry::{Direction, Vector, vector};
 use crate::registry::Described;
-use crate::units::Angle;
+use crate::units::{Angle, Extent};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::f64::consts::TAU;
@@ -21,8 +21,11 @@ pub struct Spiral {
     /// Axis k of the turn.
     pub axis: Direction,
     /// Sites a full turn; negative turns the other way.
-    pub period: f64,
-    /// Angle of site 0.
+    pub period: Extent,
+    /// Where the turn goes; +x if absent, in a chain along the chain.
+    #[serde(default)]
+    pub along: Option<Direction>,
+    /// Angle at the origin.
     #[serde(default)]
     pub phase: Option<Angle>,
     /// Reverse odd sites.
@@ -38,7 +41,8 @@ impl Described for Spiral {
 
 impl StateBuilder for Spiral {
     fn vectors(&self, context: &StateContext) -> Result<Vec<Vector>> {
-        if !self.period.is_finite() || self.period == 0.0 {
+        let period = context.lattice.spacings(self.period).map_err(|e| e.within("period"))?;
+        if period == 0.0 {
             return Err(Error::invalid(
                 "period",
                 format!("found {}, but a period is a number of sites other than 0", self.period),
@@ -49,11 +53,11 @@ impl StateBuilder for Spiral {
         let u = vector::unit_or(vector::normal_part(start, k), start);
         let w = vector::cross(k, u);
         let phase = self.phase.map_or(0.0, |a| a.0);
-        let at = |i: usize| {
-            let (sin, cos) = libm::sincos(phase + TAU * ((i as f64 / self.period) % 1.0));
+        let at = |x: f64| {
+            let (sin, cos) = libm::sincos(phase + TAU * ((x / period) % 1.0));
             vector::add(vector::scale(cos, u), vector::scale(sin, w))
         };
-        Ok((0..context.lattice.sites).map(at).collect())
+        Ok(context.lattice.coordinates(self.along).into_iter().map(at).collect())
     }
 
     fn staggered(&self) -> bool {

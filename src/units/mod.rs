@@ -7,10 +7,12 @@
 //! so `"10 meV"` is exactly 10 and what was written is what is computed with.
 
 mod any;
+mod extent;
 mod parse;
 mod pattern;
 
 pub use any::AnyQuantity;
+pub use extent::{Extent, Place};
 
 use crate::error::{Error, Result};
 use crate::words::number;

@@ -82,8 +82,9 @@ impl Build {
     /// A wall from +z (left) to −z, moved; through x or another direction.
     pub fn wall(&self, center: f64, width: f64, through: Direction) -> Spins {
         let wall = DomainWall {
-            center,
-            width: Some(width),
+            center: center.into(),
+            width: Some(width.into()),
+            normal: None,
             left: None,
             right: None,
             through: Some(through),

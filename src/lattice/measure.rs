@@ -1,0 +1,171 @@
+//! Places and lengths as configs count them: in spacings.
+//!
+//! A number counts spacings; in a chain sites, of which the first stands at 0. All places here are in spacings too, whatever the
+//! spacing is.
+
+use super::Lattice;
+use crate::error::{Error, Result};
+use crate::geometry::{Direction, Vector, vector};
+use crate::units::{Extent, Length, Place};
+
+/// A way over a border is shorter if it is so by more than this part.
+const SHORTER: f64 = 1e-9;
+
+impl Lattice {
+    /// Where site i is, in spacings.
+    pub fn place(&self, i: usize) -> Vector {
+        match self.grid.is_row() {
+            true => vector::scale(i as f64, self.direction().vector()),
+            false => vector::scale(1.0 / self.spacing_nm.unwrap_or(1.0), self.position(i)),
+        }
+    }
+
+    /// Coordinates of all sites along a normal, +x if it is left out; in a chain then the sites' numbers.
+    pub fn coordinates(&self, normal: Option<Direction>) -> Vec<f64> {
+        if normal.is_none() && self.grid.is_row() {
+            return (0..self.sites).map(|i| i as f64).collect();
+        }
+        let n = normal.unwrap_or(Direction::X).vector();
+        (0..self.sites).map(|i| vector::dot(self.place(i), n)).collect()
+    }
+
+    /// From a cell to the next along each direction, in spacings; across the others where there is only one cell.
+    pub fn cell_vectors(&self) -> [Vector; 3] {
+        let length = self.spacing_nm.unwrap_or(1.0);
+        let given = [0, 1, 2].map(|d| {
+            let (step, along) = self.steps[d];
+            (self.grid.size[d] > 1).then(|| vector::scale(step / length, along.vector()))
+        });
+        let mut made = given;
+        for d in 0..3 {
+            let across = |v: Vector| {
+                let others = (0..3).filter_map(|k| made[k]);
+                let mut found: Vec<Vector> = Vec::new();
+                others
+                    .for_each(|w| found.extend(vector::unit(found.iter().fold(w, |w, e| vector::normal_part(w, *e)))));
+                found.iter().fold(v, |v, e| vector::normal_part(v, *e))
+            };
+            let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+            let first = [0, 1, 2].map(|k| across(axes[(d + k) % 3])).into_iter().find(|v| vector::norm(*v) > 0.5);
+            made[d] = made[d].or(first.and_then(vector::unit));
+        }
+        made.map(Option::unwrap_or_default)
+    }
+
+    /// Once round along each periodic direction, in spacings.
+    pub fn periods(&self) -> Vec<Vector> {
+        let cells = self.cell_vectors();
+        let round = |d: usize| vector::scale(self.grid.size[d] as f64, cells[d]);
+        (0..3).filter(|d| self.grid.periodic[*d]).map(round).collect()
+    }
+
+    /// The corners of the box of all sites, of least and of greatest coordinates, in spacings.
+    pub fn bounds(&self) -> [Vector; 2] {
+        let start = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+        (0..self.sites).map(|i| self.place(i)).fold(start, |[low, high], p| {
+            [[0, 1, 2].map(|c| f64::min(low[c], p[c])), [0, 1, 2].map(|c| f64::max(high[c], p[c]))]
+        })
+    }
+
+    /// The middle of the box of all sites, in spacings.
+    pub fn middle(&self) -> Vector {
+        let [low, high] = self.bounds();
+        vector::lerp(low, high, 0.5)
+    }
+
+    /// A length in spacings.
+    pub fn spacings(&self, extent: Extent) -> Result<f64> {
+        let spacings = match extent {
+            Extent::Spacings(x) => x,
+            Extent::Length(Length(nm)) => nm / self.needed_spacing_nm()?,
+        };
+        match spacings.is_finite() {
+            true => Ok(spacings),
+            false => Err(Error::invalid("", format!("found {spacings}, but a length is a finite number of spacings"))),
+        }
+    }
+
+    /// A coordinate in spacings, of those of [`coordinates`](Self::coordinates).
+    pub fn coordinate(&self, extent: Extent) -> Result<f64> {
+        let from_origin = matches!(extent, Extent::Length(_)) && self.grid.is_row();
+        Ok(self.spacings(extent)? - if from_origin { self.first() } else { 0.0 })
+    }
+
+    /// A place in spacings; z where it is left out is that of the middle.
+    pub fn point(&self, place: &Place) -> Result<Vector> {
+        let mut point = self.middle();
+        for (c, extent) in place.0.iter().enumerate() {
+            point[c] = self.coordinate(*extent).map_err(|e| e.within(&format!("[{c}]")))?;
+        }
+        Ok(point)
+    }
+
+    fn needed_spacing_nm(&self) -> Result<f64> {
+        let missing = || Error::invalid("", "a length with a unit needs the lattice's \"spacing\" (\"0.25 nm\")");
+        self.spacing_nm.ok_or_else(missing)
+    }
+}
+
+/// The way by the shortest of all images, where space repeats itself after each of these periods.
+pub fn shortest(way: Vector, periods: &[Vector]) -> Vector {
+    let images = 3usize.pow(periods.len() as u32);
+    let shift = |k: usize| {
+        let turns = (0..periods.len()).map(|d| vector::scale((k / 3usize.pow(d as u32) % 3) as f64 - 1.0, periods[d]));
+        turns.fold([0.0; 3], vector::add)
+    };
+    let mut way = way;
+    loop {
+        let mut best = way;
+        for image in (0..images).map(|k| vector::add(way, shift(k))) {
+            if vector::norm(image) < vector::norm(best) * (1.0 - SHORTER) {
+                best = image;
+            }
+        }
+        if best == way {
+            return way;
+        }
+        way = best;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lattice::{Chain, Grid};
+
+    fn oblique(periodic: bool) -> Lattice {
+        let grid = Grid { size: [6, 5, 1], periodic: [periodic, periodic, false] };
+        let second = Direction::new([0.5, 0.75f64.sqrt(), 0.0]).unwrap();
+        Lattice::bare(grid, [(1.0, Direction::X), (1.0, second), (1.0, Direction::Z)])
+    }
+
+    #[test]
+    fn places_and_lengths_count_spacings_and_in_a_chain_sites() {
+        let chain = Chain { spacing: Some(Length(0.25)), direction: Some(Direction::Y), ..Chain::open(9) };
+        let chain = chain.resolve().unwrap();
+        assert_eq!((chain.place(4), chain.coordinates(None)[7]), ([0.0, 4.0, 0.0], 7.0));
+        assert_eq!(chain.coordinates(Some(Direction::X)), [0.0; 9]);
+        assert_eq!(chain.spacings(Extent::Length(Length(1.0))).unwrap(), 4.0);
+        let bare = Chain::open(9).resolve().unwrap();
+        assert!(bare.spacings(Extent::Length(Length(1.0))).unwrap_err().to_string().contains("\"spacing\""));
+        let [low, high] = oblique(false).bounds();
+        assert_eq!((low, high[0]), ([0.0; 3], 7.0));
+        let [a, b, c] = oblique(false).cell_vectors();
+        assert!(vector::dot(a, c) == 0.0 && vector::dot(b, c).abs() < 1e-15 && vector::norm(c) == 1.0);
+    }
+
+    #[test]
+    fn the_shortest_way_is_the_least_over_all_images() {
+        let periods = oblique(true).periods();
+        assert_eq!(periods.len(), 2);
+        for i in 0..30 {
+            let way = vector::sub(oblique(true).place(i), [3.1, 7.7, 0.2]);
+            let far = vector::norm(shortest(way, &periods));
+            for (m, n) in (-4..5).flat_map(|m| (-4..5).map(move |n| (m, n))) {
+                let by = vector::add(vector::scale(m as f64, periods[0]), vector::scale(n as f64, periods[1]));
+                assert!(vector::norm(vector::add(way, by)) >= far * (1.0 - 1e-8), "{way:?}");
+            }
+        }
+        assert_eq!(shortest([9.0, 1.0, 2.0], &[]), [9.0, 1.0, 2.0]);
+    }
+}
