@@ -377,6 +377,8 @@ impl Looking {
 pub enum What {
     /// Energy terms: exchange, anisotropy, fields
     Terms,
+    /// Lattices of sites
+    Lattices,
     /// States for the ends of a path
     States,
     /// First guesses of a path

@@ -6,6 +6,7 @@ use spinneb::config::estimate::Estimate;
 use spinneb::config::physics::Physics;
 use spinneb::config::{Loaded, PartMaterial, expected_images, load, memory, needed_bytes};
 use spinneb::drive::{Images, Problem, Scales};
+use spinneb::lattice::Lattice;
 use spinneb::rates::RateSettings;
 use spinneb::units::Length;
 use std::io::{self, Write};
@@ -86,13 +87,27 @@ fn material(loaded: &Loaded) -> String {
 
 fn lattice(loaded: &Loaded) -> String {
     let lattice = &loaded.lattice;
-    let kind = if lattice.is_ring() { "ring" } else { "open chain" };
     let spacing = lattice.spacing_nm.map_or(String::new(), |a| format!(", {} apart", Length(a)));
+    let kind = match (lattice.kind, lattice.is_ring()) {
+        ("chain", true) => "ring".into(),
+        ("chain", false) => "open chain".into(),
+        (kind, _) => format!("{kind} lattice, {},", cells(lattice)),
+    };
     let frozen = match lattice.frozen.len() {
         0 => String::new(),
         _ => ", some frozen".to_string(),
     };
     format!("{kind} of {} sites{spacing}{frozen}", lattice.sites)
+}
+
+/// "20 × 20 cells, periodic along the first".
+fn cells(lattice: &Lattice) -> String {
+    let size = lattice.grid.size.map(|n| n.to_string()).join(" × ");
+    let along = ["first", "second", "third"].into_iter().zip(lattice.grid.periodic).filter(|(_, periodic)| *periodic);
+    let periodic: Vec<&str> = along.map(|(name, _)| name).collect();
+    let border =
+        if periodic.is_empty() { "open".into() } else { format!("periodic along the {}", periodic.join(" and ")) };
+    format!("{size} cells, {border}")
 }
 
 fn wall_width(physics: &Physics) -> String {

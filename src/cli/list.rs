@@ -7,6 +7,7 @@ use spinneb::config::library::{self, LibraryMaterial};
 use spinneb::config::{MaterialScales, keys};
 use spinneb::energy::TermSpec;
 use spinneb::files::FORMATS;
+use spinneb::lattice::LatticeSpec;
 use spinneb::optimise::OptimiserSpec;
 use spinneb::output::{Group, KINDS};
 use spinneb::path::guess::GuessSpec;
@@ -50,6 +51,7 @@ fn plural(what: What) -> String {
 fn one(out: &mut impl Write, what: What, name: &str) -> io::Result<Result<(), Vec<String>>> {
     let (family, entries) = match what {
         What::Terms => ("TermSpec", TermSpec::ENTRIES),
+        What::Lattices => ("LatticeSpec", LatticeSpec::ENTRIES),
         What::States => ("StateSpec", StateSpec::ENTRIES),
         What::Guesses => ("GuessSpec", GuessSpec::ENTRIES),
         What::Optimisers => ("OptimiserSpec", OptimiserSpec::ENTRIES),
@@ -124,6 +126,7 @@ fn one_material(out: &mut impl Write, name: &str) -> io::Result<Result<(), Vec<S
 fn print(out: &mut impl Write, what: What, indent: &str) -> io::Result<()> {
     match what {
         What::Terms => family(out, TermSpec::ENTRIES, indent),
+        What::Lattices => family(out, LatticeSpec::ENTRIES, indent),
         What::States => family(out, StateSpec::ENTRIES, indent),
         What::Guesses => family(out, GuessSpec::ENTRIES, indent),
         What::Optimisers => family(out, OptimiserSpec::ENTRIES, indent),

@@ -201,7 +201,8 @@ impl Loaded {
     /// Refuses what no memory can hold; `images` are the path's, where it has come to them.
     fn affordable(&self, bytes: f64, images: Option<usize>) -> Result<()> {
         let whose = images.map(|n| (n, self.config.path.images.0 == Images::Auto));
-        memory::affordable(bytes, self.lattice.sites, whose).map_err(|e| self.text.locate(e))
+        memory::affordable(bytes, self.lattice.sites, &self.config.lattice.extent(), whose)
+            .map_err(|e| self.text.locate(e))
     }
 }
 
@@ -231,13 +232,10 @@ pub fn needed_bytes(problem: &Problem, scales: &Scales) -> f64 {
         let state = h.coupling().tail(true).map(|e| e.cost());
         memory::far_bytes(h.sites(), state, rayon::current_num_threads())
     });
-    far + memory::run_bytes(
-        h.sites(),
-        expected_images(problem, scales),
-        h.reach(),
-        h.terms().len(),
-        h.lattice().is_ring(),
-    )
+    let bonds = h.constant_blocks().bond.len();
+    let images = expected_images(problem, scales) as f64;
+    far + memory::hamiltonian_bytes(h.sites(), bonds, h.terms().len())
+        + images * memory::image_bytes(h.sites(), h.layout())
 }
 
 /// Largest derivative of a term by a component (meV) where no two neighbours are alike; an error where it is absurd.
@@ -282,7 +280,7 @@ fn frozen(lattice: &Lattice, initial: &Spins, final_state: Spins) -> Result<Spin
                  it a \"direction\" or make the two states agree there",
                 apart.to_degrees()
             );
-            return Err(Error::invalid(format!("lattice.chain.frozen[{k}]"), message));
+            return Err(Error::invalid(format!("lattice.{}.frozen[{k}]", lattice.kind), message));
         }
         for c in 0..3 {
             m[c * n + i] = from[c * n + i];

@@ -127,7 +127,7 @@ pub(super) fn not_a(text: &Text, wanted: &str, error: Error) -> Error {
 /// The lattice of a config, if memory can hold what is on it.
 fn lattice(config: &Config) -> Result<Lattice> {
     let sites = config.lattice.sites().map_err(|e| e.within("lattice"))?;
-    memory::affordable(memory::hamiltonian_bytes(sites, 1, 1), sites, None)?;
+    memory::affordable(memory::hamiltonian_bytes(sites, 1, 1), sites, &config.lattice.extent(), None)?;
     config.lattice.resolve().map_err(|e| e.within("lattice"))
 }
 

@@ -1,6 +1,7 @@
 //! How much memory a run needs, estimated before anything is allocated.
 
 use crate::error::{Error, Result};
+use crate::linalg::Layout;
 use std::fs;
 use std::path::Path;
 
@@ -9,14 +10,16 @@ const USUAL: f64 = 64e9;
 /// Limits of a process that its memory counts against, as `/proc/self/limits` names them.
 const LIMITS: [&str; 2] = ["Max address space", "Max data size"];
 
-/// Memory of one image (bytes): spins, gradients, forces, tangents and moves of the band, and its banded Hessian with its
-/// factors; `reach` is how many sites away the furthest partner is.
-pub fn image_bytes(sites: usize, reach: usize, periodic: bool) -> f64 {
-    let vectors = 14 * 3 * size_of::<f64>();
-    // 2 rows a site, each with the blocks up to the furthest partner; a folded ring has twice the width.
-    let width = 2 * (reach + 1) * if periodic { 2 } else { 1 };
-    let hessian = 2 * 2 * (width + 4) * size_of::<f64>();
-    sites as f64 * (vectors + hessian) as f64
+/// Memory of one image (bytes): spins, gradients, forces, tangents and moves of the band, and its Hessian with its factors.
+pub fn image_bytes(sites: usize, layout: &Layout) -> f64 {
+    let vectors = sites * 14 * 3 * size_of::<f64>();
+    let hessian = match layout {
+        // 2 rows a site, each with the blocks up to the furthest partner
+        Layout::Band { span, .. } => sites * 2 * 2 * (2 * span + 6) * size_of::<f64>(),
+        Layout::Sparse(plan) => plan.bytes(),
+        Layout::Dense => 2 * 4 * sites * sites * size_of::<f64>(),
+    };
+    (vectors + hessian) as f64
 }
 
 /// Memory of the Hessian's couplings of distant sites, and their factors (bytes), as many at a time as there are threads;
@@ -26,7 +29,7 @@ pub fn far_bytes(sites: usize, state: Option<usize>, threads: usize) -> f64 {
     a_site * (sites * size_of::<f64>()) as f64 * (2 * threads) as f64
 }
 
-/// Memory of the energy (bytes): coefficients of its terms and constant blocks.
+/// Memory of the energy (bytes): coefficients of its terms and constant blocks, of so many bonds a site.
 pub fn hamiltonian_bytes(sites: usize, reach: usize, terms: usize) -> f64 {
     let blocks = 9 * (reach + 1) * size_of::<f64>();
     let coefficients = 2 * (terms + reach) * size_of::<f64>();
@@ -35,20 +38,15 @@ pub fn hamiltonian_bytes(sites: usize, reach: usize, terms: usize) -> f64 {
     sites as f64 * (blocks + coefficients + states) as f64
 }
 
-/// What a run of `images` images needs (bytes).
-pub fn run_bytes(sites: usize, images: usize, reach: usize, terms: usize, periodic: bool) -> f64 {
-    hamiltonian_bytes(sites, reach, terms) + images as f64 * image_bytes(sites, reach, periodic)
-}
-
-/// Refuses what no memory can hold (bytes), of so many sites; and of the path's images, where it has come to them: how many, and
+/// Refuses what no memory can hold (bytes), of so many sites, whose number is given at `extent`; and of the path's images, where it has come to them: how many, and
 /// whether an automatic path begins with them.
-pub fn affordable(bytes: f64, sites: usize, images: Option<(usize, bool)>) -> Result<()> {
+pub fn affordable(bytes: f64, sites: usize, extent: &str, images: Option<(usize, bool)>) -> Result<()> {
     let Some(whose) = exceeded(bytes) else { return Ok(()) };
     let (place, what, way_out) = match images {
-        None => ("lattice.chain.sites", format!("{sites} sites"), ""),
+        None => (extent, format!("{sites} sites"), ""),
         Some((n, true)) => {
             let what = format!("{sites} sites with the {n} images that an automatic path begins with");
-            ("lattice.chain.sites", what, ": give fewer as \"images\" of \"path\"")
+            (extent, what, ": give fewer as \"images\" of \"path\"")
         }
         Some((n, false)) => ("path.images", format!("{sites} sites and {n} images"), ""),
     };

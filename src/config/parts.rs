@@ -13,9 +13,9 @@
 use super::Loaded;
 use super::material::{DEFAULT, Material};
 use super::text::Text;
-use crate::energy::{ExchangeSpec, Medium, Part, TermSpec};
+use crate::energy::{Couplings, Medium, Part, TermSpec};
 use crate::error::{Error, Result};
-use crate::lattice::Lattice;
+use crate::lattice::{BondFamily, Lattice};
 use crate::words::quoted;
 
 /// A material of a config.
@@ -58,7 +58,9 @@ impl Loaded {
                         "site {i} is in the region {} too, and a site is made of one material: let the two not overlap",
                         quoted(self.parts[before].name())
                     );
-                    return Err(self.text.locate(Error::invalid(format!("lattice.chain.regions.{name}"), message)));
+                    return Err(self
+                        .text
+                        .locate(Error::invalid(format!("lattice.{}.regions.{name}", self.lattice.kind), message)));
                 }
             }
         }
@@ -103,59 +105,56 @@ impl Loaded {
             })
             .collect();
         let given = total(&self.config.energy, &Medium::new(lattice, None, None));
-        let of = |list: &[Vec<f64>], shell: usize, bond: usize| list.get(shell - 1).map_or(0.0, |j| j[bond]);
-        let shells = exchange.iter().map(Vec::len).max().unwrap_or(0).max(1);
-        for shell in 1..=shells {
-            let bonds = lattice.bonds(shell);
-            parts.iter_mut().for_each(|p| p.shares.push(vec![1.0; bonds.len()]));
-            for (bond, sites) in bonds.iter().map(|bond| bond.sites).enumerate() {
-                let [p, q] = sites.map(|i| part[i]);
+        let mut families: Vec<&BondFamily> = Vec::new();
+        let joined = lattice.shell(1);
+        for family in joined.iter().chain(exchange.iter().flatten().map(|c| &c.family)) {
+            if !families.iter().any(|known| known.hop == family.hop) {
+                families.push(family);
+            }
+        }
+        for family in families {
+            let mev = |list: &[Couplings], i: usize| -> f64 {
+                list.iter().filter(|c| c.family.hop == family.hop).map(|c| c.mev[i]).sum()
+            };
+            let mut shares = vec![vec![1.0; lattice.sites]; parts.len()];
+            for [i, j] in family.bonds() {
+                let [p, q] = [i, j].map(|i| part[i]);
                 if p == q {
                     continue;
                 }
-                let [a, b] = [p, q].map(|k| of(&exchange[k], shell, bond));
-                let [share_p, share_q] = match a * b > 0.0 {
+                let [a, b] = [p, q].map(|k| mev(&exchange[k], i));
+                [shares[p][i], shares[q][i]] = match a * b > 0.0 {
                     true => [b / (a + b), a / (a + b)],
                     false if a == b => [0.5; 2],
                     // beyond the nearest neighbours the mean with nothing is nothing
-                    false if shell > 1 && a * b == 0.0 => [0.0; 2],
-                    false if of(&given, shell, bond) != 0.0 => [0.0; 2],
-                    false => return Err(self.apart(bond, sites, shell, [p, q], [a, b])),
+                    false if family.shell > 1 && a * b == 0.0 => [0.0; 2],
+                    false if mev(&given, i) != 0.0 => [0.0; 2],
+                    false => return Err(self.apart([i, j], family.shell, [p, q], [a, b])),
                 };
-                parts[p].shares[shell - 1][bond] = share_p;
-                parts[q].shares[shell - 1][bond] = share_q;
             }
+            parts.iter_mut().zip(shares).for_each(|(part, shares)| part.shares.push((family.hop, shares)));
         }
         Ok(parts)
     }
 
     /// Two materials whose exchange has no mean.
-    fn apart(&self, bond: usize, sites: [usize; 2], shell: usize, parts: [usize; 2], j: [f64; 2]) -> Error {
+    fn apart(&self, sites: [usize; 2], shell: usize, parts: [usize; 2], j: [f64; 2]) -> Error {
         let [p, q] = parts.map(|k| quoted(self.parts[k].name()));
         let zeros = "\"0 meV\", ".repeat(shell - 1);
         let message = format!(
             "sites {} and {} are of the regions {p} and {q}, whose exchanges there, {:.4} meV and {:.4} meV, have no mean: say \
-             what joins them in \"energy\": {{\"exchange\": {{\"J\": [{zeros}\"5 meV\"], \"bonds\": [{bond}]}}}}",
-            sites[0], sites[1], j[0], j[1]
+             what joins them in \"energy\": {{\"exchange\": {{\"J\": [{zeros}\"5 meV\"], \"bonds\": [{}]}}}}",
+            sites[0], sites[1], j[0], j[1], sites[0]
         );
         self.text.locate(Error::invalid("material", message))
     }
 }
 
-/// The exchange of all these terms (meV) by shell and number of the bond. What cannot be built is told where it is built.
-fn total(specs: &[TermSpec], medium: &Medium) -> Vec<Vec<f64>> {
+/// The exchange of all these terms (meV). What cannot be built is told where it is built.
+fn total(specs: &[TermSpec], medium: &Medium) -> Vec<Couplings> {
     let exchange = |spec: &TermSpec| match spec {
-        TermSpec::Exchange(exchange) => ExchangeSpec::shells(exchange, medium).ok(),
+        TermSpec::Exchange(exchange) => exchange.couplings(medium).ok(),
         _ => None,
     };
-    let mut sum: Vec<Vec<f64>> = Vec::new();
-    for shells in specs.iter().filter_map(exchange) {
-        for (k, couplings) in shells.iter().enumerate() {
-            let bonds = medium.lattice.bonds(k + 1);
-            sum.resize(sum.len().max(k + 1), Vec::new());
-            sum[k].resize(bonds.len(), 0.0);
-            sum[k].iter_mut().zip(bonds).for_each(|(sum, bond)| *sum += couplings[bond.family].mev[bond.sites[0]]);
-        }
-    }
-    sum
+    specs.iter().filter_map(exchange).flatten().collect()
 }

@@ -2,6 +2,7 @@
 
 use crate::energy::{Evaluator, Hamiltonian};
 use crate::field::Components;
+use crate::lattice::BondFamily;
 use crate::linalg::{eigenvalues_symmetric, slab};
 use crate::state::StateContext;
 use crate::stationary::State;
@@ -13,7 +14,7 @@ use serde::{Deserialize, Serialize};
 pub struct Scales {
     /// Stiffness c (meV): the softest mode of a stable end, 2K for an easy axis.
     pub stiffness_mev: f64,
-    /// Exchange a bond, Σ_n n² J_n (meV), without sign.
+    /// Exchange stiffness, in a chain Σ_n n² J_n (meV), without sign: that of a bond where only neighbours in rows are joined.
     pub exchange_mev: f64,
     /// Domain-wall width δ = √(J/c) in sites.
     pub wall_width_sites: f64,
@@ -93,20 +94,27 @@ fn on_site_gap(h: &Hamiltonian) -> f64 {
     gaps[gaps.len() / 2]
 }
 
-/// Median over bonds of |Σ_n n² J_n sⁿ|, s the sign of the nearest-neighbour exchange.
+/// ⟨½ Σ_j s J_ij |r_ij|²⟩/(d a²) of all sites, without sign: the exchange stiffness in units of the lattice constant a, the mean of
+/// the d directions of the lattice; in a row Σ_n n² J_n sⁿ. Of each family the median of its bonds; s is −1 where the order of
+/// nearest neighbours is staggered and the bond joins the two sublattices.
 fn exchange_stiffness(h: &Hamiltonian) -> f64 {
-    let shells: Vec<f64> = h
+    let lattice = h.lattice();
+    let medians: Vec<(&BondFamily, f64)> = h
         .constant_blocks()
         .bond
         .iter()
         .map(|bonds| {
             let mut j: Vec<f64> = (0..h.sites()).map(|i| -bonds.mean(i)).filter(|j| *j != 0.0).collect();
             j.sort_by(f64::total_cmp);
-            j.get(j.len() / 2).copied().unwrap_or(0.0)
+            (&bonds.family, j.get(j.len() / 2).copied().unwrap_or(0.0))
         })
         .collect();
-    let sign = shells.first().map_or(1.0, |j| 1f64.copysign(*j));
-    let sum: f64 =
-        shells.iter().enumerate().map(|(k, j)| ((k + 1) * (k + 1)) as f64 * j * sign.powi(k as i32 + 1)).sum();
-    sum.abs()
+    let nearest = medians.iter().min_by_key(|(family, _)| family.shell);
+    let sign = nearest.map_or(1.0, |(_, j)| 1f64.copysign(*j));
+    let part = |(family, j): &(&BondFamily, f64)| {
+        let squared = lattice.squared_length(family.hop);
+        squared * j * if lattice.joins_sublattices(family.hop) { sign } else { 1.0 }
+    };
+    let directions = (0..3).filter(|d| lattice.grid.extends(*d)).count().max(1) * lattice.atoms.len();
+    (medians.iter().map(part).sum::<f64>() / directions as f64).abs()
 }

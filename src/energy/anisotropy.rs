@@ -146,10 +146,6 @@ impl EnergyTerm for Anisotropy {
         }
     }
 
-    fn reach(&self) -> usize {
-        0
-    }
-
     fn is_quadratic(&self) -> bool {
         self.k2.iter().all(|k| *k == 0.0)
     }

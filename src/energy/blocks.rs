@@ -1,7 +1,7 @@
 //! The Euclidean Hessian of short-ranged terms as 3 × 3 blocks: one a site, one a bond of each family.
 
 use crate::geometry::{Vector, vector};
-use crate::lattice::{BondFamily, Lattice};
+use crate::lattice::BondFamily;
 
 /// A 3 × 3 matrix, row by row.
 pub type Block = [Vector; 3];
@@ -11,7 +11,7 @@ pub type Block = [Vector; 3];
 pub struct Blocks {
     /// Diagonal blocks, symmetric: xx, yy, zz, yz, zx and xy of all sites.
     pub site: [Vec<f64>; 6],
-    /// By family, in the order of [`Lattice::families`]: each couples every site (rows) to its partner a shift on (columns); the
+    /// By family, in a row in the order of its shells: each couples every site (rows) to its partner a hop on (columns); the
     /// transposes are understood.
     pub bond: Vec<Bonds>,
 }
@@ -53,13 +53,15 @@ impl Bonds {
 }
 
 impl Blocks {
-    /// Zero blocks for shells 1 … `shells`; every family has one (possibly unused) bond a site.
-    pub fn zeros(lattice: &Lattice, shells: usize) -> Blocks {
-        let bonds = |family| Bonds { family, isotropic: vec![0.0; lattice.sites], rest: Vec::new() };
-        Blocks {
-            site: [(); 6].map(|()| vec![0.0; lattice.sites]),
-            bond: lattice.families(shells).into_iter().map(bonds).collect(),
-        }
+    /// Zero blocks for the bonds of these families.
+    pub fn zeros(sites: usize, families: Vec<BondFamily>) -> Blocks {
+        let bonds = |family| Bonds { family, isotropic: vec![0.0; sites], rest: Vec::new() };
+        Blocks { site: [(); 6].map(|()| vec![0.0; sites]), bond: families.into_iter().map(bonds).collect() }
+    }
+
+    /// The blocks of a family's bonds; nothing where it has none in the lattice.
+    pub fn of(&mut self, family: &BondFamily) -> Option<&mut Bonds> {
+        self.bond.iter_mut().find(|bonds| bonds.family.hop == family.hop)
     }
 
     /// Adds s·1 to a site's block.

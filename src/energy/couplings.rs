@@ -12,15 +12,14 @@ pub struct Couplings {
 }
 
 impl Couplings {
-    /// None yet, on the families of a shell.
-    pub fn none(lattice: &Lattice, shell: usize) -> Vec<Couplings> {
-        let families = lattice.shell(shell).into_iter();
-        families.map(|family| Couplings { family, mev: vec![0.0; lattice.sites] }).collect()
+    /// None yet, on these families of a lattice of so many sites.
+    pub fn none(families: Vec<BondFamily>, sites: usize) -> Vec<Couplings> {
+        families.into_iter().map(|family| Couplings { family, mev: vec![0.0; sites] }).collect()
     }
 
     /// The same strength (meV) on all bonds of a shell.
     pub fn uniform(lattice: &Lattice, shell: usize, mev: f64) -> Vec<Couplings> {
-        let mut all = Couplings::none(lattice, shell);
+        let mut all = Couplings::none(lattice.shell(shell), lattice.sites);
         for Couplings { family, mev: strengths } in &mut all {
             family.bonds().for_each(|[i, _]| strengths[i] = mev);
         }

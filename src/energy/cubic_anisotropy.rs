@@ -138,10 +138,6 @@ impl EnergyTerm for CubicAnisotropy {
         }
     }
 
-    fn reach(&self) -> usize {
-        0
-    }
-
     fn is_quadratic(&self) -> bool {
         self.k.iter().all(|k| *k == 0.0)
     }

@@ -1,19 +1,24 @@
-//! Dzyaloshinskii–Moriya interaction of nearest neighbours.
+//! Dzyaloshinskii–Moriya interaction.
 //!
 //! ```text
-//! E = + Σ_i D d̂·(m_i × m_j)                   every bond i–j once
+//! E = + Σ D d̂·(m_i × m_j)                   every bond i–j once, r̂ from i to j
 //! ∂E/∂m_i = D (m_j × d̂),   ∂E/∂m_j = D (d̂ × m_i)
+//! interfacial: d̂ = n × r̂          bulk: d̂ = r̂          d2d: d̂ = r̂ mirrored along n × x̂, in the plane across n
 //! ```
-//! With D > 0 the lower turning sense is that in which m_i × m_j points against d̂.
+//! With D > 0 the lower turning sense is that in which m_i × m_j points against d̂. (A. N. Bogdanov, D. A. Yablonskii, Sov. Phys.
+//! JETP 68, 101 (1989), for the kinds that crystal classes allow; A. Fert, P. M. Levy, Phys. Rev. Lett. 44, 1538 (1980),
+//! doi:10.1103/PhysRevLett.44.1538, for interfaces.) Turned round, a bond of a kind has the opposite d̂, and the same energy; for
+//! one of a given direction it matters which way bonds lead: up, see [`Lattice::shells`], in a chain ahead.
 
 use super::EnergyTerm;
 use super::blocks::{Blocks, cross_block};
+use super::by_shell::ByShell;
 use super::couplings::Couplings;
 use super::spec::{Medium, TermBuilder};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, Vector, vector};
-use crate::lattice::{Lattice, Segment, Selection, at};
+use crate::lattice::{BondFamily, Lattice, Selection, at};
 use crate::profile::Profile;
 use crate::registry::Described;
 use crate::units::BondEnergy;
@@ -22,63 +27,144 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use std::ops::Range;
 
-/// `{"D": "2 meV", "direction": [0, 1, 0]}`.
+/// `{"D": "2 meV", "direction": [0, 1, 0]}` or `{"D": ["2 meV", "0.3 meV"], "kind": "interfacial"}`.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[allow(non_snake_case)]
 pub struct DmiSpec {
-    /// Energy per bond, or per area of the cross-section.
-    pub D: Profile<BondEnergy>,
-    /// d̂.
-    pub direction: Direction,
-    /// Only these bonds; all if absent.
+    /// Energy per bond, or per area between cells; a list is by shell of neighbours, and in a chain without a `kind` by bond.
+    pub D: ByShell<BondEnergy>,
+    /// d̂, the same for all bonds.
+    #[serde(default)]
+    pub direction: Option<Direction>,
+    /// How d̂ follows from the direction of a bond.
+    #[serde(default)]
+    pub kind: Option<DmiKind>,
+    /// The normal n of an interface; ẑ if not given.
+    #[serde(default)]
+    pub normal: Option<Direction>,
+    /// Only these bonds of a chain; all if absent.
     #[serde(default)]
     pub bonds: Option<Selection>,
 }
 
+/// How d̂ follows from r̂, the direction from the first to the second end of a bond.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum DmiKind {
+    /// d̂ = n × r̂, not normalised: of an interface with the normal n (C_nv). Walls and skyrmions are of Néel's kind.
+    Interfacial,
+    /// d̂ = r̂: of a crystal without mirrors (T, O). Walls and skyrmions are of Bloch's kind.
+    Bulk,
+    /// d̂ = r̂ mirrored in the plane of n and x̂, without its part along n (D_2d, S₄): antiskyrmions.
+    D2d,
+}
+
+impl DmiKind {
+    /// d̂ of a bond along r̂.
+    fn direction(self, r: Vector, n: Vector) -> Vector {
+        match self {
+            DmiKind::Interfacial => vector::cross(n, r),
+            DmiKind::Bulk => r,
+            DmiKind::D2d => {
+                let across = vector::unit_or(vector::cross(n, [1.0, 0.0, 0.0]), [0.0, 1.0, 0.0]);
+                let flat = vector::normal_part(r, n);
+                vector::sub(flat, vector::scale(2.0 * vector::dot(flat, across), across))
+            }
+        }
+    }
+}
+
 impl Described for DmiSpec {
     const NAME: &'static str = "dmi";
-    const SUMMARY: &'static str = "Dzyaloshinskii–Moriya interaction +D d·(m_i × m_j) of neighbours";
+    const SUMMARY: &'static str =
+        "Dzyaloshinskii–Moriya interaction +D d·(m_i × m_j): interfacial, bulk, d2d or of one direction";
     const EXAMPLE: &'static str = r#"{"dmi": {"D": "2 meV", "direction": [0, 1, 0]}}"#;
+}
+
+impl DmiSpec {
+    /// d̂ of the bonds of a family.
+    fn direction(&self, along: Vector) -> Result<Vector> {
+        let n = self.normal.unwrap_or(Direction::Z).vector();
+        match (self.kind, self.direction, self.normal) {
+            (Some(DmiKind::Bulk) | None, _, Some(_)) => Err(Error::invalid(
+                "normal",
+                "a normal is that of an interface: give it with \"kind\": \"interfacial\"",
+            )),
+            (Some(kind), None, _) => Ok(kind.direction(vector::unit_or(along, [0.0; 3]), n)),
+            (None, Some(direction), _) => Ok(direction.vector()),
+            (Some(_), Some(_), _) => {
+                Err(Error::invalid("direction", "\"kind\" and \"direction\" are two ways to say the same: keep one"))
+            }
+            (None, None, _) => {
+                let message =
+                    "a DMI needs a \"kind\" (\"interfacial\", \"bulk\", \"d2d\") or a \"direction\" ([0, 1, 0])";
+                Err(Error::invalid("", message))
+            }
+        }
+    }
+
+    /// D family by family.
+    fn couplings(&self, medium: &Medium) -> Result<Vec<Couplings>> {
+        let on = |d: &Profile<BondEnergy>, families, key: &str| {
+            medium.on_bonds(d, families, self.bonds.as_ref(), key, |d, bond| medium.bond_energy_mev(d, bond))
+        };
+        let by_bond = medium.lattice.is_row() && self.kind.is_none();
+        let families = |d: &Profile<BondEnergy>, shell: usize, key: &str| match d.written().first() {
+            Some(BondEnergy::PerArea(_)) if shell == 1 => medium.faces(key),
+            _ => medium.shell(shell, key),
+        };
+        match (&self.D, self.D.by_bond().filter(|_| by_bond)) {
+            (ByShell::One(d), _) => on(d, families(d, 1, "D")?, "D"),
+            (_, Some(list)) => on(&list, families(&list, 1, "D")?, "D"),
+            (ByShell::List(list), None) if list.is_empty() => {
+                Err(Error::invalid("D", "the list is empty: give one energy a neighbour shell, [\"2 meV\"]"))
+            }
+            (ByShell::List(list), None) => {
+                let shell = |(k, d): (usize, &Profile<BondEnergy>)| {
+                    let key = format!("D[{k}]");
+                    on(d, families(d, k + 1, &key)?, &key)
+                };
+                Ok(list.iter().enumerate().map(shell).collect::<Result<Vec<_>>>()?.concat())
+            }
+        }
+    }
 }
 
 impl TermBuilder for DmiSpec {
     fn build(&self, medium: &Medium) -> Result<Box<dyn EnergyTerm>> {
-        let families =
-            medium.on_bonds(&self.D, 1, self.bonds.as_ref(), "D", |d, sites| medium.bond_energy_mev(d, sites))?;
-        Ok(Box::new(Dmi { direction: self.direction.vector(), families }))
+        let families = self.couplings(medium)?;
+        let directions = families.iter().map(|c| self.direction(c.family.along)).collect::<Result<_>>()?;
+        Ok(Box::new(Dmi { directions, families }))
     }
 }
 
-/// Bond energies D (meV) along one direction.
+/// Bond energies D (meV).
 #[derive(Clone, Debug)]
 pub struct Dmi {
-    /// Unit vector d̂.
-    pub direction: Vector,
-    /// D of each family of bonds of nearest neighbours, in the order of [`Lattice::families`].
+    /// d̂ of each family.
+    pub directions: Vec<Vector>,
+    /// D of each family of bonds.
     pub families: Vec<Couplings>,
 }
 
 impl Dmi {
-    /// The same D (meV) on all bonds.
+    /// The same D (meV) on all bonds of nearest neighbours, along one direction.
     pub fn uniform(lattice: &Lattice, d: f64, direction: Direction) -> Dmi {
-        Dmi { direction: direction.vector(), families: Couplings::uniform(lattice, 1, d) }
+        let families = Couplings::uniform(lattice, 1, d);
+        Dmi { directions: vec![direction.vector(); families.len()], families }
     }
 
-    /// D_i (m_j × d̂) − D_k (m_k × d̂) of a site i near a border, with its partner j a shift on and k a shift back.
-    fn edge(&self, d: &[f64], segment: &Segment, m: &Components, i: usize) -> Vector {
-        let [next, previous] = [segment.next, segment.previous].map(|n| n.map(|n| at(i, n)));
-        let p = next.map_or([0.0; 3], |j| vector::scale(d[i], m.get(j)));
-        let q = previous.map_or([0.0; 3], |k| vector::scale(d[k], m.get(k)));
-        vector::cross(vector::sub(p, q), self.direction)
+    fn parts(&self) -> impl Iterator<Item = (Vector, &Couplings)> {
+        self.directions.iter().copied().zip(&self.families)
     }
 }
 
-/// A run of sites whose partners are `step` sites ahead and as many behind.
+/// A run of sites, from the first on, whose partners ahead and behind are runs of as many.
 #[multiversion(targets("x86_64+avx2"))]
 fn add_run(
     (d, [ex, ey, ez]): (&[f64], Vector),
-    (first, step): (usize, isize),
+    [first, ahead, behind]: [usize; 3],
     m: Components,
     gx: &mut [f64],
     gy: &mut [f64],
@@ -87,7 +173,6 @@ fn add_run(
 ) {
     // all of one length to the compiler too, or it keeps the last of each run for a slower loop
     let n = gx.len();
-    let (ahead, behind) = (at(first, step), at(first, -step));
     let [here, next, previous] = [first, ahead, behind].map(|k| m.range(k..k + n));
     let (dp, dm) = (&d[first..][..n], &d[behind..][..n]);
     let (gy, gz, density) = (&mut gy[..n], &mut gz[..n], &mut density[..n]);
@@ -102,6 +187,37 @@ fn add_run(
     }
 }
 
+/// A run of sites with partners on one side only, ahead (`side` 1) or behind (−1); the energy is there if the bonds are of these
+/// sites.
+#[multiversion(targets("x86_64+avx2"))]
+fn add_side(
+    (d, [ex, ey, ez], side): (&[f64], Vector, f64),
+    [first, other]: [usize; 2],
+    m: Components,
+    gx: &mut [f64],
+    gy: &mut [f64],
+    gz: &mut [f64],
+    density: Option<&mut [f64]>,
+) {
+    let n = gx.len();
+    let [here, there] = [first, other].map(|k| m.range(k..k + n));
+    let (d, gy, gz) = (&d[..n], &mut gy[..n], &mut gz[..n]);
+    for i in 0..n {
+        let (wx, wy, wz) = (d[i] * there.x[i], d[i] * there.y[i], d[i] * there.z[i]);
+        gx[i] += side * (wy * ez - wz * ey);
+        gy[i] += side * (wz * ex - wx * ez);
+        gz[i] += side * (wx * ey - wy * ex);
+    }
+    let Some(density) = density else { return };
+    let density = &mut density[..n];
+    for i in 0..n {
+        let x = here.y[i] * there.z[i] - here.z[i] * there.y[i];
+        let y = here.z[i] * there.x[i] - here.x[i] * there.z[i];
+        let z = here.x[i] * there.y[i] - here.y[i] * there.x[i];
+        density[i] += d[i] * (ex * x + ey * y + ez * z);
+    }
+}
+
 impl EnergyTerm for Dmi {
     fn name(&self) -> &'static str {
         DmiSpec::NAME
@@ -111,49 +227,53 @@ impl EnergyTerm for Dmi {
         0.0
     }
 
-    fn add_gradient(&self, m: Components, mut g: ComponentsMut, density: &mut [f64], range: Range<usize>) {
+    fn add_gradient(&self, m: Components, g: ComponentsMut, density: &mut [f64], range: Range<usize>) {
         let first = range.start;
-        for Couplings { family, mev: d } in &self.families {
+        for (e, Couplings { family, mev: d }) in self.parts() {
             for segment in family.segments(range.clone()) {
-                let (sites, run) = (segment.sites.clone(), segment.sites.start - first..segment.sites.end - first);
-                if let Some(step) = segment.even() {
-                    let (gx, gy, gz) = (&mut g.x[run.clone()], &mut g.y[run.clone()], &mut g.z[run.clone()]);
-                    add_run((d, self.direction), (sites.start, step), m, gx, gy, gz, &mut density[run]);
-                    continue;
-                }
-                for i in sites {
-                    g.add(i - first, self.edge(d, &segment, &m, i));
-                    if let Some(next) = segment.next {
-                        let turn = vector::cross(m.get(i), m.get(at(i, next)));
-                        density[i - first] += d[i] * vector::dot(self.direction, turn);
+                let (start, run) = (segment.sites.start, segment.sites.start - first..segment.sites.end - first);
+                let [x, y, z] = [&mut *g.x, &mut *g.y, &mut *g.z].map(|c| &mut c[run.clone()]);
+                let (density, partner) = (&mut density[run], |offset| at(start, offset));
+                match (segment.next.map(partner), segment.previous.map(partner)) {
+                    (Some(next), Some(previous)) => add_run((d, e), [start, next, previous], m, x, y, z, density),
+                    (Some(next), None) => {
+                        add_side((&d[start..], e, 1.0), [start, next], m, x, y, z, Some(density));
                     }
+                    (None, Some(previous)) => {
+                        add_side((&d[previous..], e, -1.0), [start, previous], m, x, y, z, None);
+                    }
+                    (None, None) => {}
                 }
             }
         }
     }
 
     fn add_hessian_product(&self, _: Components, v: Components, mut out: ComponentsMut) {
-        for Couplings { family, mev: d } in &self.families {
+        for (e, Couplings { family, mev: d }) in self.parts() {
             for segment in family.segments(0..v.sites()) {
-                segment.sites.clone().for_each(|i| out.add(i, self.edge(d, &segment, &v, i)));
+                let [next, previous] = [segment.next, segment.previous];
+                for i in segment.sites {
+                    let p = next.map_or([0.0; 3], |n| vector::scale(d[i], v.get(at(i, n))));
+                    let q = previous.map(|n| at(i, n)).map_or([0.0; 3], |k| vector::scale(d[k], v.get(k)));
+                    out.add(i, vector::cross(vector::sub(p, q), e));
+                }
             }
         }
     }
 
     fn add_blocks(&self, _: Components, blocks: &mut Blocks) {
-        for (k, couplings) in self.families.iter().enumerate() {
-            for ([i, _], d) in couplings.bonds() {
-                blocks.bond[k].add(i, cross_block(vector::scale(d, self.direction)));
-            }
+        for (e, couplings) in self.parts() {
+            let Some(bonds) = blocks.of(&couplings.family) else { continue };
+            couplings.bonds().for_each(|([i, _], d)| bonds.add(i, cross_block(vector::scale(d, e))));
         }
     }
 
-    fn reach(&self) -> usize {
-        1
+    fn families(&self) -> Vec<&BondFamily> {
+        self.families.iter().map(|c| &c.family).collect()
     }
 
     fn axes(&self) -> Vec<Vector> {
-        vec![self.direction]
+        self.directions.clone()
     }
 }
 

@@ -15,7 +15,7 @@ use super::spec::{Medium, TermBuilder};
 use crate::error::{Error, Result};
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Vector, vector};
-use crate::lattice::{Lattice, Segment, Selection, at};
+use crate::lattice::{BondFamily, Lattice, Selection, at};
 use crate::profile::Profile;
 use crate::registry::Described;
 use crate::units::{Energy, ExchangeStiffness, SurfaceEnergy};
@@ -51,24 +51,27 @@ impl Described for ExchangeSpec {
 }
 
 impl ExchangeSpec {
-    /// Energies shell by shell.
-    pub fn shells(&self, medium: &Medium) -> Result<Vec<Vec<Couplings>>> {
+    /// Energies family by family.
+    pub fn couplings(&self, medium: &Medium) -> Result<Vec<Couplings>> {
         let bonds = self.bonds.as_ref();
         Ok(match (&self.J, &self.A, &self.J_area) {
             (Some(j), None, None) if !j.is_empty() => {
                 let shell = |(k, j): (usize, &Profile<Energy>)| {
-                    medium.on_bonds(j, k + 1, bonds, &format!("J[{k}]"), |e, _| Ok(e.0))
+                    let key = format!("J[{k}]");
+                    medium.on_bonds(j, medium.shell(k + 1, &key)?, bonds, &key, |e, _| Ok(e.0))
                 };
-                j.iter().enumerate().map(shell).collect::<Result<_>>()?
+                j.iter().enumerate().map(shell).collect::<Result<Vec<_>>>()?.concat()
             }
             (Some(_), None, None) => {
                 return Err(Error::invalid("J", "the list is empty: give one energy a neighbour shell, [\"10 meV\"]"));
             }
             (None, Some(a), None) => {
-                vec![medium.on_bonds(a, 1, bonds, "A", |a, sites| medium.bond_from_stiffness_mev(a, sites))?]
+                let faces = medium.faces("A")?;
+                medium.on_bonds(a, faces, bonds, "A", |a, bond| medium.bond_from_stiffness_mev(a, bond))?
             }
             (None, None, Some(j)) => {
-                vec![medium.on_bonds(j, 1, bonds, "J_area", |j, sites| medium.bond_from_area_mev(j, sites))?]
+                let faces = medium.faces("J_area")?;
+                medium.on_bonds(j, faces, bonds, "J_area", |j, bond| medium.bond_from_area_mev(j, bond))?
             }
             (None, None, None) => {
                 let message =
@@ -88,21 +91,21 @@ impl ExchangeSpec {
 
 impl TermBuilder for ExchangeSpec {
     fn build(&self, medium: &Medium) -> Result<Box<dyn EnergyTerm>> {
-        Ok(Box::new(Exchange { families: self.shells(medium)?.concat() }))
+        Ok(Box::new(Exchange { families: self.couplings(medium)? }))
     }
 }
 
 /// Exchange energies.
 #[derive(Clone, Debug)]
 pub struct Exchange {
-    /// Those of each family of bonds, in the order of [`Lattice::families`].
+    /// Those of each family of bonds.
     pub families: Vec<Couplings>,
 }
 
-/// One family's share on a run of sites, from the first on, whose partners are a step ahead and as far behind.
+/// One family's share on a run of sites, from the first on, whose partners ahead and behind are runs of as many.
 #[multiversion(targets("x86_64+avx2"))]
 fn add_run(
-    (first, step): (usize, isize),
+    [first, ahead, behind]: [usize; 3],
     j: &[f64],
     m: Components,
     gx: &mut [f64],
@@ -112,7 +115,6 @@ fn add_run(
 ) {
     // all of one length to the compiler too, or it keeps the last of each run for a slower loop
     let n = gx.len();
-    let (ahead, behind) = (at(first, step), at(first, -step));
     let [here, next, previous] = [first, ahead, behind].map(|k| m.range(k..k + n));
     let (jp, jm) = (&j[first..][..n], &j[behind..][..n]);
     let (gy, gz, density) = (&mut gy[..n], &mut gz[..n], &mut density[..n]);
@@ -123,6 +125,35 @@ fn add_run(
         gy[i] += p * uy + q * (here.y[i] - t * previous.y[i]);
         gz[i] += p * uz + q * (here.z[i] - t * previous.z[i]);
         density[i] = density[i] + 0.5 * p * ux * ux + 0.5 * p * uy * uy + 0.5 * p * uz * uz;
+    }
+}
+
+/// Its share on a run of sites with partners on one side only; the energy is there if the bonds are of these sites.
+#[multiversion(targets("x86_64+avx2"))]
+fn add_side(
+    [first, other]: [usize; 2],
+    j: &[f64],
+    m: Components,
+    gx: &mut [f64],
+    gy: &mut [f64],
+    gz: &mut [f64],
+    density: Option<&mut [f64]>,
+) {
+    let n = gx.len();
+    let [here, there] = [first, other].map(|k| m.range(k..k + n));
+    let (j, gy, gz) = (&j[..n], &mut gy[..n], &mut gz[..n]);
+    for i in 0..n {
+        let (p, s) = (j[i].abs(), 1f64.copysign(j[i]));
+        gx[i] += p * (here.x[i] - s * there.x[i]);
+        gy[i] += p * (here.y[i] - s * there.y[i]);
+        gz[i] += p * (here.z[i] - s * there.z[i]);
+    }
+    let Some(density) = density else { return };
+    let density = &mut density[..n];
+    for i in 0..n {
+        let (p, s) = (j[i].abs(), 1f64.copysign(j[i]));
+        let (ux, uy, uz) = (here.x[i] - s * there.x[i], here.y[i] - s * there.y[i], here.z[i] - s * there.z[i]);
+        density[i] += 0.5 * p * (ux * ux + uy * uy + uz * uz);
     }
 }
 
@@ -138,21 +169,6 @@ impl Exchange {
         let s = 1f64.copysign(j);
         vector::sub(m.get(a), vector::scale(s, m.get(b)))
     }
-
-    /// Gradient and energy of one site near a border, where partners are over it or missing.
-    fn edge(j: &[f64], segment: &Segment, m: &Components, i: usize) -> (Vector, f64) {
-        let (mut g, mut e) = ([0.0; 3], 0.0);
-        if let Some(next) = segment.next.filter(|_| j[i] != 0.0) {
-            let d = Exchange::deviation(m, j[i], i, at(i, next));
-            e = 0.5 * j[i].abs() * vector::dot(d, d);
-            g = vector::scale(j[i].abs(), d);
-        }
-        if let Some(previous) = segment.previous.map(|n| at(i, n)).filter(|k| j[*k] != 0.0) {
-            let d = Exchange::deviation(m, j[previous], i, previous);
-            g = vector::add(g, vector::scale(j[previous].abs(), d));
-        }
-        (g, e)
-    }
 }
 
 impl EnergyTerm for Exchange {
@@ -164,20 +180,18 @@ impl EnergyTerm for Exchange {
         -self.families.iter().flat_map(|c| &c.mev).map(|j| j.abs()).sum::<f64>()
     }
 
-    fn add_gradient(&self, m: Components, mut g: ComponentsMut, density: &mut [f64], range: Range<usize>) {
+    fn add_gradient(&self, m: Components, g: ComponentsMut, density: &mut [f64], range: Range<usize>) {
         let first = range.start;
         for Couplings { family, mev: j } in &self.families {
             for segment in family.segments(range.clone()) {
-                let (sites, run) = (segment.sites.clone(), segment.sites.start - first..segment.sites.end - first);
-                if let Some(step) = segment.even() {
-                    let [x, y, z] = [&mut *g.x, &mut *g.y, &mut *g.z].map(|c| &mut c[run.clone()]);
-                    add_run((sites.start, step), j, m, x, y, z, &mut density[run]);
-                    continue;
-                }
-                for i in sites {
-                    let (v, e) = Exchange::edge(j, &segment, &m, i);
-                    g.add(i - first, v);
-                    density[i - first] += e;
+                let (start, run) = (segment.sites.start, segment.sites.start - first..segment.sites.end - first);
+                let [x, y, z] = [&mut *g.x, &mut *g.y, &mut *g.z].map(|c| &mut c[run.clone()]);
+                let (density, partner) = (&mut density[run], |offset| at(start, offset));
+                match (segment.next.map(partner), segment.previous.map(partner)) {
+                    (Some(next), Some(previous)) => add_run([start, next, previous], j, m, x, y, z, density),
+                    (Some(next), None) => add_side([start, next], &j[start..], m, x, y, z, Some(density)),
+                    (None, Some(previous)) => add_side([start, previous], &j[previous..], m, x, y, z, None),
+                    (None, None) => {}
                 }
             }
         }
@@ -192,17 +206,18 @@ impl EnergyTerm for Exchange {
     }
 
     fn add_blocks(&self, _: Components, blocks: &mut Blocks) {
-        for (k, couplings) in self.families.iter().enumerate() {
+        for couplings in &self.families {
             for ([i, next], j) in couplings.bonds() {
                 blocks.add_isotropic(i, j.abs());
                 blocks.add_isotropic(next, j.abs());
-                blocks.bond[k].isotropic[i] -= j;
             }
+            let Some(bonds) = blocks.of(&couplings.family) else { continue };
+            couplings.bonds().for_each(|([i, _], j)| bonds.isotropic[i] -= j);
         }
     }
 
-    fn reach(&self) -> usize {
-        self.families.last().map_or(0, |c| c.family.shell)
+    fn families(&self) -> Vec<&BondFamily> {
+        self.families.iter().map(|c| &c.family).collect()
     }
 
     fn axes(&self) -> Vec<Vector> {

@@ -4,11 +4,12 @@ use super::{Blocks, Coupling, EnergyTerm, symmetry_axes};
 use crate::error::{Error, Result};
 use crate::field::{Components, ComponentsMut, TILE, project_row, tiles};
 use crate::geometry::{Direction, Vector, vector};
-use crate::lattice::Lattice;
+use crate::lattice::{BondFamily, Lattice};
 use crate::linalg::{Layout, slab};
 use crate::spins::Spins;
 use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// From this many sites on, the tiles of one image are shared among threads.
 pub const LONG: usize = 32 * 1024;
@@ -20,7 +21,7 @@ const TILES: usize = 16;
 /// The energy of the spins of a lattice: named terms, their sum, its derivatives and its symmetry.
 #[derive(Debug)]
 pub struct Hamiltonian {
-    lattice: Lattice,
+    lattice: Arc<Lattice>,
     sites: usize,
     frozen: Vec<bool>,
     has_frozen: bool,
@@ -43,15 +44,16 @@ impl Hamiltonian {
             return Err(twice(terms[first].name(), second.name()));
         }
         let (sites, frozen) = (lattice.sites, lattice.is_frozen());
-        let reach = terms.iter().map(|t| t.reach()).max().unwrap_or(0).min(sites - 1);
+        let blocks = constant_blocks(lattice, &terms);
+        let reach = if lattice.is_row() { blocks.bond.len() } else { 0 };
         let mut h = Hamiltonian {
-            lattice: lattice.clone(),
+            lattice: Arc::new(lattice.clone()),
             sites,
             has_frozen: frozen.contains(&true),
             frozen,
             axes: symmetry_axes(&terms, sites),
-            blocks: constant_blocks(lattice, &terms, reach),
-            layout: lattice.layout(reach),
+            layout: lattice.layout(&blocks.bond.iter().map(|bonds| &bonds.family).collect::<Vec<_>>()),
+            blocks,
             terms,
             long,
             reach,
@@ -72,13 +74,17 @@ impl Hamiltonian {
         &self.lattice
     }
 
+    /// The same, to be held on to.
+    pub fn shared_lattice(&self) -> &Arc<Lattice> {
+        &self.lattice
+    }
+
     /// Number of sites.
     pub fn sites(&self) -> usize {
         self.sites
     }
 
-    /// How many shells of neighbours have blocks; a long-ranged term goes on from there. In a chain that is how many sites away the
-    /// furthest partner with a block is.
+    /// In a row, how many sites away the furthest partner with a block is, where a long-ranged term goes on; 0 in other lattices.
     pub fn reach(&self) -> usize {
         self.reach
     }
@@ -310,14 +316,31 @@ impl Hamiltonian {
     }
 }
 
-/// The blocks of the quadratic terms, of all shells up to `reach`.
-fn constant_blocks(lattice: &Lattice, terms: &[Box<dyn EnergyTerm>], reach: usize) -> Blocks {
-    let mut blocks = Blocks::zeros(lattice, terms.iter().map(|t| t.reach()).max().unwrap_or(0));
+/// The blocks of the quadratic terms, for the bonds of all terms; in a row for all shells up to the furthest.
+fn constant_blocks(lattice: &Lattice, terms: &[Box<dyn EnergyTerm>]) -> Blocks {
+    let families = match lattice.is_row() {
+        true => {
+            let reach = terms.iter().map(|t| t.reach()).max().unwrap_or(0);
+            lattice.families(reach.min(lattice.sites - 1))
+        }
+        false => distinct(terms.iter().flat_map(|t| t.families())),
+    };
+    let mut blocks = Blocks::zeros(lattice.sites, families);
     for t in terms.iter().filter(|t| t.is_quadratic()) {
         t.add_blocks(Components::new(&vec![0.0; 3 * lattice.sites]), &mut blocks);
     }
-    blocks.bond.retain(|bonds| bonds.family.shell <= reach);
     blocks
+}
+
+/// Each family once.
+fn distinct<'a>(families: impl Iterator<Item = &'a BondFamily>) -> Vec<BondFamily> {
+    let mut known: Vec<BondFamily> = Vec::new();
+    for family in families {
+        if !known.iter().any(|other| other.hop == family.hop) {
+            known.push(family.clone());
+        }
+    }
+    known
 }
 
 /// Two terms that count the same forces.

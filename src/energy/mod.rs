@@ -8,6 +8,7 @@
 
 mod anisotropy;
 mod blocks;
+mod by_shell;
 mod coupling;
 mod couplings;
 mod cubic_anisotropy;
@@ -25,23 +26,25 @@ mod zeeman;
 
 pub use anisotropy::{Anisotropy, AnisotropySpec};
 pub use blocks::{Block, Blocks, Bonds, multiply};
+pub use by_shell::ByShell;
 pub use coupling::{AllPairs, Coupling};
 pub use couplings::Couplings;
 pub use cubic_anisotropy::{CubicAnisotropy, CubicAnisotropySpec};
 pub use demag::DemagSpec;
 pub use dipolar::DipolarSpec;
-pub use dmi::{Dmi, DmiSpec};
+pub use dmi::{Dmi, DmiKind, DmiSpec};
 pub use evaluator::Evaluator;
 pub use exchange::{Exchange, ExchangeSpec};
 pub use hamiltonian::{Hamiltonian, LONG};
 pub use magnetostatics::Magnetostatics;
 pub use recorded::{Stored, recorded};
-pub use spec::{Medium, Part, TermBuilder, TermSpec};
+pub use spec::{FamilyBond, Medium, Part, TermBuilder, TermSpec};
 pub use symmetry::symmetry_axes;
 pub use zeeman::{Zeeman, ZeemanSpec};
 
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::Vector;
+use crate::lattice::BondFamily;
 use std::fmt::Debug;
 use std::ops::Range;
 
@@ -80,8 +83,15 @@ pub trait EnergyTerm: Debug + Send + Sync {
     /// Adds the 3 × 3 blocks of ∂²E/∂m∂m (meV).
     fn add_blocks(&self, m: Components, blocks: &mut Blocks);
 
-    /// How many shells of neighbours have blocks (0: on-site).
-    fn reach(&self) -> usize;
+    /// The bonds that have blocks; none of a term of single sites.
+    fn families(&self) -> Vec<&BondFamily> {
+        Vec::new()
+    }
+
+    /// In a row, how many sites away the furthest partner with a block is.
+    fn reach(&self) -> usize {
+        self.families().into_iter().map(|family| family.hop.shift[0].unsigned_abs()).max().unwrap_or(0)
+    }
 
     /// Whether ∂²E/∂m∂m does not depend on m.
     fn is_quadratic(&self) -> bool {

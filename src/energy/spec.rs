@@ -5,7 +5,7 @@ use super::{
     ZeemanSpec,
 };
 use crate::error::{Error, Result};
-use crate::lattice::{Lattice, Selection};
+use crate::lattice::{BondFamily, Hop, Lattice, Selection};
 use crate::profile::Profile;
 use crate::registry::family;
 use crate::units::{BondEnergy, ExchangeStiffness, Magnetisation, Moment, SiteEnergy, SurfaceEnergy};
@@ -48,15 +48,24 @@ pub struct Medium<'a> {
 pub struct Part {
     /// Whether each site is in it.
     pub inside: Vec<bool>,
-    /// By shell and number of the bond, which share of its own value the part gives; all of it where there is no number.
-    pub shares: Vec<Vec<f64>>,
+    /// By hop and by site, which share of its own value the part gives to the site's bond; half of it where there is no number and
+    /// the bond leads out of the part.
+    pub shares: Vec<(Hop, Vec<f64>)>,
 }
 
 impl Part {
-    fn share(&self, shell: usize, bond: usize) -> f64 {
-        self.shares.get(shell - 1).and_then(|shares| shares.get(bond)).copied().unwrap_or(1.0)
+    /// Of a bond, the share of its own value that the part gives.
+    fn share(&self, hop: Hop, [i, j]: [usize; 2]) -> f64 {
+        match self.shares.iter().find(|(own, _)| *own == hop) {
+            _ if self.inside[i] && self.inside[j] => 1.0,
+            Some((_, shares)) => shares[i],
+            None => 0.5,
+        }
     }
 }
+
+/// A bond: its family and its two sites.
+pub type FamilyBond<'a> = (&'a BondFamily, [usize; 2]);
 
 impl<'a> Medium<'a> {
     /// All of a lattice.
@@ -98,27 +107,27 @@ impl<'a> Medium<'a> {
     }
 
     /// Energy of a bond (meV).
-    pub fn bond_energy_mev(&self, d: BondEnergy, sites: [usize; 2]) -> Result<f64> {
+    pub fn bond_energy_mev(&self, d: BondEnergy, bond: FamilyBond) -> Result<f64> {
         match d {
             BondEnergy::PerBond(e) => Ok(e.0),
-            BondEnergy::PerArea(d) => Ok(d.over_area(self.lattice.bond_section_nm2(sites)?).0),
+            BondEnergy::PerArea(d) => Ok(d.over_area(self.lattice.bond_section_nm2(bond)?).0),
         }
     }
 
     /// Exchange energy of a bond (meV) of one an area.
-    pub fn bond_from_area_mev(&self, j: SurfaceEnergy, sites: [usize; 2]) -> Result<f64> {
-        Ok(j.over_area(self.lattice.bond_section_nm2(sites)?).0)
+    pub fn bond_from_area_mev(&self, j: SurfaceEnergy, bond: FamilyBond) -> Result<f64> {
+        Ok(j.over_area(self.lattice.bond_section_nm2(bond)?).0)
     }
 
     /// Exchange energy of a bond (meV) of a stiffness.
-    pub fn bond_from_stiffness_mev(&self, a: ExchangeStiffness, sites: [usize; 2]) -> Result<f64> {
-        Ok(2.0 * a.over_length(self.lattice.bond_section_nm2(sites)? / self.lattice.known_spacing_nm()?).0)
+    pub fn bond_from_stiffness_mev(&self, a: ExchangeStiffness, bond: FamilyBond) -> Result<f64> {
+        Ok(2.0 * a.over_length(self.lattice.bond_section_nm2(bond)? / self.lattice.bond_length_nm(bond.0)?).0)
     }
 
     /// [`moments_mub`](Self::moments_mub), 0 where a site is vacant, for moments that act on each other; an error where they stand
     /// in no chain.
     pub fn acting_moments_mub(&self) -> Result<Vec<f64>> {
-        if !self.lattice.grid.is_row() {
+        if !self.lattice.is_row() {
             let message =
                 "moments act on each other along a chain only: give the lattice as one, or leave this term out";
             return Err(Error::invalid("", message));
@@ -146,35 +155,54 @@ impl<'a> Medium<'a> {
         Ok(list)
     }
 
-    /// The values of a profile on the chosen bonds of a shell, made numbers by `convert`, which is told the bond's sites; 0 on all
+    /// The bonds of a shell; `key` is the place of what acts on them.
+    pub fn shell(&self, shell: usize, key: &str) -> Result<Vec<BondFamily>> {
+        self.lattice.admits(shell).map_err(|e| e.within(key))?;
+        Ok(self.lattice.shell(shell))
+    }
+
+    /// The bonds of cells that share a face.
+    pub fn faces(&self, key: &str) -> Result<Vec<BondFamily>> {
+        self.lattice.faces().map_err(|e| e.within(key))
+    }
+
+    /// The values of a profile on the chosen bonds of some families, made numbers by `convert`, which is told the bond; 0 on all
     /// others and where a site of the bond is vacant. `key` is the profile's place.
     pub fn on_bonds<T: Copy>(
         &self,
         profile: &Profile<T>,
-        shell: usize,
+        families: Vec<BondFamily>,
         selection: Option<&Selection>,
         key: &str,
-        convert: impl Fn(T, [usize; 2]) -> Result<f64>,
+        convert: impl Fn(T, FamilyBond) -> Result<f64>,
     ) -> Result<Vec<Couplings>> {
-        self.lattice.admits(shell).map_err(|e| e.within(key))?;
-        let bonds = self.lattice.bonds(shell);
-        let mut chosen = match selection {
-            None => (0..bonds.len()).collect(),
-            Some(s) => s.indices(bonds.len(), "bond").map_err(|e| e.within("bonds"))?,
-        };
-        if let Some(part) = &self.part {
-            chosen.retain(|k| bonds[*k].sites.iter().any(|i| part.inside[*i]));
+        let mut couplings = Couplings::none(families, self.lattice.sites);
+        let numbered = |(k, c): (usize, &Couplings)| c.family.bonds().map(|sites| (k, sites)).collect::<Vec<_>>();
+        let mut chosen: Vec<(usize, [usize; 2])> = couplings.iter().enumerate().flat_map(numbered).collect();
+        if let Some(selection) = selection {
+            chosen = self.numbered(selection, &chosen).map_err(|e| e.within("bonds"))?;
         }
-        let value = |value, k: usize| convert(value, bonds[chosen[k]].sites);
+        if let Some(part) = &self.part {
+            chosen.retain(|(_, sites)| sites.iter().any(|i| part.inside[*i]));
+        }
+        let value = |value, k: usize| convert(value, (&couplings[chosen[k].0].family, chosen[k].1));
         let values = profile.values(chosen.len(), "bond", value).map_err(|e| e.within(key))?;
-        let mut couplings = Couplings::none(self.lattice, shell);
-        for (k, value) in chosen.into_iter().zip(values) {
-            let [i, j] = bonds[k].sites;
+        for ((k, [i, j]), value) in chosen.into_iter().zip(values) {
             if !self.lattice.vacant[i] && !self.lattice.vacant[j] {
-                couplings[bonds[k].family].mev[i] = value * self.part.as_ref().map_or(1.0, |part| part.share(shell, k));
+                let share = self.part.as_ref().map_or(1.0, |part| part.share(couplings[k].family.hop, [i, j]));
+                couplings[k].mev[i] = value * share;
             }
         }
         Ok(couplings)
+    }
+
+    /// Bonds of a chain by their numbers.
+    fn numbered(&self, selection: &Selection, bonds: &[(usize, [usize; 2])]) -> Result<Vec<(usize, [usize; 2])>> {
+        if !self.lattice.is_row() {
+            let message = "bonds are chosen by number in a chain only: choose \"sites\", with both ends among them";
+            return Err(Error::invalid("", message));
+        }
+        Ok(selection.indices(bonds.len(), "bond")?.into_iter().map(|k| bonds[k]).collect())
     }
 
     /// The chosen sites that are not vacant; all of these if there is no choice.

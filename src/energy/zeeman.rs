@@ -99,10 +99,6 @@ impl EnergyTerm for Zeeman {
 
     fn add_blocks(&self, _: Components, _: &mut Blocks) {}
 
-    fn reach(&self) -> usize {
-        0
-    }
-
     fn axes(&self) -> Vec<Vector> {
         vec![self.direction]
     }

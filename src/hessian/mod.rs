@@ -21,9 +21,13 @@ pub use basis::{BasisTile, TangentBasis};
 pub use free::Free;
 
 use crate::energy::Hamiltonian;
+use crate::linalg::Layout;
 
-/// About how many operations it takes to factorise a Hessian, dense or of a row of sites.
+/// About how many operations it takes to factorise a Hessian.
 pub fn factorisation_flops(h: &Hamiltonian) -> f64 {
+    if let (Layout::Sparse(plan), None) = (h.layout(), h.coupling().pairs()) {
+        return plan.flops();
+    }
     let order = 2.0 * h.sites() as f64;
     let width = match (h.coupling().pairs().is_some(), h.coupling().tail(true)) {
         (true, None) => return order * order * order / 3.0,

@@ -1,22 +1,22 @@
-//! Bonds: families of one shift each, as runs of sites whose partners stand a constant number of sites away.
+//! Bonds: families of one hop each, as runs of sites whose partners stand a constant number of sites away.
 //!
-//! Of each row of cells the partners of a shift lie in one other row, in order; an open border leaves sites out, a periodic one
-//! splits the row once. A kernel so runs over contiguous slices, whatever the lattice.
+//! Of each row of cells the partners of a hop lie in one other row, in order; an open border leaves sites out, a periodic one
+//! splits the row once, and so does a site that is not there. A kernel so runs over contiguous slices, whatever the lattice.
 
-use super::grid::Shift;
-use super::{Grid, Lattice};
+use super::{Grid, Hop, Lattice};
 use crate::error::{Error, Result};
-use crate::geometry::vector;
+use crate::geometry::Vector;
 use std::ops::Range;
 
-/// Distances of shells differ by more than this part.
-const SAME: f64 = 1e-9;
-
-/// All bonds that lead from a site to the one a shift on.
+/// All bonds that lead from a site to the one a hop on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BondFamily {
     /// Whether they are nearest (1), next … neighbours.
     pub shell: usize,
+    /// From which atom of a cell to which, how many cells on.
+    pub hop: Hop,
+    /// From one end to the other, in the unit of positions.
+    pub along: Vector,
     /// Ascending, without the sites that have no partner at all.
     segments: Vec<Segment>,
 }
@@ -30,14 +30,6 @@ pub struct Segment {
     pub next: Option<isize>,
     /// To the partner a shift back, whose bond it is.
     pub previous: Option<isize>,
-}
-
-impl Segment {
-    /// How far away the partners are, where one is as far ahead as the other is behind.
-    #[inline(always)]
-    pub fn even(&self) -> Option<isize> {
-        self.next.filter(|n| self.previous == Some(-n))
-    }
 }
 
 /// One bond.
@@ -56,26 +48,20 @@ pub fn at(i: usize, offset: isize) -> usize {
 }
 
 impl BondFamily {
-    /// The bonds of a shift in a box.
-    pub fn new(grid: &Grid, shell: usize, shift: Shift) -> BondFamily {
-        let back = shift.map(|d| -d);
+    /// The bonds of a hop in a lattice.
+    pub fn new(lattice: &Lattice, shell: usize, hop: Hop) -> BondFamily {
+        let (grid, [from, to]) = (&lattice.grid, hop.atoms);
         let mut segments: Vec<Segment> = Vec::new();
-        for row in 0..grid.size[1] * grid.size[2] {
-            let (next, previous) = (runs(grid, row, shift), runs(grid, row, back));
-            let mut cuts: Vec<usize> = next.iter().chain(&previous).flat_map(|(r, _)| [r.start, r.end]).collect();
-            cuts.sort_unstable();
-            cuts.dedup();
-            let of = |runs: &[(Range<usize>, isize)], i| runs.iter().find(|(r, _)| r.contains(&i)).map(|(_, o)| *o);
-            for cut in cuts.windows(2) {
-                let (next, previous) = (of(&next, cut[0]), of(&previous, cut[0]));
-                match segments.last_mut() {
-                    _ if next.is_none() && previous.is_none() => {}
-                    Some(s) if (s.sites.end, s.next, s.previous) == (cut[0], next, previous) => s.sites.end = cut[1],
-                    _ => segments.push(Segment { sites: cut[0]..cut[1], next, previous }),
-                }
-            }
+        let runs_of = |atom: usize, row: usize, hop: Hop| -> Vec<(Range<usize>, isize)> {
+            let runs = if hop.atoms[0] == atom { runs(grid, row, hop) } else { Vec::new() };
+            runs.into_iter().flat_map(|(slots, offset)| lattice.slots.runs(slots, offset)).collect()
+        };
+        let atoms = if from == to { vec![from] } else { vec![from.min(to), from.max(to)] };
+        let rows = atoms.into_iter().flat_map(|atom| (0..grid.size[1] * grid.size[2]).map(move |row| (atom, row)));
+        for (atom, row) in rows {
+            add_row(&mut segments, &runs_of(atom, row, hop), &runs_of(atom, row, hop.back()));
         }
-        BondFamily { shell, segments }
+        BondFamily { shell, hop, along: lattice.along(hop), segments }
     }
 
     /// The segments of a range of sites, cut at its ends.
@@ -110,13 +96,33 @@ impl BondFamily {
     }
 }
 
-/// The sites of a row of cells with a partner a shift on, and how far that is.
-fn runs(grid: &Grid, row: usize, shift: Shift) -> Vec<(Range<usize>, isize)> {
+/// Adds the segments of a row, from its runs towards partners a hop on and a hop back.
+fn add_row(segments: &mut Vec<Segment>, next: &[(Range<usize>, isize)], previous: &[(Range<usize>, isize)]) {
+    let mut cuts: Vec<usize> = next.iter().chain(previous).flat_map(|(r, _)| [r.start, r.end]).collect();
+    cuts.sort_unstable();
+    cuts.dedup();
+    let of = |runs: &[(Range<usize>, isize)], i| {
+        let run = runs.get(runs.partition_point(|(r, _)| r.end <= i));
+        run.filter(|(r, _)| r.contains(&i)).map(|(_, offset)| *offset)
+    };
+    for cut in cuts.windows(2) {
+        let (next, previous) = (of(next, cut[0]), of(previous, cut[0]));
+        match segments.last_mut() {
+            _ if next.is_none() && previous.is_none() => {}
+            Some(s) if (s.sites.end, s.next, s.previous) == (cut[0], next, previous) => s.sites.end = cut[1],
+            _ => segments.push(Segment { sites: cut[0]..cut[1], next, previous }),
+        }
+    }
+}
+
+/// The slots of an atom in a row of cells whose partners a hop on are in the box, and how many slots away those are, ascending.
+fn runs(grid: &Grid, row: usize, Hop { atoms: [atom, to], shift }: Hop) -> Vec<(Range<usize>, isize)> {
     let ([x, y, _], n) = (grid.size, grid.size[0] as isize);
     let (Some(to_y), Some(to_z)) = (grid.step(row % y, shift[1], 1), grid.step(row / y, shift[2], 2)) else {
         return Vec::new();
     };
-    let (first, base) = (row * x, ((to_z * y + to_y) * x) as isize - (row * x) as isize);
+    let slot = |atom: usize, row: usize| ((atom * grid.cells()) + row * x) as isize;
+    let (first, base) = (slot(atom, row) as usize, slot(to, to_z * y + to_y) - slot(atom, row));
     let along = if grid.periodic[0] { shift[0].rem_euclid(n) } else { shift[0] };
     let once_round = if grid.periodic[0] { vec![along, along - n] } else { vec![along] };
     let run = |along: isize| {
@@ -129,16 +135,12 @@ fn runs(grid: &Grid, row: usize, shift: Shift) -> Vec<(Range<usize>, isize)> {
 impl Lattice {
     /// The families of the shells 1 … `shells`, shell after shell.
     pub fn families(&self, shells: usize) -> Vec<BondFamily> {
-        let shifts = self.shifts(shells).into_iter().enumerate();
-        shifts
-            .flat_map(|(k, all)| all.into_iter().map(move |shift| (k + 1, shift)))
-            .map(|(shell, shift)| BondFamily::new(&self.grid, shell, shift))
-            .collect()
+        self.shells(shells).into_iter().map(|(shell, hop)| BondFamily::new(self, shell, hop)).collect()
     }
 
     /// The families of one shell.
     pub fn shell(&self, shell: usize) -> Vec<BondFamily> {
-        self.shifts_of(shell).into_iter().map(|shift| BondFamily::new(&self.grid, shell, shift)).collect()
+        self.hops_of(shell).into_iter().map(|hop| BondFamily::new(self, shell, hop)).collect()
     }
 
     /// The bonds of a shell, as they are counted: family after family, by ascending site. In a row bond i is that of site i.
@@ -152,53 +154,42 @@ impl Lattice {
 
     /// Refuses a shell that reaches further than the lattice does, or that wraps onto itself.
     pub fn admits(&self, shell: usize) -> Result<()> {
-        let (sites, row, Grid { size, periodic }) = (self.sites, self.grid.is_row(), self.grid);
-        let shifts = self.shifts_of(shell);
-        let wraps = |s: &Shift| (0..3).any(|d| periodic[d] && s[d] != 0 && 2 * s[d].unsigned_abs() >= size[d]);
-        let message = match shifts.iter().any(wraps) {
-            true if row => {
+        let (sites, row, Grid { size, periodic }) = (self.sites, self.is_row(), self.grid);
+        let hops = self.hops_of(shell);
+        let closes = |hop: &Hop| hop.atoms[0] == hop.atoms[1] && self.grid.closes(hop.shift);
+        let message = match row {
+            true if periodic[0] && 2 * shell >= sites => {
                 let most = (sites - 1) / 2;
                 format!("shell {shell} wraps onto itself in a ring of {sites} sites: at most {most} shells fit")
             }
-            true => format!("shell {shell} wraps onto itself in a lattice of {size:?} cells"),
-            false if row && shell > 1.max(sites - 1) => {
+            true if !periodic[0] && shell > 1.max(sites - 1) => {
                 format!("shell {shell} reaches further than the chain of {sites} sites is long")
             }
-            false if shifts.is_empty() => format!("shell {shell} reaches further than the lattice of {size:?} cells"),
-            false => return Ok(()),
+            false if hops.iter().any(closes) => {
+                let way_out = "make a periodic direction longer, or open";
+                format!("shell {shell} joins sites with images of themselves in a lattice of {size:?} cells: {way_out}")
+            }
+            false if !hops.iter().any(|hop| self.grid.holds(hop.shift)) => {
+                format!("shell {shell} reaches further than the lattice of {size:?} cells")
+            }
+            _ => return Ok(()),
         };
         Err(Error::invalid("", message))
     }
 
-    fn shifts_of(&self, shell: usize) -> Vec<Shift> {
-        match self.grid.is_row() {
-            true => vec![[shell as isize, 0, 0]],
-            false => self.shifts(shell).pop().unwrap_or_default(),
+    fn hops_of(&self, shell: usize) -> Vec<Hop> {
+        match self.is_row() {
+            true => vec![Hop::ahead(shell)],
+            false => self.shells(shell).into_iter().filter(|(k, _)| *k == shell).map(|(_, hop)| hop).collect(),
         }
-    }
-
-    /// The shifts of the shells 1 … `shells`, by distance; in a row the distance is the number of cells.
-    fn shifts(&self, shells: usize) -> Vec<Vec<Shift>> {
-        if self.grid.is_row() {
-            return (1..=shells as isize).map(|n| vec![[n, 0, 0]]).collect();
-        }
-        let length = |shift: &Shift| {
-            let along = |d: usize| vector::scale(shift[d] as f64 * self.steps[d].0, self.steps[d].1.vector());
-            vector::norm((0..3).map(along).fold([0.0; 3], vector::add))
-        };
-        let mut all: Vec<(f64, Shift)> = self.grid.shifts(shells).into_iter().map(|s| (length(&s), s)).collect();
-        all.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let by_distance = all.chunk_by(|a, b| b.0 - a.0 <= SAME * b.0);
-        let mut found: Vec<Vec<Shift>> = by_distance.map(|shell| shell.iter().map(|(_, s)| *s).collect()).collect();
-        found.resize(shells, Vec::new());
-        found
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lattice::Chain;
+    use crate::geometry::Direction;
+    use crate::lattice::{Atom, Chain, Slots};
 
     #[test]
     fn an_open_chain_has_one_bond_less_than_sites_and_a_ring_as_many() {
@@ -209,34 +200,60 @@ mod tests {
     }
 
     #[test]
-    fn the_segments_of_a_family_are_what_counting_cells_gives_in_any_box() {
+    fn the_segments_of_a_family_are_what_counting_cells_gives_in_any_box_with_any_atoms_and_sites_left_out() {
         let mut families = 0;
-        for size in [[7, 1, 1], [9, 4, 1], [5, 6, 3], [3, 3, 3], [4, 1, 2]] {
+        for (size, atoms, holes) in [
+            ([7, 1, 1], 1, 0),
+            ([9, 4, 1], 1, 0),
+            ([5, 6, 3], 1, 7),
+            ([3, 3, 3], 3, 0),
+            ([4, 1, 2], 2, 3),
+            ([2, 2, 1], 2, 0),
+            ([6, 5, 1], 2, 4),
+        ] {
             for border in 0..8 {
-                let grid = Grid { size, periodic: [border & 1 > 0, border & 2 > 0, border & 4 > 0] };
+                let lattice = some(size, border, atoms, holes);
                 for shift in [[1, 0, 0], [2, 0, 0], [0, 1, 0], [-1, 1, 0], [1, 1, 0], [0, 0, 1], [1, -1, 1], [8, 0, 0]]
                 {
-                    let family = BondFamily::new(&grid, 1, shift);
-                    for tile in [grid.cells(), 4, 5] {
-                        let tiles = (0..grid.cells()).step_by(tile).map(|first| first..grid.cells().min(first + tile));
-                        let segments: Vec<Segment> = tiles.flat_map(|tile| family.segments(tile)).collect();
-                        let of = |i: usize| segments.iter().find(|s| s.sites.contains(&i));
-                        for i in 0..grid.cells() {
-                            let partner =
-                                |offset: fn(&Segment) -> Option<isize>| of(i).and_then(offset).map(|o| at(i, o));
-                            assert_eq!(partner(|s| s.next), grid.shifted(i, shift), "{grid:?} {shift:?} {i}");
-                            assert_eq!(
-                                partner(|s| s.previous),
-                                grid.shifted(i, shift.map(|d| -d)),
-                                "{grid:?} {shift:?} {i}"
-                            );
-                            assert_eq!(family.next(i), grid.shifted(i, shift));
-                        }
+                    for pair in [[0, 0], [0, atoms - 1], [atoms - 1, 0]] {
+                        meets(&lattice, Hop { atoms: pair, shift });
+                        families += 1;
                     }
-                    families += 1;
                 }
             }
         }
-        assert_eq!(families, 320);
+        assert_eq!(families, 7 * 8 * 8 * 3);
+    }
+
+    /// A box of cells with so many atoms each, every so manieth left out.
+    fn some(size: [usize; 3], border: usize, atoms: usize, holes: usize) -> Lattice {
+        let grid = Grid { size, periodic: [border & 1 > 0, border & 2 > 0, border & 4 > 0] };
+        let steps = [Direction::X, Direction::Y, Direction::Z].map(|along| (1.0, along));
+        let place = |k: usize| Atom { at: [0.1 * k as f64, 0.2 * k as f64, 0.0], species: 0 };
+        let mut lattice = Lattice::of_atoms("some", grid, steps, (0..atoms).map(place).collect());
+        let taken: Vec<bool> = (0..lattice.sites).map(|k| holes == 0 || k % holes != 2).collect();
+        (lattice.slots, lattice.sites) = (Slots::taken(&taken), taken.iter().filter(|t| **t).count());
+        lattice
+    }
+
+    fn meets(lattice: &Lattice, hop: Hop) {
+        let family = BondFamily::new(lattice, 1, hop);
+        let n = lattice.sites;
+        let counted = |i: usize, hop: Hop| {
+            let (atom, cell) = lattice.cell(i);
+            let there = lattice.grid.shifted(cell, hop.shift).filter(|_| atom == hop.atoms[0])?;
+            lattice.site(hop.atoms[1], there)
+        };
+        for tile in [n, 4, 5] {
+            let tiles = (0..n).step_by(tile).map(|first| first..n.min(first + tile));
+            let segments: Vec<Segment> = tiles.flat_map(|tile| family.segments(tile)).collect();
+            let of = |i: usize| segments.iter().find(|s| s.sites.contains(&i));
+            for i in 0..n {
+                let partner = |offset: fn(&Segment) -> Option<isize>| of(i).and_then(offset).map(|o| at(i, o));
+                assert_eq!(partner(|s| s.next), counted(i, hop), "{:?} {hop:?} {i}", lattice.grid);
+                assert_eq!(partner(|s| s.previous), counted(i, hop.back()), "{:?} {hop:?} {i}", lattice.grid);
+                assert_eq!(family.next(i), counted(i, hop));
+            }
+        }
     }
 }

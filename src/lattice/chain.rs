@@ -1,11 +1,13 @@
 //! A chain: a row of equally spaced sites, open or closed to a ring.
 
+use super::kind::common;
 use super::selection::Selection;
-use super::sites::{Frozen, SiteMoment, SiteSection};
-use super::{FrozenSites, Grid, Lattice};
+use super::sites::{Frozen, SiteMoment, SiteSection, Taken, positive};
+use super::{Atom, Grid, Lattice, LatticeKind};
 use crate::error::{Error, Result};
 use crate::geometry::Direction;
 use crate::profile::Profile;
+use crate::registry::Described;
 use crate::units::Length;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -86,32 +88,18 @@ impl Chain {
 
     /// The lattice; an error, with its place, where something cannot be.
     pub fn resolve(&self) -> Result<Lattice> {
-        let (sites, grid) = (self.checked_sites()?, Grid::row(self.sites, self.periodic));
-        if let Some(a) = self.spacing {
-            positive(a.0, "spacing")?;
-        }
-        let length = self.spacing.map_or(1.0, |a| a.0);
+        let grid = Grid::row(self.checked_sites()?, self.periodic);
+        let common = common!(self);
+        let spacing_nm = common.spacing_nm(self.spacing)?;
+        let length = spacing_nm.unwrap_or(1.0);
         let steps = [self.direction.unwrap_or(Direction::X), Direction::Y, Direction::Z].map(|along| (length, along));
-        let mut lattice = Lattice { spacing_nm: self.spacing.map(|a| a.0), ..Lattice::bare(grid, steps) };
-        for (name, chosen) in &self.regions {
-            let place = format!("regions.{name}");
-            if name == "default" {
-                return Err(Error::invalid(place, "\"default\" is what is in no region: give this one another name"));
-            }
-            let chosen = chosen.indices(sites, "site").map_err(|e| e.within(&place))?;
-            lattice.regions.insert(name.clone(), chosen);
-        }
+        // cells of a continuum begin at the origin, atoms stand there
+        let first = if self.cross_section.is_some() { 0.5 } else { 0.0 };
+        let atoms = vec![Atom { at: [first, 0.0, 0.0], species: 0 }];
+        let mut lattice = Lattice { spacing_nm, ..Lattice::of_atoms(Chain::NAME, grid, steps, atoms) };
+        common.name_regions(&mut lattice)?;
         lattice.sections_nm = self.sections_nm(&lattice)?;
-        if let Some(list) = &self.vacant {
-            let vacant = lattice.chosen(list).map_err(|e| e.within("vacant"))?;
-            vacant.into_iter().for_each(|i| lattice.vacant[i] = true);
-        }
-        if lattice.vacant.iter().all(|v| *v) {
-            return Err(Error::invalid("vacant", "all sites are vacant: no spin is left"));
-        }
-        lattice.frozen = self.frozen_sites(&lattice)?;
-        lattice.moments_mub = self.moments_mub(&lattice)?;
-        Ok(lattice)
+        common.complete(lattice)
     }
 
     /// Width and thickness of every cell (nm).
@@ -142,81 +130,25 @@ impl Chain {
         }
         Ok(Some(sections))
     }
-
-    /// Spins that never move, none of them twice and none where there is no spin.
-    fn frozen_sites(&self, lattice: &Lattice) -> Result<Vec<FrozenSites>> {
-        let one = |(k, f): (usize, &Frozen)| {
-            let within = |e: Error| e.within(&format!("frozen[{k}].sites"));
-            let sites = lattice.chosen(&f.sites).map_err(within)?;
-            match sites.iter().find(|i| lattice.vacant[**i]) {
-                None => Ok(FrozenSites { sites, direction: f.direction }),
-                Some(i) => Err(within(Error::invalid("", format!("site {i} is vacant: there is no spin to freeze")))),
-            }
-        };
-        let frozen: Vec<FrozenSites> = self.frozen.iter().enumerate().map(one).collect::<Result<_>>()?;
-        let mut taken = Taken::new("frozen", "is frozen", self.sites);
-        frozen.iter().enumerate().try_for_each(|(k, f)| taken.take(k, &f.sites))?;
-        Ok(frozen)
-    }
-
-    /// Moments of the sites that have one of their own (μ_B).
-    fn moments_mub(&self, lattice: &Lattice) -> Result<Vec<Option<f64>>> {
-        let mut moments = lattice.moments_mub.clone();
-        let mut taken = Taken::new("moments", "has a moment of its own", self.sites);
-        for (k, m) in self.moments.iter().enumerate() {
-            let within = |e: Error| e.within(&format!("moments[{k}]"));
-            let chosen = lattice.chosen(&m.sites).map_err(|e| within(e.within("sites")))?;
-            taken.take(k, &chosen)?;
-            let (key, values) = match (&m.moment, &m.Ms) {
-                (Some(p), None) => ("moment", p.values(chosen.len(), "site", |m, _| Ok(m.0))),
-                (None, Some(p)) => {
-                    let moment = |k: usize| lattice.volume_nm3(chosen[k]);
-                    ("Ms", p.values(chosen.len(), "site", |ms, k| Ok(ms.in_volume(moment(k)?).0)))
-                }
-                _ => {
-                    let message = "a moment of its own is a \"moment\" or an \"Ms\": give one of the two";
-                    return Err(within(Error::invalid("", message)));
-                }
-            };
-            for (i, moment) in chosen.into_iter().zip(values.map_err(|e| within(e.within(key)))?) {
-                if moment < 0.0 {
-                    let message =
-                        "found a negative value: a spin is the direction of its moment, so this is not negative";
-                    return Err(within(Error::invalid(key, message)));
-                }
-                moments[i] = Some(moment);
-            }
-        }
-        Ok(moments)
-    }
 }
 
-impl Lattice {
-    fn chosen(&self, selection: &Selection) -> Result<Vec<usize>> {
-        selection.sites(self.sites, &self.regions)
-    }
+impl Described for Chain {
+    const NAME: &'static str = "chain";
+    const SUMMARY: &'static str = "a row of equally spaced sites, open or closed to a ring";
+    const EXAMPLE: &'static str = r#"{"chain": {"sites": 100, "spacing": "0.25 nm"}}"#;
 }
 
-/// Which entry of a list each site is of: no site is of two.
-struct Taken {
-    list: &'static str,
-    what: &'static str,
-    by: Vec<Option<usize>>,
-}
-
-impl Taken {
-    fn new(list: &'static str, what: &'static str, sites: usize) -> Taken {
-        Taken { list, what, by: vec![None; sites] }
+impl LatticeKind for Chain {
+    fn checked_sites(&self) -> Result<usize> {
+        Chain::checked_sites(self)
     }
 
-    fn take(&mut self, k: usize, sites: &[usize]) -> Result<()> {
-        let Taken { list, what, by } = self;
-        match sites.iter().find_map(|i| by[*i].replace(k).map(|first| (i, first))) {
-            None => Ok(()),
-            Some((i, first)) => {
-                Err(Error::invalid(format!("{list}[{k}]"), format!("site {i} {what} already, in {list}[{first}]")))
-            }
-        }
+    fn resolve(&self) -> Result<Lattice> {
+        Chain::resolve(self)
+    }
+
+    fn extent(&self) -> &'static str {
+        "sites"
     }
 }
 
@@ -225,11 +157,4 @@ fn lengths(edge: &Profile<Length>, count: usize) -> Result<Vec<f64>> {
     let values = edge.values(count, "site", |length, _| positive(length.0, "").map(|()| length.0))?;
     values.iter().try_for_each(|nm| positive(*nm, ""))?;
     Ok(values)
-}
-
-fn positive(nm: f64, place: &str) -> Result<()> {
-    match nm > 0.0 {
-        true => Ok(()),
-        false => Err(Error::invalid(place, format!("found {nm} nm, but a length is greater than 0"))),
-    }
 }

@@ -1,7 +1,5 @@
 //! Cells in a box.
 
-use std::cmp::Ordering;
-
 /// So many cells on in each direction.
 pub type Shift = [isize; 3];
 
@@ -22,7 +20,7 @@ impl Grid {
 
     /// Whether it is one row.
     pub fn is_row(&self) -> bool {
-        self.size[1..] == [1, 1]
+        self.size[1..] == [1, 1] && self.periodic[1..] == [false; 2]
     }
 
     /// Number of cells.
@@ -36,23 +34,15 @@ impl Grid {
         [i % x, i / x % y, i / x / y]
     }
 
-    /// Whether it is an odd number of steps from the first cell to cell i.
-    pub fn is_odd(&self, i: usize) -> bool {
-        self.cell(i).iter().sum::<usize>() % 2 == 1
+    /// The number of the cell in a place.
+    pub fn number(&self, [x, y, z]: [usize; 3]) -> usize {
+        x + self.size[0] * (y + self.size[1] * z)
     }
 
-    /// The cell a shift on from cell i, if there is one.
-    pub fn shifted(&self, i: usize, shift: Shift) -> Option<usize> {
-        let cell = self.cell(i);
+    /// The cell a shift on, if there is one.
+    pub fn shifted(&self, cell: [usize; 3], shift: Shift) -> Option<[usize; 3]> {
         let [x, y, z] = [0, 1, 2].map(|d| self.step(cell[d], shift[d], d));
-        Some(x? + self.size[0] * (y? + self.size[1] * z?))
-    }
-
-    /// The cell so many on from cell i along one direction, if there is one.
-    pub fn step_from(&self, i: usize, direction: usize, by: isize) -> Option<usize> {
-        let mut shift = [0; 3];
-        shift[direction] = by;
-        self.shifted(i, shift)
+        Some([x?, y?, z?])
     }
 
     /// So many cells on along one direction, if there is one.
@@ -64,10 +54,18 @@ impl Grid {
         }
     }
 
-    /// All shifts of at most `most` cells in each direction that stay in the box, of each and its opposite one.
-    pub(super) fn shifts(&self, most: usize) -> Vec<Shift> {
-        let [x, y, z] = self.size.map(|n| most.min(n - 1) as isize);
-        let all = (-z..=z).flat_map(|c| (-y..=y).flat_map(move |b| (-x..=x).map(move |a| [a, b, c])));
-        all.filter(|[a, b, c]| [c, b, a].cmp(&[&0, &0, &0]) == Ordering::Greater).collect()
+    /// Whether there is more than one place along a direction, the images over a periodic border counted.
+    pub fn extends(&self, direction: usize) -> bool {
+        self.size[direction] > 1 || self.periodic[direction]
+    }
+
+    /// Whether any cell has another one a shift on.
+    pub fn holds(&self, shift: Shift) -> bool {
+        (0..3).all(|d| self.periodic[d] || shift[d].unsigned_abs() < self.size[d])
+    }
+
+    /// Whether a cell is its own partner a shift on.
+    pub fn closes(&self, shift: Shift) -> bool {
+        (0..3).all(|d| shift[d] % self.size[d] as isize == 0 && (self.periodic[d] || shift[d] == 0))
     }
 }

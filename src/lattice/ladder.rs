@@ -1,13 +1,14 @@
 //! Two chains side by side, a lattice for tests alone: what is written for any lattice is compared with a dense computation on it.
 
-use super::{Grid, Lattice};
+use super::{Atom, Grid, Lattice};
 use crate::geometry::Direction;
 
 impl Lattice {
     /// A ladder of so many rungs, open or closed, as wide as its rungs are apart.
     pub fn ladder(rungs: usize, closed: bool) -> Lattice {
         let grid = Grid { size: [rungs, 2, 1], periodic: [closed, false, false] };
-        Lattice::bare(grid, [Direction::X, Direction::Y, Direction::Z].map(|along| (1.0, along)))
+        let steps = [Direction::X, Direction::Y, Direction::Z].map(|along| (1.0, along));
+        Lattice::of_atoms("ladder", grid, steps, vec![Atom { at: [0.0; 3], species: 0 }])
     }
 }
 

@@ -14,7 +14,7 @@ const SHORTER: f64 = 1e-9;
 impl Lattice {
     /// Where site i is, in spacings.
     pub fn place(&self, i: usize) -> Vector {
-        match self.grid.is_row() {
+        match self.is_row() {
             true => vector::scale(i as f64, self.direction().vector()),
             false => vector::scale(1.0 / self.spacing_nm.unwrap_or(1.0), self.position(i)),
         }
@@ -22,7 +22,7 @@ impl Lattice {
 
     /// Coordinates of all sites along a normal, +x if it is left out; in a chain then the sites' numbers.
     pub fn coordinates(&self, normal: Option<Direction>) -> Vec<f64> {
-        if normal.is_none() && self.grid.is_row() {
+        if normal.is_none() && self.is_row() {
             return (0..self.sites).map(|i| i as f64).collect();
         }
         let n = normal.unwrap_or(Direction::X).vector();
@@ -87,7 +87,7 @@ impl Lattice {
 
     /// A coordinate in spacings, of those of [`coordinates`](Self::coordinates).
     pub fn coordinate(&self, extent: Extent) -> Result<f64> {
-        let from_origin = matches!(extent, Extent::Length(_)) && self.grid.is_row();
+        let from_origin = matches!(extent, Extent::Length(_)) && self.is_row();
         Ok(self.spacings(extent)? - if from_origin { self.first() } else { 0.0 })
     }
 
@@ -95,9 +95,18 @@ impl Lattice {
     pub fn point(&self, place: &Place) -> Result<Vector> {
         let mut point = self.middle();
         for (c, extent) in place.0.iter().enumerate() {
-            point[c] = self.coordinate(*extent).map_err(|e| e.within(&format!("[{c}]")))?;
+            point[c] = self.coordinate_along(c, *extent).map_err(|e| e.within(&format!("[{c}]")))?;
         }
         Ok(point)
+    }
+
+    /// x, y or z of a place, in spacings; cells of a grid are counted by their own edges.
+    pub fn coordinate_along(&self, axis: usize, extent: Extent) -> Result<f64> {
+        let edge = match (extent, &self.sections_nm) {
+            (Extent::Spacings(_), Some(_)) if !self.is_row() => self.steps[axis].0 / self.steps[0].0,
+            _ => 1.0,
+        };
+        Ok(edge * self.coordinate(extent)?)
     }
 
     fn needed_spacing_nm(&self) -> Result<f64> {

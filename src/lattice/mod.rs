@@ -1,49 +1,90 @@
 //! Where the spins are: sites in cells of a box, the bonds between them, and what each site is.
 //!
 //! ```text
-//! i = x + n_x (y + n_y z)          cell (x, y, z) of n_x × n_y × n_z, one site each, the first direction fastest
+//! r = Σ_k (c_k + f_k) a_k          atom at f of cell c, the corner of cell (0, 0, 0) at the origin
+//! i = c₁ + n₁ (c₂ + n₂ (c₃ + n₃ s))          atom s of cell c of n₁ × n₂ × n₃: the first direction fastest, the atoms slowest
 //! ```
-//! So all bonds that lead so many cells on join i to i + a constant, but for those over a periodic border. One file a kind of
-//! lattice; a kind says its box, its steps and its sites, all the rest follows from these.
+//! So all bonds from one atom of a cell to one so many cells on join i to i + a constant, but for those over a periodic border; where
+//! sites are left out, to i + another constant from each row on. One file a kind of lattice; a kind says its vectors and its atoms,
+//! all the rest follows from these.
+//!
+//! Across a periodic border each image of a site is a neighbour of its own: where a direction is so short that two sites meet twice,
+//! their two bonds count both. A bond of a site with an image of itself is refused, and so is a shell that wraps onto itself in a
+//! ring.
 
 mod bonds;
 mod cells;
 mod chain;
 mod grid;
+mod kind;
 #[cfg(test)]
 mod ladder;
 mod measure;
 mod order;
+mod places;
 mod selection;
+mod shells;
 mod sites;
+mod slots;
 mod spec;
 mod symmetry;
 
+mod bcc;
+mod crystal;
+mod cubic;
+mod fcc;
+mod hcp;
+mod honeycomb;
+mod kagome;
+mod mesh;
+mod square;
+mod triangular;
+
+pub use bcc::Bcc;
 pub use bonds::{Bond, BondFamily, Segment, at};
 pub use chain::{Chain, MAX_SITES};
+pub use crystal::{BasisAtom, Crystal};
+pub use cubic::Cubic;
+pub use fcc::Fcc;
 pub use grid::{Grid, Shift};
+pub use hcp::Hcp;
+pub use honeycomb::Honeycomb;
+pub use kagome::Kagome;
 pub use measure::shortest;
+pub use mesh::Mesh;
 pub use selection::Selection;
-pub use sites::{Frozen, SiteMoment, SiteSection};
-pub use spec::LatticeSpec;
+pub use shells::Hop;
+pub use sites::{Frozen, Periodic, SiteMoment, SiteSection};
+pub use slots::Slots;
+pub use spec::{LatticeKind, LatticeSpec};
+pub use square::Square;
 pub use symmetry::Motion;
+pub use triangular::Triangular;
 
 use crate::error::Result;
-use crate::geometry::{Direction, Vector, vector};
+use crate::geometry::{Direction, Vector};
 use std::collections::BTreeMap;
 
 /// Sites, each of which has (or lacks) a spin. Made by [`LatticeSpec::resolve`], so that everything in it makes sense: lists over
 /// sites have one entry a site, indices are those of sites, lengths and volumes are greater than 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lattice {
+    /// The name of its kind.
+    pub kind: &'static str,
     /// Number of sites.
     pub sites: usize,
-    /// Their cells.
+    /// The cells.
     pub grid: Grid,
-    /// From a cell to the next, by direction: how far (nm, or spacings where no length is given) and where to. What stands for a
-    /// direction of one cell is of no account.
+    /// From a cell to the next, by direction: how far (nm, or lattice constants where no length is given) and where to. What stands
+    /// for a direction of one cell is of no account.
     pub steps: [(f64, Direction); 3],
-    /// Distance of neighbours along the first direction (nm), where it is given.
+    /// What is in a cell.
+    pub atoms: Vec<Atom>,
+    /// Which atoms of which cells there are.
+    pub slots: Slots,
+    /// Names of the species.
+    pub species: Vec<String>,
+    /// The lattice constant (nm): the distance of neighbouring cells along the first direction, where it is given.
     pub spacing_nm: Option<f64>,
     /// Width and thickness of every cell (nm), where the lattice has cells with a volume.
     pub sections_nm: Option<Vec<[f64; 2]>>,
@@ -57,6 +98,15 @@ pub struct Lattice {
     pub regions: BTreeMap<String, Vec<usize>>,
 }
 
+/// An atom of a cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Atom {
+    /// Where it is, in units of the vectors of the cell.
+    pub at: Vector,
+    /// Which of the species it is of; 0 where there are none.
+    pub species: usize,
+}
+
 /// Spins that never move.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrozenSites {
@@ -67,13 +117,22 @@ pub struct FrozenSites {
 }
 
 impl Lattice {
-    /// Sites in the cells of a grid, so far with nothing else to them.
+    /// One atom in each cell of a grid, so far with nothing else to it.
     pub fn bare(grid: Grid, steps: [(f64, Direction); 3]) -> Lattice {
-        let sites = grid.cells();
+        Lattice::of_atoms("chain", grid, steps, vec![Atom { at: [0.0; 3], species: 0 }])
+    }
+
+    /// The atoms of all cells of a grid, so far with nothing else to them.
+    pub fn of_atoms(kind: &'static str, grid: Grid, steps: [(f64, Direction); 3], atoms: Vec<Atom>) -> Lattice {
+        let sites = grid.cells() * atoms.len();
         Lattice {
+            kind,
             sites,
             grid,
             steps,
+            atoms,
+            slots: Slots::default(),
+            species: Vec::new(),
             spacing_nm: None,
             sections_nm: None,
             frozen: Vec::new(),
@@ -88,9 +147,14 @@ impl Lattice {
         self.steps[0].1
     }
 
+    /// Whether it is one row of cells with an atom each, none left out.
+    pub fn is_row(&self) -> bool {
+        self.grid.is_row() && self.atoms.len() == 1 && self.slots.are_all()
+    }
+
     /// Whether it is a closed row of sites.
     pub fn is_ring(&self) -> bool {
-        self.grid.is_row() && self.grid.periodic[0]
+        self.is_row() && self.grid.periodic[0]
     }
 
     /// Which sites never move.
@@ -112,27 +176,5 @@ impl Lattice {
             self.frozen.push(FrozenSites { sites, direction: Some(direction) });
         }
         self
-    }
-
-    /// Where a site is, and in which unit [`unit`](Self::unit): atoms begin at the origin, and so does the first cell of a
-    /// continuum, whose center is half a cell further on.
-    pub fn position(&self, i: usize) -> Vector {
-        let cell = self.grid.cell(i);
-        let along = |d: usize| {
-            let ((length, direction), cells) =
-                (self.steps[d], cell[d] as f64 + if d == 0 { self.first() } else { 0.0 });
-            vector::scale(length * cells, direction.vector())
-        };
-        (1..3).filter(|d| self.grid.size[*d] > 1).fold(along(0), |sum, d| vector::add(sum, along(d)))
-    }
-
-    /// The unit of positions.
-    pub fn unit(&self) -> &'static str {
-        self.spacing_nm.map_or("sites", |_| "nm")
-    }
-
-    /// Where the first site stands, in spacings from the origin.
-    pub fn first(&self) -> f64 {
-        if self.sections_nm.is_some() { 0.5 } else { 0.0 }
     }
 }

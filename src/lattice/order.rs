@@ -1,6 +1,6 @@
 //! In which order sites are eliminated: partners near each other, so that a matrix keeps a narrow band.
 
-use super::Lattice;
+use super::{BondFamily, Lattice};
 use crate::linalg::{Graph, Layout, Places, Symbolic};
 
 impl Lattice {
@@ -12,14 +12,13 @@ impl Lattice {
         (0..n).map(|i| if self.is_ring() { folded(i) } else { i }).collect()
     }
 
-    /// How a matrix is kept whose bonds reach over so many shells: a band where the lattice is a row, blocks of coupled sites in
-    /// any other.
-    pub fn layout(&self, shells: usize) -> Layout {
-        if self.grid.is_row() {
-            let span = if self.is_ring() { 2 * shells } else { shells };
+    /// How a matrix of the bonds of these families is kept: as a band where the lattice is a row, as blocks of coupled sites in any
+    /// other. Of a row they are those of all shells up to the furthest.
+    pub fn layout(&self, families: &[&BondFamily]) -> Layout {
+        if self.is_row() {
+            let span = if self.is_ring() { 2 * families.len() } else { families.len() };
             return Layout::Band { span, places: Places::new(self.places()) };
         }
-        let families = self.families(shells);
         let bonds = families.iter().flat_map(|family| family.bonds()).map(|[i, j]| (i, j));
         let positions: Vec<_> = (0..self.sites).map(|i| self.position(i)).collect();
         Layout::Sparse(Symbolic::of(Graph::new(self.sites, bonds), &positions).into())

@@ -1,30 +1,53 @@
-//! A lattice as written in a config.
+//! A lattice as written in a config: `{"chain": {…}}`. One file a kind.
 
-use super::Lattice;
-use super::chain::Chain;
+use super::{Bcc, Chain, Crystal, Cubic, Fcc, Hcp, Honeycomb, Kagome, Lattice, Mesh, Square, Triangular};
 use crate::error::Result;
-use schemars::JsonSchema;
-use serde::Deserialize;
+use crate::registry::family;
 
-/// `{"chain": {…}}`.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-#[schemars(rename = "Lattice")]
-pub enum LatticeSpec {
-    /// A row of equally spaced sites.
-    Chain(Chain),
+family! {
+    /// A lattice as written in a config.
+    LatticeSpec as LatticeKind {
+        Chain(Chain),
+        Square(Square),
+        Triangular(Triangular),
+        Honeycomb(Honeycomb),
+        Kagome(Kagome),
+        Cubic(Cubic),
+        Bcc(Bcc),
+        Fcc(Fcc),
+        Hcp(Hcp),
+        Crystal(Crystal),
+        Grid(Mesh),
+    }
+}
+
+/// A lattice's config that becomes a lattice.
+pub trait LatticeKind {
+    /// Number of sites, those included that a shape leaves out, if that can be.
+    fn checked_sites(&self) -> Result<usize>;
+
+    /// The lattice; an error, with its place, where something cannot be.
+    fn resolve(&self) -> Result<Lattice>;
+
+    /// The key that says how large it is.
+    fn extent(&self) -> &'static str {
+        "cells"
+    }
 }
 
 impl LatticeSpec {
-    /// Number of sites, if that can be.
+    /// Number of sites, those included that a shape leaves out, if that can be.
     pub fn sites(&self) -> Result<usize> {
-        let LatticeSpec::Chain(chain) = self;
-        chain.checked_sites().map_err(|e| e.within("chain"))
+        self.member().checked_sites().map_err(|e| e.within(self.name()))
     }
 
     /// The lattice; an error, with its place, where something cannot be.
     pub fn resolve(&self) -> Result<Lattice> {
-        let LatticeSpec::Chain(chain) = self;
-        chain.resolve().map_err(|e| e.within("chain"))
+        self.member().resolve().map_err(|e| e.within(self.name()))
+    }
+
+    /// Where a config says how large it is.
+    pub fn extent(&self) -> String {
+        format!("lattice.{}.{}", self.name(), self.member().extent())
     }
 }

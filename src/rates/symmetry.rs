@@ -69,7 +69,7 @@ fn places(group: &Group, m: &[f64], shortest: &[usize]) -> usize {
 
 /// After how many sites a ring's state repeats; nothing where a shift by one does not leave the energy as it is.
 pub(super) fn period(group: &Group, m: &[f64]) -> Option<usize> {
-    let steps = |o: &Operation| o.motion.by == [1, 0, 0] && o.moves_sites_alone();
+    let steps = |o: &Operation| o.motion.shifts_by() == Some([1, 0, 0]) && o.moves_sites_alone();
     let first = group.shifts().first().filter(|s| steps(&s.operation));
     first.map(|_| group.periods(&[m], &vec![1; group.shifts().len()], SAME)[0])
 }

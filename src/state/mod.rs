@@ -106,7 +106,7 @@ impl StateSpec {
         let member = self.member();
         let mut vectors = member.vectors(context)?;
         if member.staggered() {
-            for (_, v) in vectors.iter_mut().enumerate().filter(|(i, _)| context.lattice.grid.is_odd(*i)) {
+            for (_, v) in vectors.iter_mut().enumerate().filter(|(i, _)| context.lattice.is_odd(*i)) {
                 *v = vector::scale(-1.0, *v);
             }
         }

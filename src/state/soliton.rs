@@ -85,7 +85,7 @@ impl Soliton {
     fn curvature(&self, h: &Hamiltonian, through: Vector) -> Result<f64> {
         let turned = |angle: f64| -> Result<Spins> {
             let spin = self.spin(through, angle);
-            let reversed = |i: usize| self.staggered && h.lattice().grid.is_odd(i);
+            let reversed = |i: usize| self.staggered && h.lattice().is_odd(i);
             let all: Vec<Vector> =
                 (0..h.sites()).map(|i| if reversed(i) { vector::scale(-1.0, spin) } else { spin }).collect();
             Spins::from_vectors(&all)

@@ -1,6 +1,6 @@
 //! Marks of sites, which any operation leaves as they are: it takes a site's spin only from a site of the same mark.
 
-use crate::lattice::{Grid, Motion};
+use crate::lattice::{Lattice, Motion};
 
 /// One number a site, the same where sites may be alike.
 #[derive(Debug)]
@@ -30,12 +30,13 @@ impl Marks {
 
     /// Sites are told apart by the marks around them too, so many cells away on either side in each direction, twice as far each
     /// time: in the end by all that stands anywhere, but for mirror images.
-    pub fn look_around(&mut self, grid: &Grid) {
+    pub fn look_around(&mut self, lattice: &Lattice) {
         let mut far = 1isize;
-        while far < grid.size.into_iter().max().unwrap_or(0) as isize {
+        while far < lattice.grid.size.into_iter().max().unwrap_or(0) as isize {
             let known = self.0.clone();
-            let at =
-                |i: usize, d: usize, by: isize| grid.step_from(i, d, by).map_or(u64::MAX, |j| mix(known[j], d as u64));
+            let at = |i: usize, d: usize, by: isize| {
+                lattice.step_from(i, d, by).map_or(u64::MAX, |j| mix(known[j], d as u64))
+            };
             let beside = |i: usize, d: usize| at(i, d, far).wrapping_add(at(i, d, -far));
             self.tell(|i| (0..3).map(|d| beside(i, d)).fold(0, u64::wrapping_add));
             far *= 2;
@@ -43,8 +44,8 @@ impl Marks {
     }
 
     /// Whether an operation may move spins so.
-    pub fn allow(&self, motion: &Motion, grid: &Grid) -> bool {
-        (0..self.0.len()).all(|i| self.0[motion.of(grid, i)] == self.0[i])
+    pub fn allow(&self, motion: &Motion, lattice: &Lattice) -> bool {
+        (0..self.0.len()).all(|i| motion.of(lattice, i).is_some_and(|to| self.0[to] == self.0[i]))
     }
 
     /// The sites of the mark that the fewest have, ascending.

@@ -3,7 +3,7 @@
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::matrix::{UNIT, apart, determinant, opposite, product, times};
 use crate::geometry::{Direction, Matrix, Vector, vector};
-use crate::lattice::{Grid, Motion};
+use crate::lattice::{Lattice, Motion};
 use std::fmt;
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ pub struct Operation {
     pub motion: Motion,
     /// R: a rotation, or, with determinant −1, one together with m → −m.
     pub spin: Matrix,
-    pub(super) grid: Grid,
+    pub(super) lattice: Arc<Lattice>,
     pub(super) held: Arc<[bool]>,
 }
 
@@ -35,7 +35,8 @@ impl Operation {
     /// p(i).
     #[inline]
     pub fn source(&self, i: usize) -> usize {
-        self.motion.of(&self.grid, i)
+        // what leaves the lattice is no operation
+        self.motion.of(&self.lattice, i).unwrap_or(i)
     }
 
     /// m'_i of component-major spins (3N numbers).
@@ -63,7 +64,7 @@ impl Operation {
     /// What first `first` and then this one does.
     pub fn after(&self, first: &Operation) -> Operation {
         Operation {
-            motion: first.motion.after(&self.motion, &self.grid),
+            motion: first.motion.after(&self.motion, &self.lattice),
             spin: product(&self.spin, &first.spin),
             ..self.clone()
         }
@@ -76,28 +77,28 @@ impl fmt::Display for Operation {
         match (self.motion.is_none(), self.moves_sites_alone()) {
             (true, true) => f.write_str("nothing moved"),
             (true, false) => f.write_str(&of_spins(&self.spin)),
-            (false, true) => f.write_str(&of_sites(&self.motion, &self.grid)),
-            _ => write!(f, "{} with {}", of_sites(&self.motion, &self.grid), of_spins(&self.spin)),
+            (false, true) => f.write_str(&of_sites(&self.motion, &self.lattice)),
+            _ => write!(f, "{} with {}", of_sites(&self.motion, &self.lattice), of_spins(&self.spin)),
         }
     }
 }
 
-fn of_sites(motion: &Motion, grid: &Grid) -> String {
-    let along = |list: [bool; 3]| (0..3).filter(|d| list[*d]).collect::<Vec<_>>();
-    let mirrored = match (motion.reversed, grid.is_row()) {
-        ([false, false, false], _) => None,
-        (_, true) => Some("mirrored chain".to_string()),
-        (list, _) => Some(format!("lattice mirrored along {:?}", along(list))),
-    };
-    let by: Vec<usize> = (0..3).map(|d| (motion.by[d] + usize::from(motion.reversed[d])) % grid.size[d]).collect();
-    let shifted = match (by.iter().all(|n| *n == 0), grid.is_row()) {
+fn of_sites(motion: &Motion, lattice: &Lattice) -> String {
+    let turn = motion.turn(lattice);
+    let turned = match (apart(&turn, &UNIT) < SAME, lattice.is_row()) {
         (true, _) => None,
-        (_, true) => {
-            Some(format!("shifted by {}", if by[0] == 1 { "a site".into() } else { format!("{} sites", by[0]) }))
-        }
-        _ => Some(format!("shifted by {by:?} cells")),
+        (_, true) => Some("mirrored chain".to_string()),
+        _ => Some(format!("lattice {}", turned(&turn))),
     };
-    mirrored.into_iter().chain(shifted).collect::<Vec<_>>().join(", ")
+    let by = match (motion.shifts_by(), lattice.is_row()) {
+        (Some([0, 0, 0]), _) | (None, false) => None,
+        (Some(by), false) => Some(format!("shifted by {by:?} cells")),
+        (_, true) => Some(motion.beside_mirror(lattice)).filter(|n| *n > 0).map(|n| match n {
+            1 => "shifted by a site".into(),
+            n => format!("shifted by {n} sites"),
+        }),
+    };
+    turned.into_iter().chain(by).collect::<Vec<_>>().join(", ")
 }
 
 fn of_spins(r: &Matrix) -> String {
@@ -106,12 +107,17 @@ fn of_spins(r: &Matrix) -> String {
         let flipped: String = "xyz".chars().zip(0..3).filter(|(_, i)| r[*i][*i] < 0.0).map(|(name, _)| name).collect();
         return format!("m_{flipped} → −m_{flipped}");
     }
+    format!("m {}", turned(r))
+}
+
+fn turned(r: &Matrix) -> String {
     let proper = if determinant(r) > 0.0 { *r } else { opposite(r) };
     let (axis, degrees) = turn(&proper);
     match (determinant(r) > 0.0, degrees) {
-        (true, _) => format!("m turned by {degrees}° about {axis}"),
-        (false, 180) => format!("m mirrored along {axis}"),
-        _ => format!("m turned by {degrees}° about {axis} and reversed"),
+        (true, _) => format!("turned by {degrees}° about {axis}"),
+        (false, 180) => format!("mirrored along {axis}"),
+        (false, 0) => "inverted".into(),
+        _ => format!("turned by {degrees}° about {axis} and reversed"),
     }
 }
 

@@ -6,9 +6,9 @@ use super::operation::{Operation, SAME};
 use super::shift::Shift;
 use crate::energy::Hamiltonian;
 use crate::field::{Components, ComponentsMut};
-use crate::geometry::matrix::{UNIT, opposite, product, times};
+use crate::geometry::matrix::{UNIT, apart, opposite, product, times};
 use crate::geometry::{Matrix, Vector, vector};
-use crate::lattice::{Grid, Motion};
+use crate::lattice::{Lattice, Motion};
 use crate::linalg::slab;
 use crate::spins::Spins;
 use std::sync::Arc;
@@ -70,17 +70,18 @@ impl<'a> Search<'a> {
         self.axes
     }
 
-    fn grid(&self) -> &'a Grid {
-        &self.h.lattice().grid
+    fn lattice(&self) -> &'a Arc<Lattice> {
+        self.h.shared_lattice()
     }
 
-    fn operation(&self, motion: Motion, spin: Matrix) -> Operation {
-        Operation { motion, spin, grid: *self.grid(), held: self.held.clone() }
+    fn operation(&self, motion: &Motion, spin: Matrix) -> Operation {
+        Operation { motion: motion.clone(), spin, lattice: self.lattice().clone(), held: self.held.clone() }
     }
 
     /// The operations that move no site, the identity the first.
     pub fn turns_of_spins(&mut self) -> Vec<Operation> {
-        let all = self.turns.iter().map(|r| self.operation(Motion::default(), *r));
+        let none = Motion::none(self.lattice());
+        let all = self.turns.iter().map(|r| self.operation(&none, *r));
         let found: Vec<Operation> =
             all.enumerate().filter(|(k, o)| *k == 0 || self.is_symmetry(o)).map(|(_, o)| o).collect();
         let mut classes: Vec<Matrix> = Vec::new();
@@ -96,12 +97,15 @@ impl<'a> Search<'a> {
 
     /// The shortest shift along each periodic direction: of its subgroups of a cycle of n sites each has one that divides n.
     pub fn shifts(&mut self) -> Vec<Shift> {
-        let grid = *self.grid();
+        let lattice = self.lattice();
+        let grid = lattice.grid;
         let along = |search: &mut Search, d: usize| {
             let n = grid.size[d];
             let mut parts = (1..n).filter(|k| n.is_multiple_of(*k));
             parts.find_map(|k| {
-                search.with_motion(Motion::shift(d, k)).map(|operation| Shift { operation, order: n / k })
+                let mut by = [0; 3];
+                by[d] = k as isize;
+                search.with_motion(&Motion::shift(lattice, by)).map(|operation| Shift { operation, order: n / k })
             })
         };
         (0..3).filter(|d| grid.periodic[*d]).filter_map(|d| along(self, d)).collect()
@@ -109,48 +113,45 @@ impl<'a> Search<'a> {
 
     /// One operation of each class of those that move sites, of classes that differ by more than shifts and what moves none.
     pub fn motions(&mut self, shifts: &[Shift]) -> Vec<Operation> {
-        let grid = *self.grid();
+        let lattice = self.lattice();
+        let grid = lattice.grid;
         let mut free = [0, 1, 2].map(|d| if grid.periodic[d] { grid.size[d] } else { 1 });
-        for shift in shifts {
-            (0..3).filter(|d| shift.operation.motion.by[*d] > 0).for_each(|d| free[d] = shift.operation.motion.by[d]);
+        for by in shifts.iter().filter_map(|shift| shift.operation.motion.shifts_by()) {
+            (0..3).filter(|d| by[*d] > 0).for_each(|d| free[d] = by[d] as usize);
         }
         if free.iter().any(|n| *n > 1) {
-            self.marks.look_around(&grid);
+            self.marks.look_around(lattice);
         }
-        let mut found = vec![self.operation(Motion::default(), UNIT)];
+        let none = Motion::none(lattice);
+        let mut found = vec![self.operation(&none, UNIT)];
         // shifts along several directions at once; along one, all are known
         if free.iter().filter(|n| **n > 1).count() > 1 {
-            let skew = self.placed([false; 3], free);
-            found.extend(skew.into_iter().filter_map(|motion| self.with_motion(motion)));
+            let skew = self.placed(&none, free);
+            found.extend(skew.iter().filter_map(|motion| self.with_motion(motion)));
         }
         let shifted = found.clone();
-        for pattern in 1..8 {
-            let reversed = [0, 1, 2].map(|d| pattern >> d & 1 == 1);
-            // a ring of two is its own mirror image, shifted
-            if (0..3).any(|d| reversed[d] && grid.size[d] < 2 + usize::from(grid.periodic[d])) {
-                continue;
-            }
-            let placed = self.placed(reversed, free);
-            if let Some(one) = placed.into_iter().find_map(|motion| self.with_motion(motion)) {
+        for motion in lattice.motions() {
+            let placed = self.placed(&motion, free);
+            if let Some(one) = placed.iter().find_map(|motion| self.with_motion(motion)) {
                 found.extend(shifted.iter().map(|s| s.after(&one)));
             }
         }
         found
     }
 
-    /// The motions that reverse these directions and take a site of the rarest mark to one like it, but for shifts by `free`.
-    fn placed(&self, reversed: [bool; 3], free: [usize; 3]) -> Vec<Motion> {
-        let grid = self.grid();
-        let ends = Motion::mirror(grid, reversed);
-        let rarest = self.marks.rarest();
-        let from = grid.cell(ends.of(grid, rarest[0]));
+    /// The motions that do so and take a site of the rarest mark to one like it, but for shifts by `free`.
+    fn placed(&self, motion: &Motion, free: [usize; 3]) -> Vec<Motion> {
+        let (lattice, rarest) = (self.lattice(), self.marks.rarest());
+        let grid = &lattice.grid;
+        let (atom, Some(from)) = motion.place(lattice, rarest[0]) else { return Vec::new() };
         let mut list: Vec<Motion> = Vec::new();
-        for to in rarest.iter().map(|i| grid.cell(*i)) {
+        for (_, to) in rarest.iter().map(|i| lattice.cell(*i)).filter(|(own, _)| *own == atom) {
             let apart = [0, 1, 2].map(|d| (to[d] + grid.size[d] - from[d]) % grid.size[d]);
             if (0..3).any(|d| apart[d] > 0 && !grid.periodic[d]) {
                 continue;
             }
-            let motion = Motion { reversed: [false; 3], by: [0, 1, 2].map(|d| apart[d] % free[d]) }.after(&ends, grid);
+            let by = [0, 1, 2].map(|d| (apart[d] % free[d]) as isize);
+            let motion = Motion::shift(lattice, by).after(motion, lattice);
             if !motion.is_none() && !list.contains(&motion) {
                 list.push(motion);
             }
@@ -159,14 +160,28 @@ impl<'a> Search<'a> {
     }
 
     /// The first operation that moves sites so.
-    fn with_motion(&mut self, motion: Motion) -> Option<Operation> {
-        if !self.marks.allow(&motion, self.grid()) {
+    fn with_motion(&mut self, motion: &Motion) -> Option<Operation> {
+        if !self.marks.allow(motion, self.lattice()) {
             return None;
         }
-        let tried = self.trials.min(self.turns.len());
-        let found = self.turns[..tried].iter().map(|r| self.operation(motion, *r)).position(|o| self.is_symmetry(&o));
+        let turns: Vec<Matrix> = self.turned_alike(motion).into_iter().chain(self.turns.iter().copied()).collect();
+        let tried = self.trials.min(turns.len());
+        let found = turns[..tried].iter().map(|r| self.operation(motion, *r)).position(|o| self.is_symmetry(&o));
         self.trials -= found.map_or(tried, |k| k + 1);
-        found.map(|k| self.operation(motion, self.turns[k]))
+        found.map(|k| self.operation(motion, turns[k]))
+    }
+
+    /// The matrices that turn spins as the motion turns the lattice, or its film together with its normal, each with its
+    /// opposite; none in a row, whose own are all among those of the frames.
+    fn turned_alike(&self, motion: &Motion) -> Vec<Matrix> {
+        let lattice = self.lattice();
+        let turn = motion.turn(lattice);
+        if lattice.is_row() || apart(&turn, &UNIT) < SAME {
+            return Vec::new();
+        }
+        let flat = (0..3).find(|d| !lattice.grid.extends(*d));
+        let other = flat.map(|d| product(&turn, &lattice.mirrored(d)));
+        std::iter::once(turn).chain(other).flat_map(|r| [r, opposite(&r)]).collect()
     }
 
     /// f(m')_i = R f(m)_p(i) on a random state, E(m') = E(m) on another.

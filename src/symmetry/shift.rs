@@ -19,8 +19,7 @@ impl Shift {
     /// So many times, less than its order.
     pub fn times(&self, count: usize) -> Operation {
         let once = &self.operation;
-        let mut motion = once.motion;
-        motion.by = motion.by.map(|by| by * count);
+        let motion = once.motion.times(count, &once.lattice);
         let spin = (0..count % ORDER).fold(UNIT, |r, _| product(&r, &once.spin));
         Operation { motion, spin, ..once.clone() }
     }

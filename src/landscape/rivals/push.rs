@@ -3,7 +3,7 @@
 use super::{Cut, Rival};
 use crate::field::Components;
 use crate::geometry::{Direction, Vector, vector};
-use crate::lattice::Grid;
+use crate::lattice::Lattice;
 use crate::sphere::rotate_sites;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -31,7 +31,7 @@ impl Rival for Push {
         let h = cut.land.evaluator();
         let mut m = cut.land.minima()[minimum].spins.as_slice().to_vec();
         let free = |sites: Vec<usize>| -> Vec<usize> { sites.into_iter().filter(|i| !h.is_frozen(*i)).collect() };
-        let mut draws = (0..DRAWS).map(|_| free(block(&h.lattice().grid, random)));
+        let mut draws = (0..DRAWS).map(|_| free(block(h.lattice(), random)));
         let sites = draws.find(|sites| !sites.is_empty())?;
         let spins = Components::new(&m);
         let mean = sites.iter().fold([0.0; 3], |sum, i| vector::add(sum, spins.get(*i)));
@@ -62,9 +62,9 @@ impl Push {
 
 /// A site, or a block of sites that is up to half as long as the lattice in each direction, short ones as often as long ones on a
 /// scale of logarithms.
-fn block(grid: &Grid, random: &mut ChaCha8Rng) -> Vec<usize> {
+fn block(lattice: &Lattice, random: &mut ChaCha8Rng) -> Vec<usize> {
     let one = random.random_bool(ONE_SITE);
-    let centre = random.random_range(0..grid.cells());
+    let (grid, centre) = (&lattice.grid, random.random_range(0..lattice.sites));
     let mut length = |d: usize| {
         let most = (grid.size[d] / 2).max(1) as f64;
         if one { 1 } else { libm::exp(random.random_range(0.0..1.0) * libm::log(most + 1.0)) as isize }
@@ -72,7 +72,10 @@ fn block(grid: &Grid, random: &mut ChaCha8Rng) -> Vec<usize> {
     let [x, y, z] = [length(0), length(1), length(2)];
     let around = |n: isize| -n / 2..n - n / 2;
     let shifts = around(z).flat_map(|c| around(y).flat_map(move |b| around(x).map(move |a| [a, b, c])));
-    shifts.filter_map(|shift| grid.shifted(centre, shift)).collect()
+    let (own, cell) = lattice.cell(centre);
+    let cells = shifts.filter_map(|shift| grid.shifted(cell, shift));
+    let atoms = if one { own..own + 1 } else { 0..lattice.atoms.len() };
+    cells.flat_map(|cell| atoms.clone().filter_map(move |atom| lattice.site(atom, cell))).collect()
 }
 
 /// A direction across another one.
@@ -87,28 +90,32 @@ fn across(along: Vector, random: &mut ChaCha8Rng) -> Option<Direction> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lattice::LatticeSpec;
     use rand::SeedableRng;
 
     #[test]
     fn blocks_are_sites_of_the_lattice_once_each_and_up_to_half_as_long() {
         let mut random = ChaCha8Rng::seed_from_u64(1);
-        for grid in [
-            Grid::row(1, false),
-            Grid::row(12, false),
-            Grid::row(12, true),
-            Grid { size: [4, 6, 1], periodic: [true, false, false] },
+        for text in [
+            r#"{"chain": {"sites": 1}}"#,
+            r#"{"chain": {"sites": 12}}"#,
+            r#"{"chain": {"sites": 12, "periodic": true}}"#,
+            r#"{"square": {"cells": [4, 6], "periodic": [true, false]}}"#,
+            r#"{"kagome": {"cells": [4, 2]}}"#,
         ] {
+            let lattice = serde_json::from_str::<LatticeSpec>(text).unwrap().resolve().unwrap();
             let mut sizes = std::collections::BTreeSet::new();
             for _ in 0..400 {
-                let mut sites = block(&grid, &mut random);
+                let mut sites = block(&lattice, &mut random);
                 sites.sort_unstable();
                 let count = sites.len();
                 sites.dedup();
-                assert!(sites.len() == count && count > 0 && sites.iter().all(|i| *i < grid.cells()), "{sites:?}");
+                assert!(sites.len() == count && count > 0 && sites.iter().all(|i| *i < lattice.sites), "{sites:?}");
                 sizes.insert(count);
             }
-            let most: usize = grid.size.iter().map(|n| (n / 2).max(1)).product();
-            assert!(sizes.contains(&1) && sizes.last() == Some(&most), "{grid:?}: {sizes:?}");
+            let most: usize = lattice.grid.size.iter().map(|n| (n / 2).max(1)).product();
+            let most = most * lattice.atoms.len();
+            assert!(sizes.contains(&1) && sizes.last() == Some(&most), "{text}: {sizes:?}");
         }
     }
 }

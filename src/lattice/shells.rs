@@ -1,0 +1,147 @@
+//! Neighbours by distance.
+//!
+//! Shell 1 are the nearest partners, shell 2 the next nearest, and so on; where there are species, for each pair of these by itself.
+//! Distances are those of the unbounded lattice, along the directions of more than one cell: a shell is the same in a small box as in
+//! a large one. A bond leads up: to larger z, of the same z to larger y, of the same y to larger x; in a row ahead.
+
+use super::{Lattice, Shift};
+use crate::geometry::matrix::determinant;
+use crate::geometry::{Vector, vector};
+
+/// Distances of shells differ by more than this part.
+const SAME: f64 = 1e-9;
+/// The search for partners goes on so much further each time.
+const FURTHER: f64 = 1.5;
+
+/// The way from an atom of a cell to one so many cells on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Hop {
+    /// From this atom to that.
+    pub atoms: [usize; 2],
+    /// So many cells on.
+    pub shift: Shift,
+}
+
+impl Hop {
+    /// So many sites ahead in a row.
+    pub fn ahead(sites: usize) -> Hop {
+        Hop { atoms: [0; 2], shift: [sites as isize, 0, 0] }
+    }
+
+    /// The way back.
+    pub fn back(self) -> Hop {
+        Hop { atoms: [self.atoms[1], self.atoms[0]], shift: self.shift.map(|d| -d) }
+    }
+}
+
+impl Lattice {
+    /// From one end of a bond to the other, in the unit of positions.
+    pub fn along(&self, hop: Hop) -> Vector {
+        let [from, to] = hop.atoms.map(|a| self.atoms[a].at);
+        self.to([0, 1, 2].map(|d| hop.shift[d] as f64 + (to[d] - from[d])))
+    }
+
+    /// The squared length of a bond, in lattice constants.
+    pub fn squared_length(&self, hop: Hop) -> f64 {
+        if self.is_row() {
+            return (hop.shift[0] * hop.shift[0]) as f64;
+        }
+        let (r, a) = (self.along(hop), self.spacing_nm.unwrap_or(1.0));
+        vector::dot(r, r) / (a * a)
+    }
+
+    /// Whether a bond joins a site that a staggered state reverses with one that it does not.
+    pub fn joins_sublattices(&self, hop: Hop) -> bool {
+        match self.atoms.len() {
+            1 => hop.shift.iter().sum::<isize>() % 2 != 0,
+            _ => hop.atoms[0] % 2 != hop.atoms[1] % 2,
+        }
+    }
+
+    /// Whether a bond leads up.
+    pub fn leads_up(&self, hop: Hop) -> bool {
+        let r = self.along(hop);
+        let least = SAME * vector::norm(r);
+        r.iter().rev().find(|c| c.abs() > least).is_some_and(|c| *c > 0.0)
+    }
+
+    /// The hops of the shells 1 … `shells`, shell after shell: each bond one way.
+    pub fn shells(&self, shells: usize) -> Vec<(usize, Hop)> {
+        if self.is_row() {
+            return (1..=shells).map(|n| (n, Hop::ahead(n))).collect();
+        }
+        let longest = (0..3).filter(|d| self.grid.extends(*d)).map(|d| self.steps[d].0).fold(0.0, f64::max);
+        let mut radius = longest;
+        loop {
+            let (within, known) = (self.hops(radius), self.pairs());
+            let ranked = self.ranked(&within);
+            let all = |pair: &usize| ranked.iter().any(|(shell, hop)| *shell > shells && self.pair(*hop) == *pair);
+            if longest == 0.0 || shells == 0 || known.iter().all(all) {
+                return ranked.into_iter().filter(|(shell, _)| *shell <= shells).collect();
+            }
+            radius *= FURTHER;
+        }
+    }
+
+    /// All hops that lead up and are no longer than that, with their lengths, the shortest first.
+    fn hops(&self, radius: f64) -> Vec<(f64, Hop)> {
+        let most = self.cells_within(radius);
+        let range = |d: usize| -most[d]..=most[d];
+        let shifts = || range(2).flat_map(|c| range(1).flat_map(move |b| range(0).map(move |a| [a, b, c])));
+        let atoms = 0..self.atoms.len();
+        let pairs = atoms.clone().flat_map(|from| atoms.clone().map(move |to| [from, to]));
+        let all = pairs.flat_map(|atoms| shifts().map(move |shift| Hop { atoms, shift }));
+        let long = all.filter(|hop| self.leads_up(*hop)).map(|hop| (vector::norm(self.along(hop)), hop));
+        let mut found: Vec<(f64, Hop)> = long.filter(|(length, _)| *length <= radius * (1.0 + SAME)).collect();
+        found.sort_by(|(a, p), (b, q)| a.total_cmp(b).then(p.cmp(q)));
+        // the same length to rounding: in the order of the hops
+        let alike = found.chunk_by_mut(|a, b| b.0 - a.0 <= SAME * b.0);
+        alike.for_each(|shell| shell.sort_by_key(|(_, hop)| *hop));
+        found
+    }
+
+    /// How many cells away, along each direction, an atom within a radius is at most.
+    fn cells_within(&self, radius: f64) -> [isize; 3] {
+        let [a, b, c] = self.steps.map(|(length, along)| vector::scale(length, along.vector()));
+        let volume = determinant(&[a, b, c]).abs();
+        let faces = [vector::cross(b, c), vector::cross(c, a), vector::cross(a, b)].map(vector::norm);
+        let beside = |d: usize| {
+            let at = self.atoms.iter().map(|atom| atom.at[d]);
+            at.clone().fold(f64::MIN, f64::max) - at.fold(f64::MAX, f64::min)
+        };
+        let most = |d: usize| (radius * faces[d] / volume + beside(d)).ceil() as isize;
+        [0, 1, 2].map(|d| if self.grid.extends(d) { most(d) } else { 0 })
+    }
+
+    /// Hops with the numbers of their shells, by pairs of species.
+    fn ranked(&self, hops: &[(f64, Hop)]) -> Vec<(usize, Hop)> {
+        let mut last: Vec<(f64, usize)> = vec![(0.0, 0); self.species.len().max(1).pow(2)];
+        let mut ranked = Vec::with_capacity(hops.len());
+        for (length, hop) in hops {
+            let (before, shell) = &mut last[self.pair(*hop)];
+            if length - *before > SAME * length {
+                *shell += 1;
+            }
+            *before = *length;
+            ranked.push((*shell, *hop));
+        }
+        ranked.sort_by_key(|(shell, _)| *shell);
+        ranked
+    }
+
+    /// The pair of species that a hop joins, as a number.
+    fn pair(&self, hop: Hop) -> usize {
+        let [a, b] = hop.atoms.map(|atom| self.atoms[atom].species);
+        a.min(b) * self.species.len() + a.max(b)
+    }
+
+    /// The pairs of species that there are.
+    fn pairs(&self) -> Vec<usize> {
+        let atoms = 0..self.atoms.len();
+        let all = atoms.clone().flat_map(|a| atoms.clone().map(move |b| Hop { atoms: [a, b], shift: [0; 3] }));
+        let mut pairs: Vec<usize> = all.map(|hop| self.pair(hop)).collect();
+        pairs.sort_unstable();
+        pairs.dedup();
+        pairs
+    }
+}
