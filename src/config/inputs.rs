@@ -51,6 +51,13 @@ impl Inputs {
     }
 
     fn state(&mut self, state: &mut StateSpec, place: &str, pointer: &str, name: &str, folder: &Path) -> Result<()> {
+        if let StateSpec::Regions(regions) = state {
+            for (k, (region, state)) in regions.states.iter_mut().enumerate() {
+                let key = region.replace('~', "~0").replace('/', "~1");
+                let (place, pointer) = (format!("{place}.regions.{region}"), format!("{pointer}/regions/{key}"));
+                self.state(state, &place, &pointer, &format!("{name}_{k}"), folder)?;
+            }
+        }
         let StateSpec::File(file) = state else { return Ok(()) };
         let here = |e: Error| e.within(&format!("{place}.file"));
         let segment = file.segment;

@@ -3,18 +3,24 @@
 //! A number counts spacings; in a chain sites, of which the first stands at 0. All places here are in spacings too, whatever the
 //! spacing is.
 
-use super::Lattice;
+use super::{Chain, Lattice};
 use crate::error::{Error, Result};
 use crate::geometry::{Direction, Vector, vector};
+use crate::registry::Described;
 use crate::units::{Extent, Length, Place};
 
 /// A way over a border is shorter if it is so by more than this part.
 const SHORTER: f64 = 1e-9;
 
 impl Lattice {
+    /// Whether its places are the numbers of its sites: that of a chain.
+    pub fn counts_sites(&self) -> bool {
+        self.kind == Chain::NAME && self.is_row()
+    }
+
     /// Where site i is, in spacings.
     pub fn place(&self, i: usize) -> Vector {
-        match self.is_row() {
+        match self.counts_sites() {
             true => vector::scale(i as f64, self.direction().vector()),
             false => vector::scale(1.0 / self.spacing_nm.unwrap_or(1.0), self.position(i)),
         }
@@ -22,7 +28,7 @@ impl Lattice {
 
     /// Coordinates of all sites along a normal, +x if it is left out; in a chain then the sites' numbers.
     pub fn coordinates(&self, normal: Option<Direction>) -> Vec<f64> {
-        if normal.is_none() && self.is_row() {
+        if normal.is_none() && self.counts_sites() {
             return (0..self.sites).map(|i| i as f64).collect();
         }
         let n = normal.unwrap_or(Direction::X).vector();
@@ -34,7 +40,7 @@ impl Lattice {
         let length = self.spacing_nm.unwrap_or(1.0);
         let given = [0, 1, 2].map(|d| {
             let (step, along) = self.steps[d];
-            (self.grid.size[d] > 1).then(|| vector::scale(step / length, along.vector()))
+            self.grid.extends(d).then(|| vector::scale(step / length, along.vector()))
         });
         let mut made = given;
         for d in 0..3 {
@@ -87,7 +93,7 @@ impl Lattice {
 
     /// A coordinate in spacings, of those of [`coordinates`](Self::coordinates).
     pub fn coordinate(&self, extent: Extent) -> Result<f64> {
-        let from_origin = matches!(extent, Extent::Length(_)) && self.is_row();
+        let from_origin = matches!(extent, Extent::Length(_)) && self.counts_sites();
         Ok(self.spacings(extent)? - if from_origin { self.first() } else { 0.0 })
     }
 
@@ -103,7 +109,7 @@ impl Lattice {
     /// x, y or z of a place, in spacings; cells of a grid are counted by their own edges.
     pub fn coordinate_along(&self, axis: usize, extent: Extent) -> Result<f64> {
         let edge = match (extent, &self.sections_nm) {
-            (Extent::Spacings(_), Some(_)) if !self.is_row() => self.steps[axis].0 / self.steps[0].0,
+            (Extent::Spacings(_), Some(_)) if !self.counts_sites() => self.steps[axis].0 / self.steps[0].0,
             _ => 1.0,
         };
         Ok(edge * self.coordinate(extent)?)

@@ -160,7 +160,7 @@ pub(super) fn fractions(
     let last = coordinates.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     if fraction(first) > 1.0 - NO_TRACE || fraction(last) < NO_TRACE {
         let outside = match normal {
-            None if lattice.grid.is_row() => {
+            None if lattice.counts_sites() => {
                 format!("wholly outside the chain, whose sites are counted from 0 to {last},")
             }
             _ => format!("wholly outside the lattice, which reaches from {first:.4} to {last:.4} along the normal,"),

@@ -5,20 +5,28 @@
 mod domain_wall;
 mod file;
 mod random;
+mod regions;
 mod sense;
+mod size;
+mod skyrmion;
 mod soliton;
 mod spiral;
+mod texture;
 mod uniform;
 mod vectors;
+mod vortex;
 
 pub use domain_wall::DomainWall;
 pub use file::File;
 pub use random::Random;
+pub use regions::Regions;
 pub use sense::Sense;
+pub use skyrmion::Skyrmion;
 pub use soliton::Soliton;
 pub use spiral::Spiral;
 pub use uniform::Uniform;
 pub use vectors::Vectors;
+pub use vortex::Vortex;
 
 use crate::energy::Hamiltonian;
 use crate::error::Result;
@@ -33,10 +41,13 @@ family! {
         Uniform(Uniform),
         DomainWall(DomainWall),
         Soliton(Soliton),
+        Skyrmion(Skyrmion),
+        Vortex(Vortex),
         Spiral(Spiral),
         Random(Random),
         Vectors(Vectors),
         File(File),
+        Regions(Regions),
     }
 }
 
@@ -103,6 +114,17 @@ impl StateSpec {
 
     /// The spins in the context's sense.
     fn spins(&self, context: &StateContext) -> Result<Spins> {
+        let mut vectors = self.arranged(context)?;
+        for f in &context.lattice.frozen {
+            if let Some(direction) = f.direction {
+                f.sites.iter().for_each(|i| vectors[*i] = direction.vector());
+            }
+        }
+        Spins::from_vectors(&vectors)
+    }
+
+    /// One vector a site in the context's sense, staggered if wished, frozen or not.
+    fn arranged(&self, context: &StateContext) -> Result<Vec<Vector>> {
         let member = self.member();
         let mut vectors = member.vectors(context)?;
         if member.staggered() {
@@ -110,11 +132,6 @@ impl StateSpec {
                 *v = vector::scale(-1.0, *v);
             }
         }
-        for f in &context.lattice.frozen {
-            if let Some(direction) = f.direction {
-                f.sites.iter().for_each(|i| vectors[*i] = direction.vector());
-            }
-        }
-        Spins::from_vectors(&vectors)
+        Ok(vectors)
     }
 }

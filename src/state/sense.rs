@@ -45,20 +45,32 @@ impl Sense {
     }
 }
 
-/// Which of these states, each made when it is asked for, has the lowest energy; the first of those equal to rounding.
+/// Which of these states, each made when it is asked for, has the lowest energy; the first of those equal to rounding. One that
+/// cannot be made is none of them, unless none can.
 pub(super) fn cheapest(h: &Hamiltonian, count: usize, state: impl Fn(usize) -> Result<Spins>) -> Result<usize> {
     let mut first = Vec::new();
-    let mut above = Vec::new();
+    let mut above: Vec<(usize, f64)> = Vec::new();
+    let mut wrong = None;
     for k in 0..count {
-        let density = h.density(state(k)?.as_slice());
-        if k == 0 {
+        let density = match state(k) {
+            Ok(state) => h.density(state.as_slice()),
+            Err(e) => {
+                wrong = wrong.or(Some(e));
+                continue;
+            }
+        };
+        if above.is_empty() {
             first.clone_from(&density);
         }
-        above.push(slab::sum_of_differences(&density, &first));
+        above.push((k, slab::sum_of_differences(&density, &first)));
     }
     let rounding = ROUNDING * f64::EPSILON * h.sites() as f64 * h.stiffness_mev();
-    let lowest = above.iter().copied().fold(f64::INFINITY, f64::min);
-    Ok(above.iter().position(|e| *e <= lowest + rounding).unwrap_or(0))
+    let lowest = above.iter().map(|(_, e)| *e).fold(f64::INFINITY, f64::min);
+    match (above.into_iter().find(|(_, e)| *e <= lowest + rounding), wrong) {
+        (Some((k, _)), _) => Ok(k),
+        (None, Some(e)) => Err(e),
+        (None, None) => Ok(0),
+    }
 }
 
 /// Reads `"auto"`, which is nothing, or a direction.

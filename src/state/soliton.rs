@@ -127,7 +127,7 @@ impl StateBuilder for Soliton {
             return Vec::new();
         }
         let along = match self.normal {
-            None if context.lattice.grid.is_row() => context.lattice.direction(),
+            None if context.lattice.counts_sites() => context.lattice.direction(),
             normal => normal.unwrap_or(Direction::X),
         };
         let d = self.surroundings();

@@ -1,0 +1,136 @@
+//! Spins around a line: what skyrmions and vortices have in common.
+//!
+//! ```text
+//! m = cos θ(r) c + sin θ(r) (cos vφ t + sin vφ k × t)        (r, φ) polar coordinates about the line, along z
+//! ```
+//! c is the direction of the core, v the vorticity, k the direction along ±c that is not below the plane, and t, where the spins of
+//! φ = 0 point, is x turned about k by the helicity (x and y tilted with k, where k is not z).
+
+use super::StateContext;
+use super::sense::Sense;
+use crate::error::{Error, Result};
+use crate::geometry::{Direction, Quaternion, Vector, vector};
+use crate::lattice::shortest;
+use crate::units::{Angle, Place};
+use serde::de::{self, Deserialize, Deserializer, IntoDeserializer, Visitor};
+use std::fmt;
+
+/// A site stands on the line if it is no further away (spacings).
+const ON_THE_LINE: f64 = 1e-9;
+
+/// A texture but for θ(r).
+pub(super) struct Texture<'a> {
+    pub(super) center: Option<&'a Place>,
+    pub(super) core: Vector,
+    pub(super) helicity: Option<Angle>,
+    pub(super) vorticity: i32,
+}
+
+/// Where a site is: its distance from the line, and cos vφ and sin vφ.
+pub(super) struct Polar {
+    pub(super) r: f64,
+    turned: [f64; 2],
+}
+
+impl Texture<'_> {
+    /// Where all sites are.
+    pub(super) fn polar(&self, context: &StateContext) -> Result<Vec<Polar>> {
+        if self.vorticity == 0 {
+            return Err(Error::invalid("vorticity", "found 0, but spins turn at least once around: give 1 or -1"));
+        }
+        let lattice = context.lattice;
+        let center = match self.center {
+            Some(place) => lattice.point(place).map_err(|e| e.within("center"))?,
+            None => lattice.middle(),
+        };
+        let periods = lattice.periods();
+        let of = |i: usize| {
+            let [x, y, _] = shortest(vector::sub(lattice.place(i), center), &periods);
+            let r = (x * x + y * y).sqrt();
+            let phi = if r > ON_THE_LINE { libm::atan2(y, x) } else { 0.0 };
+            let (sin, cos) = libm::sincos(f64::from(self.vorticity) * phi);
+            Polar { r, turned: [cos, sin] }
+        };
+        Ok((0..lattice.sites).map(of).collect())
+    }
+
+    /// The axes x, y and k of the spins.
+    fn axes(&self) -> [Vector; 3] {
+        let [x, y, z] = self.core;
+        let below = [z, y, x].into_iter().find(|c| *c != 0.0).is_some_and(|c| c < 0.0);
+        let k = if below { vector::scale(-1.0, self.core) } else { self.core };
+        let tilt = Quaternion::from_rotation([0.0, 0.0, 1.0], k, Direction::Y);
+        [tilt.rotate([1.0, 0.0, 0.0]), tilt.rotate([0.0, 1.0, 0.0]), k]
+    }
+
+    /// The senses that are open to it: outwards, inwards, and both ways round; none where the helicity is given.
+    pub(super) fn senses(&self) -> Vec<Sense> {
+        let ([x, y, _], back) = (self.axes(), |v: Vector| vector::scale(-1.0, v));
+        let open = [x, back(x), y, back(y)].map(|through| Sense { from: self.core, through });
+        if self.helicity.is_some() { Vec::new() } else { open.into() }
+    }
+
+    /// Where the spins of φ = 0 point in the middle of their turn.
+    pub(super) fn through(&self, context: &StateContext, open: &[Sense]) -> Vector {
+        let [x, y, _] = self.axes();
+        match self.helicity {
+            Some(Angle(helicity)) => {
+                let (sin, cos) = libm::sincos(helicity);
+                vector::add(vector::scale(cos, x), vector::scale(sin, y))
+            }
+            None => context.sense_among(open).map_or(x, |sense| sense.through),
+        }
+    }
+
+    /// The spins, from θ(r) (rad).
+    pub(super) fn spins(&self, places: &[Polar], through: Vector, theta: impl Fn(f64) -> f64) -> Vec<Vector> {
+        let across = vector::cross(self.axes()[2], through);
+        let spin = |place: &Polar| {
+            let (sin, cos) = libm::sincos(theta(place.r));
+            let [c, s] = place.turned.map(|part| sin * part);
+            let turned = vector::add(vector::scale(c, through), vector::scale(s, across));
+            let m = vector::add(vector::scale(cos, self.core), turned);
+            vector::unit_or(m, self.core)
+        };
+        places.iter().map(spin).collect()
+    }
+}
+
+/// Reads `"auto"`, which is nothing, or an angle.
+pub(super) fn auto_or_angle<'de, D: Deserializer<'de>>(d: D) -> std::result::Result<Option<Angle>, D::Error> {
+    struct Seen;
+    impl Visitor<'_> for Seen {
+        type Value = Option<Angle>;
+        fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+            f.write_str("\"auto\" or an angle, such as \"90 deg\"")
+        }
+        fn visit_str<E: de::Error>(self, word: &str) -> std::result::Result<Self::Value, E> {
+            if word == "auto" { Ok(None) } else { Angle::deserialize(word.into_deserializer()).map(Some) }
+        }
+        fn visit_f64<E: de::Error>(self, x: f64) -> std::result::Result<Self::Value, E> {
+            Angle::deserialize(x.into_deserializer()).map(Some)
+        }
+        fn visit_i64<E: de::Error>(self, x: i64) -> std::result::Result<Self::Value, E> {
+            Angle::deserialize(x.into_deserializer()).map(Some)
+        }
+        fn visit_u64<E: de::Error>(self, x: u64) -> std::result::Result<Self::Value, E> {
+            Angle::deserialize(x.into_deserializer()).map(Some)
+        }
+        fn visit_unit<E: de::Error>(self) -> std::result::Result<Self::Value, E> {
+            Ok(None)
+        }
+    }
+    d.deserialize_any(Seen)
+}
+
+/// The schema of [`auto_or_angle`].
+pub(super) fn auto_or_angle_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+    use schemars::JsonSchema;
+    let angle = Angle::json_schema(generator);
+    schemars::json_schema!({"anyOf": [{"const": "auto"}, angle], "default": "auto"})
+}
+
+/// The vorticity where none is given.
+pub(super) fn once() -> i32 {
+    1
+}
