@@ -1,6 +1,6 @@
 //! What a path shows of its barrier.
 
-use super::candidate::Candidate;
+use super::first_path::FirstPath;
 use super::outcome::{Barrier, SaddlePoint};
 use super::relaxation::height;
 use super::{Problem, Verdict};
@@ -29,7 +29,7 @@ pub struct Judgement {
 impl Seen<'_> {
     /// Energy to climb, from the highest saddle or, where the path has an image above all of them, from that. The `doubts` are those
     /// about its saddles.
-    pub fn judge(&self, c: &Candidate, mut doubts: Vec<Doubt>) -> Judgement {
+    pub fn judge(&self, c: &FirstPath, mut doubts: Vec<Doubt>) -> Judgement {
         if self.is_flat() {
             // what no saddle search could find or prove there does not count against it
             let barrier = Some(Barrier { forward_mev: 0.0, backward_mev: 0.0 });
@@ -71,7 +71,7 @@ impl Seen<'_> {
             && (1..path.images()).all(level)
     }
 
-    fn is_of_higher_index(&self, c: &Candidate) -> bool {
+    fn is_of_higher_index(&self, c: &FirstPath) -> bool {
         self.problem.seeks_saddles()
             && c.found.as_ref().is_some_and(|f| f.refined.index > 1)
             && self.saddles.iter().all(|s| s.negative_modes != Some(1))

@@ -1,13 +1,11 @@
 //! From two states to a barrier: relax the ends, make a first path, relax the band, read off what it found.
 
-mod candidate;
-mod climb;
-mod connect;
 mod ends;
+mod escape;
 mod explore;
-mod join;
+mod first_path;
+mod first_paths;
 mod judge;
-mod lower;
 mod outcome;
 mod places;
 mod problem;
@@ -18,6 +16,7 @@ mod report;
 mod run;
 mod scales;
 mod search;
+mod settle;
 mod stop;
 mod stored;
 mod verdict;

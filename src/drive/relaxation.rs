@@ -1,22 +1,25 @@
 //! The loop that relaxes a band: evaluate, judge, move; it counts and says why it stopped.
 
 use super::outcome::HistoryRow;
-use super::{NebSettings, Observer, Scales, Stop};
+use super::{NebSettings, Observer, Scales, Silent, Stop};
 use crate::band::{Band, Laplacian, Sweep, align_rotations};
 use crate::energy::Evaluator;
 use crate::energy::Stored;
 use crate::error::Result;
 use crate::geometry::Vector;
-use crate::landscape::{are_counts, are_finite};
+use crate::landscape::{Bands, are_counts, are_finite};
 use crate::linalg::slab;
 use crate::optimise::{Follows, Optimiser, OptimiserSpec};
 use crate::path::Path;
 use crate::record::Fingerprint;
 use crate::sphere::rotation_of;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// |F⊥|∞/c that is enough to double the images or to read off which path is lowest.
 pub const LOOSE: f64 = 5e-3;
+/// Methods that follow forces take so many times as many evaluations as the sweep.
+const SLOWER: usize = 20;
 /// A maximum climbs if it stands out by more than this part of the path's height.
 const PROMINENT: f64 = 1e-3;
 
@@ -45,6 +48,47 @@ pub struct Relaxation<'a> {
     pub history: Vec<HistoryRow>,
     /// Who watches.
     pub observer: &'a mut dyn Observer,
+}
+
+/// What relaxes bands that nobody watches.
+pub struct Tools<'a> {
+    /// Settings of the run.
+    pub settings: &'a NebSettings,
+    /// Scales of the problem.
+    pub scales: Scales,
+    /// Symmetry axes, for the rotation gauge.
+    pub axes: Vec<Vector>,
+    /// The preconditioner, for methods that follow no sweep.
+    pub laplacian: Option<Arc<Laplacian>>,
+}
+
+impl Tools<'_> {
+    fn relax(&self, band: &mut Band, goal: Goal, evaluations: usize) -> Result<()> {
+        let mut relaxation = Relaxation {
+            settings: self.settings,
+            climb: false,
+            scales: self.scales,
+            axes: &self.axes,
+            laplacian: self.laplacian.as_deref(),
+            history: Vec::new(),
+            observer: &mut Silent,
+        };
+        let more = match self.settings.optimiser.member().follows() {
+            Follows::Sweep => evaluations,
+            _ => SLOWER * evaluations,
+        };
+        relaxation.run(band, goal, more.min(self.settings.max_evaluations)).map(|_| ())
+    }
+}
+
+impl Bands for Tools<'_> {
+    fn loosely(&self, band: &mut Band, evaluations: usize) -> Result<()> {
+        self.relax(band, Goal::Loose, evaluations)
+    }
+
+    fn tightly(&self, band: &mut Band, evaluations: usize) -> Result<()> {
+        self.relax(band, Goal::Tight, evaluations)
+    }
 }
 
 /// Watches the predicted rotation: a sweep that runs in circles is damped, and what makes no progress ends.

@@ -1,6 +1,6 @@
 //! From a finished run to its outcome: tables, barrier, warnings.
 
-use super::candidate::Candidate;
+use super::first_path::FirstPath;
 use super::judge::{Judgement, Seen};
 use super::outcome::*;
 use super::places::{Place, in_order, nearest};
@@ -67,7 +67,7 @@ impl Prepared<'_> {
 /// The outcome of a path.
 pub fn outcome(
     run: Prepared,
-    c: Candidate,
+    c: FirstPath,
     found: &[Saddle],
     proof: Proof,
     search: SearchReport,

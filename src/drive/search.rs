@@ -5,20 +5,17 @@ use super::explore::turning_axis;
 use super::outcome::{RejectedPath, SearchReport};
 use super::relaxation::height;
 use super::report::Proof;
-use super::run::{Run, Settled};
+use super::run::Run;
+use super::settle::Settled;
 use crate::energy::Hamiltonian;
 use crate::error::Result;
 use crate::geometry::Vector;
 use crate::hessian::factorisation_flops;
-use crate::landscape::{Effort, Landscape, Minimum, Pass, Settings, search};
+use crate::landscape::{Effort, Landscape, Minimum, Settings, search};
 use crate::record::Count;
 use crate::spins::Spins;
 use crate::stationary::{Relaxed, relax_to_minimum};
-use crate::symmetry::Group;
 
-/// Images by symmetry of every minimum and pass, at most, and of how many spins.
-const IMAGES: usize = 64;
-const IMAGE_SPINS: usize = 2_000_000;
 /// Single states are evaluated until so many spins were, or so many times as often as for the first paths; and their Hessians until
 /// so many operations were spent on factorising them, or as many times as often.
 const SPINS: usize = 10_000_000;
@@ -38,39 +35,34 @@ impl<'a> Run<'a, '_> {
             return Ok(report);
         }
         self.observer.stage("looking for lower passes");
-        let h = self.problem.evaluator();
-        let most = self.allowance(best.candidate.band.images());
-        let a = self.ends[0].spins.as_slice();
-        let images = IMAGES.min(IMAGE_SPINS / h.sites());
-        let mut land = Landscape::new(h, a, Group::of(&h, a, &[]).operations().take(images).collect());
-        let ends = best.proof.ends.each_ref().map(|end| land.add_minimum(end));
+        let most = self.allowance(best.first.band.images());
+        let ends = self.minima;
         if ends[0] == ends[1] {
             return Ok(report);
         }
         let first_mev = best.seen_mev();
         let unproven = !best.proof.doubts.is_empty();
         // images may miss a saddle by as much as the path is high
-        let top_mev = if unproven { first_mev + height(&best.candidate.band) } else { first_mev };
-        for pass in std::mem::take(&mut self.met) {
-            land.add(pass);
-        }
+        let top_mev = if unproven { first_mev + height(&best.first.band) } else { first_mev };
+        self.land.unfold();
         if most.evaluations > 0 {
-            self.through_third_states(&mut land, ends, top_mev)?;
+            self.through_third_states(top_mev)?;
         }
         let settings = Settings { effort, most, top_mev, c: self.scales.stiffness_mev, context: self.context() };
-        let searched = search(&mut land, ends, &settings)?;
+        let searched = search(&mut self.land, ends, &settings)?;
         report.searches = searched.searches;
         report.quiet = searched.quiet;
         report.spent = searched.spent;
-        report.minima = land.minima().len();
-        report.saddles = land.edges().len();
-        let lower = |top_mev: f64| first_mev - top_mev > land.tolerance_mev(first_mev);
-        let Some(route) = land.route(ends[0], ends[1]).filter(|route| lower(route.top_mev) || unproven) else {
+        report.minima = self.land.minima().len();
+        report.saddles = self.land.edges().len();
+        let least = self.land.tolerance_mev(first_mev);
+        let lower = |top_mev: f64| first_mev - top_mev > least;
+        let Some(route) = self.land.route(ends[0], ends[1]).filter(|route| lower(route.top_mev) || unproven) else {
             return Ok(report);
         };
-        let proof = Proof { ends: best.proof.ends.clone(), links: land.passes_of(&route), doubts: Vec::new() };
-        let name = best.candidate.name.clone();
-        if self.join(&mut best.candidate, &proof)? {
+        let proof = Proof { ends: best.proof.ends.clone(), links: self.land.passes_of(&route), doubts: Vec::new() };
+        let name = best.first.name.clone();
+        if self.lead_over(&mut best.first, &proof)? {
             report.lowered_by_mev = if lower(route.top_mev) { first_mev - route.top_mev } else { 0.0 };
             let reason = match unproven {
                 true => "it could not be proven; a search found passes that could".to_string(),
@@ -103,28 +95,25 @@ impl<'a> Run<'a, '_> {
     }
 
     /// Ways through the domains that the ends consist of: out of the lattice and in again.
-    fn through_third_states(&mut self, land: &mut Landscape<'a>, [a, b]: [usize; 2], top_mev: f64) -> Result<()> {
+    fn through_third_states(&mut self, top_mev: f64) -> Result<()> {
         let h = self.problem.evaluator();
+        let [a, b] = self.minima;
         for domain in third_states(&h, self.ends.each_ref().map(|end| &end.spins)) {
-            let top = land.top_mev(a, b).map_or(top_mev, |lowest| lowest.min(top_mev));
-            if land.height_mev(domain.as_slice()) >= top {
+            let top = self.land.top_mev(a, b).map_or(top_mev, |lowest| lowest.min(top_mev));
+            if self.land.height_mev(domain.as_slice()) >= top {
                 continue;
             }
             let relaxed = relax_to_minimum(h, &domain, super::run::END_TOLERANCE * h.stiffness_mev())?;
             let third = Minimum::examine(h, &relaxed.spins);
-            if !third.is_proven() || land.height_mev(third.spins.as_slice()) >= top {
+            if !third.is_proven() || self.land.height_mev(third.spins.as_slice()) >= top {
                 continue;
             }
-            let third = land.add_minimum(&third);
-            for [from, to] in [[a, third], [third, b]] {
-                let parts = land.parts_below(top - land.tolerance_mev(top));
-                if parts[from] != parts[to] {
-                    let passes = self.passes_between([from, to].map(|k| &land.minima()[k]))?;
-                    for pass in passes {
-                        land.add(pass);
-                    }
-                    let parts = land.parts_below(top - land.tolerance_mev(top));
-                    if parts[from] != parts[to] {
+            let third = self.land.add_minimum(&third);
+            let below = top - self.land.tolerance_mev(top);
+            for pair in [[a, third], [third, b]] {
+                if !self.is_joined(pair, below) {
+                    self.connect_by_first_path(pair, below)?;
+                    if !self.is_joined(pair, below) {
                         break;
                     }
                 }
@@ -133,34 +122,47 @@ impl<'a> Run<'a, '_> {
         Ok(())
     }
 
-    /// The certified passes that the best natural first path between two minima meets.
-    fn passes_between(&self, minima: [&Minimum; 2]) -> Result<Vec<Pass>> {
-        let at_rest = |m: &Minimum| Relaxed {
-            spins: m.spins.clone(),
-            max_torque_mev: m.max_torque_mev,
-            steps: 0,
-            largest_rotation_rad: 0.0,
-            left: None,
-            converged: true,
-        };
+    fn is_joined(&self, [a, b]: [usize; 2], below_mev: f64) -> bool {
+        let parts = self.land.parts_below(below_mev);
+        parts[a] == parts[b]
+    }
+
+    /// A run of its own between two minima, over the best of their natural first paths; what it finds stays in the landscape.
+    fn connect_by_first_path(&mut self, minima: [usize; 2], below_mev: f64) -> Result<()> {
+        let h = self.problem.evaluator();
+        let land = std::mem::replace(&mut self.land, Landscape::new(h, self.ends[0].spins.as_slice()));
+        let ends = minima.map(|k| at_rest(&land.minima()[k]));
         let mut run = Run {
             problem: self.problem,
             observer: &mut Silent,
             started: self.started,
-            ends: minima.map(at_rest),
+            ends,
             scales: self.scales,
             axes: self.axes.clone(),
             laplacian: self.laplacian.clone(),
             axis: self.axis,
             warnings: Vec::new(),
-            lowest_top: f64::INFINITY,
-            met: Vec::new(),
-            silent: Silent,
+            land,
+            minima,
         };
         run.axis = turning_axis(run.problem, &run.ends[0].spins, &run.ends[1].spins, &run.context());
-        let best = run.natural()?.remove(0);
-        run.settle(best)?;
-        Ok(run.met)
+        if let Some(best) = run.natural()?.into_iter().next() {
+            run.settle(best, below_mev)?;
+        }
+        self.land = run.land;
+        Ok(())
+    }
+}
+
+/// A minimum as an end that need not be relaxed.
+fn at_rest(minimum: &Minimum) -> Relaxed {
+    Relaxed {
+        spins: minimum.spins.clone(),
+        max_torque_mev: minimum.max_torque_mev,
+        steps: 0,
+        largest_rotation_rad: 0.0,
+        left: None,
+        converged: true,
     }
 }
 

@@ -58,15 +58,11 @@ pub enum Doubt {
         /// Largest torque that is left on it.
         torque_mev: f64,
     },
-    /// More stretches between minima than are followed.
-    #[error("the path has more than {0} stretches between minima")]
-    Stretches(usize),
-    /// A stretch between two minima without a saddle.
-    #[error("a stretch of the path between two minima shows no saddle that could be refined")]
-    Gap,
-    /// A descent does not lead on.
-    #[error("a descent from a saddle leads back to where it came from")]
-    Return,
+    /// No route where so many pairs of minima were tried, or all that could be.
+    #[error(
+        "no route over proven saddles was found from the initial to the final state, {0} pairs of minima having been tried"
+    )]
+    NoRoute(usize),
 }
 
 impl Doubt {

@@ -4,10 +4,11 @@
 //! two descents reach. The images of both under the symmetry of lattice and energy are nodes and edges too, without a search. A
 //! pass with the same minimum on both sides is an edge that no route takes.
 
+use super::pairs::Pairs;
 use super::{Minimum, Pass, Saddle, is_same_state};
 use crate::energy::Evaluator;
 use crate::path::largest_angle;
-use crate::symmetry::Operation;
+use crate::symmetry::{Group, Operation};
 
 /// Minima and saddles with energies that differ by more than this part of the stiffness are not compared.
 const ENERGY: f64 = 1e-9;
@@ -17,6 +18,9 @@ const BESIDE: f64 = 0.05;
 /// Passes count as lower by more than this part of the height, and of the stiffness.
 const LOWER: f64 = 1e-7;
 const ROUNDING: f64 = 1e-10;
+/// Images by symmetry of every minimum and pass, at most, and of how many spins.
+const IMAGES: usize = 64;
+const IMAGE_SPINS: usize = 2_000_000;
 
 /// A pass, or an image of one.
 #[derive(Clone, Debug)]
@@ -49,25 +53,49 @@ pub struct Landscape<'a> {
     /// Energies are counted from that of this state (3N).
     reference: Vec<f64>,
     reference_mev: f64,
-    operations: Vec<Operation>,
+    /// None until they are wanted.
+    operations: Option<Vec<Operation>>,
     minima: Vec<Minimum>,
     heights_mev: Vec<f64>,
+    /// The minimum that stands for each: itself, or another one along a flat valley.
+    stands_for: Vec<usize>,
+    /// The minimum that each is an image of by symmetry.
+    orbits: Vec<usize>,
+    pub(super) pairs: Pairs,
     passes: Vec<Pass>,
     edges: Vec<Edge>,
 }
 
 impl<'a> Landscape<'a> {
-    /// Of an energy with these symmetries, so far with nothing in it; energies are counted from that of the state `reference`.
-    pub fn new(h: Evaluator<'a>, reference: &[f64], operations: Vec<Operation>) -> Landscape<'a> {
+    /// Of an energy, so far with nothing in it; energies are counted from that of the state `reference`.
+    pub fn new(h: Evaluator<'a>, reference: &[f64]) -> Landscape<'a> {
         Landscape {
             h,
             reference: reference.to_vec(),
             reference_mev: h.hamiltonian().energy_mev(reference) - h.reference_mev(),
-            operations,
+            operations: None,
             minima: Vec::new(),
             heights_mev: Vec::new(),
+            stands_for: Vec::new(),
+            orbits: Vec::new(),
+            pairs: Pairs::default(),
             passes: Vec::new(),
             edges: Vec::new(),
+        }
+    }
+
+    /// Finds the symmetries of the energy. From now on, and for all that is in it already, images are put in too.
+    pub fn unfold(&mut self) {
+        if self.operations.is_some() {
+            return;
+        }
+        let images = IMAGES.min(IMAGE_SPINS / self.h.sites());
+        self.operations = Some(Group::of(&self.h, &self.reference, &[]).operations().take(images).collect());
+        for k in 0..self.minima.len() {
+            self.unfold_minimum(k);
+        }
+        for k in 0..self.passes.len() {
+            self.unfold_pass(k);
         }
     }
 
@@ -116,27 +144,53 @@ impl<'a> Landscape<'a> {
     /// The minimum that this one is, which is put in with its images if it is new.
     pub fn add_minimum(&mut self, minimum: &Minimum) -> usize {
         let known = self.minima.len();
-        let place = self.place(minimum);
-        if place == known {
-            for k in 0..self.operations.len() {
-                self.place(&minimum.image(&self.operations[k]));
-            }
+        let place = self.place(minimum, None);
+        if self.minima.len() > known {
+            self.unfold_minimum(place);
         }
         place
     }
 
-    /// The node of a minimum, a new one if there is none yet.
-    fn place(&mut self, minimum: &Minimum) -> usize {
+    fn unfold_minimum(&mut self, k: usize) {
+        for by in 0..self.operations.as_ref().map_or(0, Vec::len) {
+            self.place(&self.minima[k].image(&self.operations_known()[by]), Some(k));
+        }
+    }
+
+    /// The node of a minimum, a new one if there is none yet; `of`: the one that it is an image of.
+    fn place(&mut self, minimum: &Minimum, of: Option<usize>) -> usize {
         let height = self.height_mev(minimum.spins.as_slice());
         let near = ENERGY * self.h.stiffness_mev();
         let alike =
             |k: &usize| (self.heights_mev[*k] - height).abs() < near && self.minima[*k].is_same(self.h, minimum);
         if let Some(known) = (0..self.minima.len()).find(alike) {
-            return known;
+            return self.stands_for[known];
         }
         self.minima.push(minimum.clone());
         self.heights_mev.push(height);
-        self.minima.len() - 1
+        let new = self.minima.len() - 1;
+        self.stands_for.push(new);
+        self.orbits.push(of.map_or(new, |k| self.orbits[k]));
+        new
+    }
+
+    /// Lets two minima be one: the valley between them is flat.
+    pub fn merge(&mut self, [a, b]: [usize; 2]) {
+        let ([a, b], all) = ([a.min(b), a.max(b)], &mut self.stands_for);
+        all.iter_mut().filter(|k| **k == b).for_each(|k| *k = a);
+        for end in self.edges.iter_mut().flat_map(|edge| &mut edge.ends) {
+            *end = all[*end];
+        }
+    }
+
+    /// The minimum that one is an image of by symmetry: itself if it was there first.
+    pub fn orbit(&self, k: usize) -> usize {
+        self.orbits[k]
+    }
+
+    /// The minimum that stands for one of the minima.
+    pub fn standing_for(&self, k: usize) -> usize {
+        self.stands_for[k]
     }
 
     /// Puts a certified pass in, with its minima and all its images; false if its saddle is known.
@@ -148,16 +202,28 @@ impl<'a> Landscape<'a> {
         let height_mev = self.height_mev(pass.saddle.spins());
         let number = self.passes.len();
         self.edges.push(Edge { ends, height_mev, pass: number, by: None, saddle: pass.saddle.spins().to_vec() });
-        for k in 0..self.operations.len() {
-            let saddle = self.operations[k].apply(pass.saddle.spins());
+        self.passes.push(pass);
+        self.unfold_pass(number);
+        true
+    }
+
+    fn unfold_pass(&mut self, number: usize) {
+        for by in 0..self.operations.as_ref().map_or(0, Vec::len) {
+            let (pass, operation) = (&self.passes[number], &self.operations_known()[by]);
+            let saddle = operation.apply(pass.saddle.spins());
+            let height_mev = self.height_mev(pass.saddle.spins());
             if self.knows_state(&saddle, height_mev) {
                 continue;
             }
-            let ends = [&pass.before, &pass.after].map(|minimum| self.place(&minimum.image(&self.operations[k])));
-            self.edges.push(Edge { ends, height_mev, pass: number, by: Some(k), saddle });
+            let images = [&pass.before, &pass.after].map(|minimum| minimum.image(operation));
+            let of = self.edges.iter().find(|e| e.pass == number && e.by.is_none()).map(|e| e.ends);
+            let ends = [0, 1].map(|k| self.place(&images[k], of.map(|of| of[k])));
+            self.edges.push(Edge { ends, height_mev, pass: number, by: Some(by), saddle });
         }
-        self.passes.push(pass);
-        true
+    }
+
+    fn operations_known(&self) -> &[Operation] {
+        self.operations.as_deref().unwrap_or_default()
     }
 
     /// Whether a saddle is as high as this.
@@ -177,31 +243,28 @@ impl<'a> Landscape<'a> {
 
     /// The route whose highest saddle is lowest; of several the one over the fewest passes.
     pub fn route(&self, from: usize, to: usize) -> Option<Route> {
-        let allowed = self.lowest_joining(from, to)?;
-        let top_mev = self.edges[*allowed.last()?].height_mev;
+        let [from, to] = [from, to].map(|k| self.standing_for(k));
+        let top_mev = self.top_mev(from, to)?;
+        // the energies of images of one pass differ by rounding
+        let most = top_mev + self.tolerance_mev(top_mev);
+        let allowed: Vec<usize> = (0..self.edges.len()).filter(|k| self.edges[*k].height_mev <= most).collect();
         Some(Route { steps: self.shortest(&allowed, from, to)?, top_mev })
     }
 
     /// Where the highest saddle of that route is (meV above the reference).
     pub fn top_mev(&self, from: usize, to: usize) -> Option<f64> {
-        self.lowest_joining(from, to)?.last().map(|k| self.edges[*k].height_mev)
-    }
-
-    /// The lowest edges, as few as join two minima, ascending.
-    fn lowest_joining(&self, from: usize, to: usize) -> Option<Vec<usize>> {
-        let mut order: Vec<usize> = (0..self.edges.len()).collect();
-        order.sort_by(|p, q| self.edges[*p].height_mev.total_cmp(&self.edges[*q].height_mev));
+        let [from, to] = [from, to].map(|k| self.standing_for(k));
+        let mut ascending: Vec<&Edge> = self.edges.iter().collect();
+        ascending.sort_by(|p, q| p.height_mev.total_cmp(&q.height_mev));
         let mut parts = Parts::of(self.minima.len());
-        let last = order.iter().position(|&k| {
-            let [a, b] = self.edges[k].ends;
-            parts.join(a, b);
+        let last = ascending.into_iter().find(|edge| {
+            parts.join(edge.ends[0], edge.ends[1]);
             parts.root(from) == parts.root(to)
         })?;
-        order.truncate(last + 1);
-        Some(order)
+        Some(last.height_mev)
     }
 
-    /// The way over the fewest of some edges; of several the one with the lowest sum of heights.
+    /// The way over the fewest of some edges; of several the one over the fewest images, of these with the lowest sum of heights.
     fn shortest(&self, allowed: &[usize], from: usize, to: usize) -> Option<Vec<(usize, bool)>> {
         let mut ways: Vec<Vec<(usize, bool)>> = vec![Vec::new(); self.minima.len()];
         for &k in allowed {
@@ -209,9 +272,10 @@ impl<'a> Landscape<'a> {
             ways[a].push((k, false));
             ways[b].push((k, true));
         }
-        // so many edges on the way to a minimum, the sum of their heights, and the last of them
-        let mut reached: Vec<Option<(f64, (usize, bool))>> = vec![None; self.minima.len()];
-        let mut front = vec![(from, 0.0)];
+        // so many images on the way to a minimum, the sum of all heights, and the last edge
+        type Cost = (usize, f64);
+        let mut reached: Vec<Option<(Cost, (usize, bool))>> = vec![None; self.minima.len()];
+        let mut front = vec![(from, (0, 0.0))];
         let mut seen = vec![false; self.minima.len()];
         seen[from] = true;
         while !seen[to] {
@@ -219,7 +283,8 @@ impl<'a> Landscape<'a> {
             for (here, sum) in front {
                 for &(edge, backward) in &ways[here] {
                     let there = self.edges[edge].ends[usize::from(!backward)];
-                    let sum = sum + self.edges[edge].height_mev;
+                    let Edge { height_mev, by, .. } = &self.edges[edge];
+                    let sum = (sum.0 + usize::from(by.is_some()), sum.1 + height_mev);
                     if !seen[there] && reached[there].is_none_or(|(least, _)| sum < least) {
                         next.push(there);
                         reached[there] = Some((sum, (edge, backward)));
@@ -251,7 +316,7 @@ impl<'a> Landscape<'a> {
         for edge in self.edges.iter().filter(|e| e.height_mev < height_mev) {
             parts.join(edge.ends[0], edge.ends[1]);
         }
-        (0..self.minima.len()).map(|k| parts.root(k)).collect()
+        (0..self.minima.len()).map(|k| parts.root(self.stands_for[k])).collect()
     }
 
     /// The passes of a route, each in the direction in which the route goes over it.
@@ -259,7 +324,7 @@ impl<'a> Landscape<'a> {
         let pass = |&(k, backward): &(usize, bool)| {
             let Edge { pass, by, .. } = &self.edges[k];
             let mut pass = match by {
-                Some(by) => self.passes[*pass].image(self.h, &self.operations[*by]),
+                Some(by) => self.passes[*pass].image(self.h, &self.operations_known()[*by]),
                 None => self.passes[*pass].clone(),
             };
             if backward {
@@ -301,7 +366,6 @@ mod tests {
     use crate::lattice::Chain;
     use crate::spins::Spins;
     use crate::stationary::Limits;
-    use crate::symmetry::Group;
 
     /// One spin with an easy axis z and a hard axis x: minima ±z, saddles ±y.
     fn spin() -> Hamiltonian {
@@ -325,8 +389,11 @@ mod tests {
     fn a_pass_brings_its_images_by_symmetry_and_joins_minima_without_another_search() {
         let h = spin();
         let up = Spins::from_vectors(&[[0.0, 0.0, 1.0]]).unwrap();
-        for (operations, saddles) in [(Vec::new(), 1), (Group::of(&h, up.as_slice(), &[]).operations().collect(), 2)] {
-            let mut land = Landscape::new((&h).into(), up.as_slice(), operations);
+        for (unfolded, saddles) in [(false, 1), (true, 2)] {
+            let mut land = Landscape::new((&h).into(), up.as_slice());
+            if unfolded {
+                land.unfold();
+            }
             let a = land.add_minimum(&Minimum::examine((&h).into(), &up));
             assert!(land.add(pass(&h)) && !land.add(pass(&h)));
             assert_eq!((land.minima().len(), land.edges().len()), (2, saddles));
@@ -345,9 +412,10 @@ mod tests {
     fn a_route_is_over_the_lowest_highest_pass_and_then_over_the_fewest() {
         let h = spin();
         let up = Spins::from_vectors(&[[0.0, 0.0, 1.0]]).unwrap();
-        let mut land = Landscape::new((&h).into(), up.as_slice(), Vec::new());
+        let mut land = Landscape::new((&h).into(), up.as_slice());
         let minimum = Minimum::examine((&h).into(), &up);
         land.minima = vec![minimum; 5];
+        (land.stands_for, land.orbits) = ((0..5).collect(), (0..5).collect());
         let edge = |a: usize, b: usize, height_mev: f64| Edge {
             ends: [a, b],
             height_mev,

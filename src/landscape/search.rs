@@ -85,9 +85,11 @@ pub struct Searched {
 /// Looks for passes below the top of the route between two minima.
 pub fn search(land: &mut Landscape, [from, to]: [usize; 2], settings: &Settings) -> Result<Searched> {
     let h = land.evaluator();
+    land.unfold();
     let mut done = Searched::default();
     let mut random = ChaCha8Rng::seed_from_u64(SEED);
     let mut rivals = rivals();
+    let mut turn = 0;
     let passes = land.edges().len();
     let mut lowest = f64::INFINITY;
     let before = h.evaluated();
@@ -107,11 +109,14 @@ pub fn search(land: &mut Landscape, [from, to]: [usize; 2], settings: &Settings)
         }
         let cut = Cut::of(land, [from, to], top_mev - land.tolerance_mev(top_mev), settings.context);
         let count = BATCH.min(wanted - done.quiet);
-        let mut next = |k: usize| {
-            let turn = (done.searches + k) % rivals.len();
-            rivals[turn].start(&cut, &mut random)
+        let mut next = || {
+            let count = rivals.len();
+            let mut by_turns = (turn..turn + count).map(|k| k % count);
+            let (by, start) = by_turns.find_map(|k| Some((k, rivals[k].start(&cut, &mut random)?)))?;
+            turn = by + 1;
+            Some(start)
         };
-        let starts: Vec<Vec<f64>> = (0..count).filter_map(&mut next).collect();
+        let starts: Vec<Vec<f64>> = (0..count).map_while(|_| next()).collect();
         if starts.is_empty() {
             break;
         }

@@ -2,6 +2,7 @@
 
 mod near;
 mod push;
+mod walls;
 
 use super::Landscape;
 use crate::path::guess::GuessContext;
@@ -10,7 +11,7 @@ use std::fmt::Debug;
 
 /// All rivals, in the order of their turns.
 pub(super) fn rivals() -> Vec<Box<dyn Rival>> {
-    vec![Box::<near::Near>::default(), Box::<push::Push>::default()]
+    vec![Box::<walls::Walls>::default(), Box::<near::Near>::default(), Box::<push::Push>::default()]
 }
 
 /// Names states from which climbs may lead to passes below the top.
@@ -37,7 +38,15 @@ pub struct Cut<'l> {
 impl<'l> Cut<'l> {
     /// At a height.
     pub fn of(land: &'l Landscape<'l>, ends: [usize; 2], top_mev: f64, context: GuessContext<'l>) -> Cut<'l> {
+        let ends = ends.map(|k| land.standing_for(k));
         Cut { land, ends, top_mev, part: land.parts_below(top_mev), context }
+    }
+
+    /// The highest saddle of the route (3N), if there is one.
+    pub fn highest_saddle(&self) -> Option<&'l [f64]> {
+        let route = self.land.route(self.ends[0], self.ends[1])?;
+        let edges = route.steps.iter().map(|(k, _)| &self.land.edges()[*k]);
+        edges.max_by(|p, q| p.height_mev.total_cmp(&q.height_mev)).map(|edge| &edge.saddle[..])
     }
 
     /// Whether a minimum is joined with one of the two ends below T.
@@ -47,6 +56,8 @@ impl<'l> Cut<'l> {
 
     /// The minima below T.
     pub fn below(&self) -> impl Iterator<Item = usize> {
-        (0..self.part.len()).filter(|k| self.land.heights_mev()[*k] < self.top_mev || self.ends.contains(k))
+        (0..self.part.len()).filter(|k| {
+            self.land.standing_for(*k) == *k && (self.land.heights_mev()[*k] < self.top_mev || self.ends.contains(k))
+        })
     }
 }

@@ -1,94 +1,56 @@
-//! A lower pass beside the highest saddle of a proven path: the same walls with other azimuths.
+//! The highest saddle of the route with one of its walls turned by half a turn.
 //!
 //! Where rotations about an axis cost nothing, two walls between domains along that axis feel each other's azimuth only through
 //! the tails that overlap in the domains, about as cos Δφ. So two saddles may join the same two minima, both of index one, that
 //! differ by half a turn of one wall about the axis: in one the walls' distance is what falls, in the other their azimuth. No soft
-//! mode leads from one to the other, so the half turn is tried, wall by wall.
+//! mode leads from one to the other.
 
-use crate::energy::Evaluator;
-use crate::energy::recorded;
-use crate::error::Result;
+use super::{Cut, Rival};
 use crate::field::Components;
 use crate::geometry::{Direction, Vector, vector};
-use crate::landscape::Pass;
-use crate::landscape::Peak;
-use crate::landscape::Saddle;
 use crate::sphere::rotate_sites;
-use crate::stationary::{Point, follow_modes};
+use rand_chacha::ChaCha8Rng;
 use std::f64::consts::PI;
 use std::ops::Range;
 
-/// How often a saddle is exchanged for a lower one.
-const ROUNDS: usize = 4;
-/// A saddle is lower if it is so by more than this part of c.
-const LOWER: f64 = 1e-6;
-/// Walls whose half turn costs less than this part of c, tails cut, are far enough apart to be turned.
-const APART: f64 = 0.1;
 /// A spin with this part of it along the axis is in a domain, with less it is in a wall.
 const DOMAIN: f64 = 0.7;
 /// More walls than these are not turned one by one.
 const MOST_WALLS: usize = 8;
 
-/// The links with their highest saddle exchanged for a lower one between the same two minima; none if there is none in sight.
-/// c is the stiffness scale (meV).
-pub fn lowered(h: Evaluator, links: &[Pass], c: f64) -> Result<Option<Vec<Pass>>> {
-    let mut better: Option<Vec<Pass>> = None;
-    for _ in 0..ROUNDS {
-        let now = better.as_deref().unwrap_or(links);
-        let height = |k: &usize| now[*k].saddle.refined.state.energy_mev;
-        let Some(k) = (0..now.len()).max_by(|i, j| height(i).total_cmp(&height(j))) else { break };
-        let Some(lower) = beside(h, &now[k], c)? else { break };
-        better.get_or_insert_with(|| links.to_vec())[k] = lower;
-    }
-    Ok(better)
+/// What is left to be tried of the saddle that was the highest last.
+#[derive(Debug, Default)]
+pub struct Walls {
+    saddle: Vec<f64>,
+    left: Vec<Vec<f64>>,
 }
 
-/// A lower saddle between the minima of a link, with one of its walls turned.
-fn beside(h: Evaluator, link: &Pass, c: f64) -> Result<Option<Pass>> {
-    let saddle = &link.saddle.refined.state;
-    for start in turned_walls(h, &saddle.m, APART * c) {
-        let found = recorded(h, "saddle beside", &[&start], || Ok(saddle_at(h, &start)))?;
-        let below = |f: &Saddle| saddle.above_mev(&f.refined.state) > LOWER * c;
-        let Some(found) = found.into_iter().next().filter(|f| f.is_saddle(c) && below(f)) else { continue };
-        let mut lower = Pass::recorded(h, found, c)?;
-        if lower.before.is_same(h, &link.after) && lower.after.is_same(h, &link.before) {
-            lower.reverse();
+impl Rival for Walls {
+    fn start(&mut self, cut: &Cut, _: &mut ChaCha8Rng) -> Option<Vec<f64>> {
+        let h = cut.land.evaluator();
+        if !h.lattice().grid.is_row() || h.symmetry_axes().is_empty() {
+            return None;
         }
-        let joins = lower.before.is_same(h, &link.before) && lower.after.is_same(h, &link.after);
-        if joins && lower.doubt(h).is_none() {
-            return Ok(Some(lower));
+        let highest = cut.highest_saddle()?;
+        if self.saddle != highest {
+            self.saddle = highest.to_vec();
+            self.left = turned_walls(highest, &h.symmetry_axes_at(highest), h.lattice().is_ring());
         }
+        self.left.pop()
     }
-    Ok(None)
 }
 
-/// The saddle near a state, if there is one.
-fn saddle_at(h: Evaluator, m: &[f64]) -> Vec<Saddle> {
-    let found = follow_modes(h, m).map(|refined| Saddle {
-        top: Peak {
-            m: m.to_vec(),
-            tau: refined.valley.clone(),
-            energy_mev: Point::at(h, m.to_vec()).energy_mev,
-            s: 0.0,
-            image: 0,
-        },
-        refined,
-    });
-    found.into_iter().collect()
-}
-
-/// The state with one wall turned by half a turn, for every wall for which that costs less than `most` (meV).
-fn turned_walls(h: Evaluator, m: &[f64], most: f64) -> Vec<Vec<f64>> {
+/// The state with one wall turned by half a turn, for every wall.
+fn turned_walls(m: &[f64], axes: &[Vector], periodic: bool) -> Vec<Vec<f64>> {
     let mut all = Vec::new();
-    for axis in h.symmetry_axes_at(m) {
-        let Ok(direction) = Direction::new(axis) else { continue };
-        let walls = walls(m, axis, h.lattice().is_ring());
+    for axis in axes {
+        let Ok(direction) = Direction::new(*axis) else { continue };
+        let walls = walls(m, *axis, periodic);
         if walls.len() < 2 || walls.len() > MOST_WALLS {
             continue;
         }
         // to turn all of them costs nothing, so the first may stay
-        let states = walls[1..].iter().map(|wall| turned(m, wall.clone(), direction, PI));
-        all.extend(states.filter(|state| h.difference_mev(state, m) < most));
+        all.extend(walls[1..].iter().map(|wall| turned(m, wall.clone(), direction, PI)));
     }
     all
 }

@@ -11,7 +11,7 @@ use crate::path::guess::GuessSpec;
 const ROUNDING: f64 = 1e-6;
 
 /// A first path on its way.
-pub struct Candidate<'a> {
+pub struct FirstPath<'a> {
     /// What it started from.
     pub name: String,
     /// Where it is.
@@ -28,10 +28,10 @@ pub struct Candidate<'a> {
     pub followed_mev: Option<f64>,
 }
 
-impl<'a> Candidate<'a> {
+impl<'a> FirstPath<'a> {
     /// A band that started from `name`, with nothing known of it yet.
-    pub fn new(name: String, band: Band<'a>, stop: Stop) -> Candidate<'a> {
-        Candidate { name, band, stop, history: Vec::new(), found: None, escapes: Vec::new(), followed_mev: None }
+    pub fn new(name: String, band: Band<'a>, stop: Stop) -> FirstPath<'a> {
+        FirstPath { name, band, stop, history: Vec::new(), found: None, escapes: Vec::new(), followed_mev: None }
     }
 
     /// Highest image above the first (meV).
@@ -61,7 +61,7 @@ impl<'a> Candidate<'a> {
 }
 
 /// Why a path was not the one.
-pub fn rejection(c: &Candidate, best: &Candidate, scale: f64) -> RejectedPath {
+pub fn rejection(c: &FirstPath, best: &FirstPath, scale: f64) -> RejectedPath {
     let found = c.stationary(scale);
     let barrier_mev = Some(c.followed_mev.unwrap_or(c.barrier_mev(scale)));
     let negative_modes = found.map(|f| f.refined.index);

@@ -4,16 +4,11 @@
 //! A band over many minima relaxes slowly, because its images have to share themselves among them. A stretch between a saddle
 //! and a minimum has neither on the way: it starts as the descent itself and is monotone.
 
-use super::relaxation::{Goal, Relaxation};
-use super::{Images, NebSettings, Scales, Silent};
-use crate::band::{Band, Laplacian};
-use crate::energy::Evaluator;
-use crate::energy::recorded;
+use super::connect::Bands;
+use super::{Pass, turned, turns};
+use crate::band::Band;
+use crate::energy::{Evaluator, recorded};
 use crate::error::Result;
-use crate::geometry::Vector;
-use crate::landscape::Pass;
-use crate::landscape::{turned, turns};
-use crate::optimise::Follows;
 use crate::path::{Path, largest_angle};
 use crate::sphere::SAME;
 use crate::spins::Spins;
@@ -21,40 +16,34 @@ use rayon::prelude::*;
 
 /// Intervals of a turn about the axis of symmetry.
 const TURN: usize = 16;
+/// Band evaluations of a stretch, at most.
+const EVALUATIONS: usize = 100;
 /// Rounds of making a stretch's images fewer radians apart.
 const ROUNDS: usize = 12;
 
 /// A path, and which of its images are stationary and stay where they are.
-pub struct Joined {
+pub struct Assembled {
     /// All images, both ends counted.
     pub path: Path,
     /// Saddles and minima between the ends, ascending.
     pub stops: Vec<usize>,
 }
 
-/// What the stretches are relaxed with.
-pub struct Tools<'a> {
-    pub settings: &'a NebSettings,
-    pub scales: Scales,
-    pub axes: &'a [Vector],
-    pub laplacian: Option<&'a Laplacian>,
-}
-
-/// The path from `a` to `b` over the links. None where they do not meet state for state (minima that are flat), or where there
-/// are fewer images than stretches.
-pub fn joined(
+/// The path from `a` to `b` over passes, with so many images, or as many as bring neighbours within `apart` (rad, any spin). None
+/// where the passes do not meet state for state (minima that are flat), or where there are fewer images than stretches.
+pub fn assemble(
     h: Evaluator,
-    links: &[Pass],
+    passes: &[Pass],
     [a, b]: [&Spins; 2],
-    images: Images,
+    images: Option<usize>,
     apart: f64,
-    tools: &Tools,
-) -> Result<Option<Joined>> {
-    let Some(raw) = stretches(h, links, a, b) else { return Ok(None) };
+    bands: &dyn Bands,
+) -> Result<Option<Assembled>> {
+    let Some(raw) = stretches(h, passes, a, b) else { return Ok(None) };
     let Some(counts) = counts(&raw, images, apart) else { return Ok(None) };
     let input: Vec<&[f64]> = raw.iter().map(Path::as_slice).collect();
     let pieces: Vec<Path> = recorded(h, "stretches", &input, || {
-        raw.par_iter().zip(&counts).map(|(piece, &n)| relaxed(h, piece.resampled(n), tools)).collect()
+        raw.par_iter().zip(&counts).map(|(piece, &n)| relaxed(h, piece.resampled(n), bands)).collect()
     })?;
     let mut row: Vec<Spins> = vec![a.clone()];
     let mut stops = Vec::new();
@@ -63,26 +52,26 @@ pub fn joined(
         stops.push(row.len() - 1);
     }
     stops.pop();
-    Ok(Some(Joined { path: Path::new(&row), stops }))
+    Ok(Some(Assembled { path: Path::new(&row), stops }))
 }
 
 /// The descents from the saddles, end to end from `a` to `b`: minimum to saddle, saddle to minimum, …
-fn stretches(h: Evaluator, links: &[Pass], a: &Spins, b: &Spins) -> Option<Vec<Path>> {
+fn stretches(h: Evaluator, passes: &[Pass], a: &Spins, b: &Spins) -> Option<Vec<Path>> {
     let mut pieces = Vec::new();
     let mut here = a.clone();
-    for (k, link) in links.iter().enumerate() {
-        let turn = turns(h, &link.before.spins, &here);
+    for (k, pass) in passes.iter().enumerate() {
+        let turn = turns(h, &pass.before.spins, &here);
         let turned = |s: &Spins| turned(s, &turn);
-        if largest_angle(turned(&link.before.spins).as_slice(), here.as_slice()) > SAME {
+        if largest_angle(turned(&pass.before.spins).as_slice(), here.as_slice()) > SAME {
             return None;
         }
-        let saddle = turned(&Spins::from_unit_components(&link.saddle.refined.state.m));
+        let saddle = turned(&Spins::from_unit_components(&pass.saddle.refined.state.m));
         let mut up = vec![here.clone()];
-        up.extend(link.ways[0].iter().rev().map(turned));
+        up.extend(pass.ways[0].iter().rev().map(turned));
         up.push(saddle.clone());
-        let mut there = turned(&link.after.spins);
+        let mut there = turned(&pass.after.spins);
         let mut rest = None;
-        if k + 1 == links.len() {
+        if k + 1 == passes.len() {
             if largest_angle(there.as_slice(), b.as_slice()) > SAME {
                 rest = Some(turned_to(h, &there, b)?);
             } else {
@@ -90,7 +79,7 @@ fn stretches(h: Evaluator, links: &[Pass], a: &Spins, b: &Spins) -> Option<Vec<P
             }
         }
         let mut down = vec![saddle];
-        down.extend(link.ways[1].iter().map(turned));
+        down.extend(pass.ways[1].iter().map(turned));
         down.push(there.clone());
         pieces.extend([Path::new(&up), Path::new(&down)]);
         pieces.extend(rest);
@@ -111,7 +100,7 @@ fn turned_to(h: Evaluator, from: &Spins, to: &Spins) -> Option<Path> {
 
 /// Images of each stretch, both ends counted: so many that neighbours are at most `apart` (rad, any spin), or so many that all
 /// together have the number asked for.
-fn counts(pieces: &[Path], images: Images, apart: f64) -> Option<Vec<usize>> {
+fn counts(pieces: &[Path], images: Option<usize>, apart: f64) -> Option<Vec<usize>> {
     let enough = |piece: &Path| {
         let mut n = 3;
         for _ in 0..ROUNDS {
@@ -124,8 +113,8 @@ fn counts(pieces: &[Path], images: Images, apart: f64) -> Option<Vec<usize>> {
         n
     };
     match images {
-        Images::Auto => Some(pieces.par_iter().map(enough).collect()),
-        Images::Count(n) => shared(&pieces.iter().map(Path::length).collect::<Vec<_>>(), n - 1)
+        None => Some(pieces.par_iter().map(enough).collect()),
+        Some(n) => shared(&pieces.iter().map(Path::length).collect::<Vec<_>>(), n - 1)
             .map(|intervals| intervals.into_iter().map(|i| i + 1).collect()),
     }
 }
@@ -144,26 +133,12 @@ fn shared(lengths: &[f64], total: usize) -> Option<Vec<usize>> {
 }
 
 /// A stretch between its two stationary ends, relaxed.
-fn relaxed(h: Evaluator, path: Path, tools: &Tools) -> Result<Path> {
+fn relaxed(h: Evaluator, path: Path, bands: &dyn Bands) -> Result<Path> {
     if path.images() < 3 {
         return Ok(path);
     }
-    let limit = match tools.settings.optimiser.member().follows() {
-        Follows::Sweep => 100,
-        _ => 2000,
-    };
-    let mut silent = Silent;
-    let mut relaxation = Relaxation {
-        settings: tools.settings,
-        climb: false,
-        scales: tools.scales,
-        axes: tools.axes,
-        laplacian: tools.laplacian,
-        history: Vec::new(),
-        observer: &mut silent,
-    };
     let mut band = Band::new(h, path);
-    relaxation.run(&mut band, Goal::Tight, limit.min(tools.settings.max_evaluations))?;
+    bands.tightly(&mut band, EVALUATIONS)?;
     Ok(band.into_path())
 }
 

@@ -1,0 +1,147 @@
+//! The natural first paths: each relaxed a little, the best followed to their saddles.
+
+use super::escape::escapes;
+use super::explore::natural_guesses;
+use super::first_path::{FirstPath, describe};
+use super::relaxation::{Goal, image_levels};
+use super::run::Run;
+use super::{Images, Stop};
+use crate::band::{Band, align_rotations};
+use crate::error::Result;
+use crate::landscape::{Peak, Saddle, ZOOMS, highest, zoomed};
+use crate::path::Path;
+use crate::path::guess::{GuessSpec, NoiseSpec, add_noise, moving_sites, smooth};
+
+/// Evaluations after which first paths are compared.
+const TRIAL: usize = 8;
+/// Neighbours of a band to start from are at most this far apart, any spin (rad).
+const COARSEST: f64 = 2.0;
+/// Rounds of leaving a saddle of higher index.
+const ESCAPES: usize = 3;
+
+impl<'a> Run<'a, '_> {
+    /// The first paths, the most promising first: the one that was asked for, or the natural ones.
+    pub(super) fn first_paths(&mut self) -> Result<Vec<FirstPath<'a>>> {
+        let Some(guess) = &self.problem.guess else { return self.natural() };
+        let name = describe(guess, false);
+        self.observer.stage(&format!("first path: {name}"));
+        let mut c = self.start(name, guess, self.problem.noise.as_ref(), self.problem.smooth, usize::MAX)?;
+        self.conclude(&mut c)?;
+        Ok(vec![c])
+    }
+
+    /// The natural first paths, the most promising first: a few evaluations each, the best two followed to their saddles.
+    pub(super) fn natural(&mut self) -> Result<Vec<FirstPath<'a>>> {
+        let mut tried = Vec::new();
+        let context = self.context();
+        let guesses = natural_guesses(self.problem, &self.ends[0].spins, &self.ends[1].spins, &context);
+        for (guess, noise) in &guesses {
+            let namesakes =
+                guesses.iter().filter(|(other, _)| describe(other, false) == describe(guess, false)).count();
+            let name = describe(guess, namesakes > 1);
+            self.observer.stage(&format!("first path: {name}"));
+            tried.push(self.start(name, guess, noise.as_ref(), None, TRIAL)?);
+        }
+        tried.sort_by(|p, q| p.top_mev().total_cmp(&q.top_mev()));
+        let scale = self.scales.stiffness_mev;
+        let (mut finished, mut lowest_barrier) = (0, f64::INFINITY);
+        for c in &mut tried {
+            let lowest = c.top_mev();
+            let worth = finished < 2 && self.problem.seeks_saddles();
+            if worth && !(finished == 1 && lowest > 1.2 * lowest_barrier) {
+                self.conclude(c)?;
+                finished += 1;
+                lowest_barrier = lowest_barrier.min(c.barrier_mev(scale));
+            }
+        }
+        tried.sort_by(|p, q| {
+            p.rank(scale).cmp(&q.rank(scale)).then(p.barrier_mev(scale).total_cmp(&q.barrier_mev(scale)))
+        });
+        Ok(tried)
+    }
+
+    /// Relaxes a path until its top is a refined saddle of index one, leaving saddles of higher index sideways.
+    pub(super) fn conclude(&mut self, c: &mut FirstPath<'a>) -> Result<()> {
+        let scale = self.scales.stiffness_mev;
+        for round in 0..ESCAPES {
+            if !c.stop.is_converged() {
+                self.relax(c, Goal::Loose, c.band.evaluations() + 24)?;
+            }
+            if !self.problem.seeks_saddles() {
+                break;
+            }
+            let h = c.band.evaluator();
+            c.found = match self.zoom(c)? {
+                Some(top) => Some(Saddle::recorded(h, top, scale, self.scales.half_site_rad())?),
+                None => None,
+            };
+            let Some(found) = c.found.as_ref() else { break };
+            if found.is_saddle(scale) || round + 1 == ESCAPES {
+                break;
+            }
+            let mut best: Option<Band<'a>> = None;
+            for path in escapes(&c.band, found, scale) {
+                let mut band = Band::continued(self.problem.evaluator(), path, c.band.evaluations());
+                align_rotations(band.path_mut(), &self.axes);
+                band.evaluate();
+                let top = |b: &Band| b.energies_mev()[b.highest()];
+                if best.as_ref().is_none_or(|b| top(&band) < top(b) - 1e-9 * scale) {
+                    best = Some(band);
+                }
+            }
+            let Some(band) = best else { break };
+            self.observer.stage(&format!("leaving a saddle of index {}", found.refined.index));
+            c.escapes.push((found.refined.state.energy_mev - c.band.energies_mev()[0], found.refined.index));
+            c.band = band;
+            c.stop = Stop::NotFinite;
+        }
+        Ok(())
+    }
+
+    /// The path's top. One inside the first or last interval is not resolved: the part of the path around it becomes finer.
+    fn zoom(&mut self, c: &mut FirstPath<'a>) -> Result<Option<Peak>> {
+        let mut top = highest(&c.band);
+        for _ in 0..ZOOMS {
+            let images = match self.problem.images {
+                Images::Count(n) => n,
+                Images::Auto => c.band.images() + 8,
+            };
+            let Some(path) = zoomed(&c.band, top.as_ref(), images) else { break };
+            c.band = Band::continued(self.problem.evaluator(), path, c.band.evaluations());
+            self.relax(c, Goal::Loose, c.band.evaluations() + 24)?;
+            top = highest(&c.band);
+        }
+        Ok(top)
+    }
+
+    /// A first path, relaxed from few images to as many as asked for (automatic: as few as resolve it).
+    fn start(
+        &mut self,
+        name: String,
+        guess: &GuessSpec,
+        noise: Option<&NoiseSpec>,
+        smoothing: Option<f64>,
+        limit: usize,
+    ) -> Result<FirstPath<'a>> {
+        let context = self.context();
+        let (a, b) = (&self.ends[0].spins, &self.ends[1].spins);
+        let make = |images: usize| -> Result<Path> {
+            let mut path = guess.member().path(a, b, images, &context)?;
+            if let Some(noise) = noise {
+                path = add_noise(&path, noise, context.states.lattice);
+            }
+            Ok(match smoothing {
+                Some(strength) => smooth(&path, strength),
+                None => path,
+            })
+        };
+        let coarsest = match self.problem.images {
+            Images::Auto => self.scales.images_between(self.problem.hamiltonian.sites(), moving_sites(a, b)) + 2,
+            Images::Count(n) => image_levels(n, |n| make(n).is_ok_and(|p| p.largest_rotation() <= COARSEST))[0],
+        };
+        let band = Band::new(self.problem.evaluator(), make(coarsest)?);
+        let mut c = FirstPath::new(name, band, Stop::NotFinite);
+        self.relax(&mut c, Goal::Loose, limit)?;
+        Ok(c)
+    }
+}

@@ -1,0 +1,299 @@
+//! A first path in full: as many images as it needs, its saddles, their passes, and a route over them.
+
+use super::Images;
+use super::first_path::FirstPath;
+use super::relaxation::{Goal, Tools, height, image_levels, refined};
+use super::report::Proof;
+use super::run::{FEWEST_IMAGES, Run};
+use crate::band::Band;
+use crate::error::Result;
+use crate::landscape::{Assembled, Connector, Doubt, Pass, PathEnd, Saddle, assemble, peaks, same};
+use crate::path::distance;
+
+/// Neighbouring images of an automatic path are at most this far apart, any spin (rad).
+const RESOLVED: f64 = 1.0;
+/// Most images of an automatic path.
+const MOST_IMAGES: usize = 2001;
+/// Evaluations of a band before its minima are looked at.
+const FIRST: usize = 60;
+/// Maxima within this part of the path's height of the highest are refined.
+const WINDOW: f64 = 0.1;
+
+/// A path with what is known of it.
+pub(super) struct Settled<'a> {
+    pub(super) first: FirstPath<'a>,
+    pub(super) found: Vec<Saddle>,
+    pub(super) proof: Proof,
+}
+
+impl Settled<'_> {
+    /// The highest that the path is known to pass above its first image (meV): an image or a saddle.
+    pub(super) fn seen_mev(&self) -> f64 {
+        let reference = self.first.band.energies_mev()[0];
+        let saddles = self.proof.links.iter().map(|l| l.saddle.refined.state.energy_mev - reference);
+        saddles.fold(self.first.top_mev(), f64::max)
+    }
+}
+
+/// What no image of a path over these saddles exceeds (meV above the first image): the highest of them or an end, and rounding.
+fn over(c: &FirstPath, links: &[Pass]) -> f64 {
+    let e = c.band.energies_mev();
+    let saddles = links.iter().map(|l| l.saddle.refined.state.energy_mev - e[0]);
+    saddles.fold((e[e.len() - 1] - e[0]).max(0.0), f64::max) + 1e-6 * height(&c.band)
+}
+
+impl<'a> Run<'a, '_> {
+    /// A path in full, led over a route below a height (meV above the initial state) if there is one.
+    pub(super) fn settle(&mut self, mut c: FirstPath<'a>, below_mev: f64) -> Result<Settled<'a>> {
+        let proves = self.problem.certify && self.problem.seeks_saddles();
+        if proves {
+            self.relax_resolved(&mut c, FIRST)?;
+            let found = self.all_saddles(&c)?;
+            let proof = self.prove(&c, &found, below_mev)?;
+            if self.needs_leading(&c, &found, &proof) && self.lead_over(&mut c, &proof)? {
+                return Ok(Settled { first: c, found, proof });
+            }
+            if c.stop.is_converged() && !self.is_coarse(&c) {
+                self.seat_saddles(&mut c, &found)?;
+                return Ok(Settled { first: c, found, proof });
+            }
+        }
+        self.relax_resolved(&mut c, usize::MAX)?;
+        let found = self.all_saddles(&c)?;
+        self.seat_saddles(&mut c, &found)?;
+        let proof = self.prove(&c, &found, below_mev)?;
+        if self.needs_leading(&c, &found, &proof) {
+            self.lead_over(&mut c, &proof)?;
+        }
+        Ok(Settled { first: c, found, proof })
+    }
+
+    /// Relaxes tightly with as many images as it takes, each time with at most `more` evaluations.
+    fn relax_resolved(&mut self, c: &mut FirstPath<'a>, more: usize) -> Result<()> {
+        loop {
+            let before = c.band.images();
+            self.resolve(c, more)?;
+            let images = c.band.images();
+            self.seat_top(c);
+            self.relax(c, Goal::Tight, c.band.evaluations().saturating_add(more))?;
+            let finer = self.is_coarse(c) && images > before && images < MOST_IMAGES;
+            if !finer || !c.stop.is_converged() || more < usize::MAX {
+                return Ok(());
+            }
+        }
+    }
+
+    /// Puts the refined top in the place of its image: then the rest of the path need not be relaxed around it once more.
+    fn seat_top(&self, c: &mut FirstPath<'a>) {
+        let scale = self.scales.stiffness_mev;
+        if self.problem.neb.climb
+            && let Some(top) = c.found.as_ref().filter(|f| f.is_saddle(scale))
+        {
+            seat(&mut c.band, std::slice::from_ref(top));
+        }
+    }
+
+    /// With its saddles as images.
+    fn seat_saddles(&mut self, c: &mut FirstPath<'a>, found: &[Saddle]) -> Result<()> {
+        if self.problem.neb.climb && seat(&mut c.band, found) {
+            self.relax(c, Goal::Tight, usize::MAX)?;
+        }
+        Ok(())
+    }
+
+    /// Whether an automatic path needs more images.
+    fn is_coarse(&self, c: &FirstPath<'a>) -> bool {
+        self.problem.images == Images::Auto && c.band.path().largest_rotation() > RESOLVED
+    }
+
+    /// Whether a path is better put together from the stretches of its route: it has minima between its ends, the band is not where
+    /// the saddles are, or the route leads elsewhere.
+    fn needs_leading(&self, c: &FirstPath<'a>, found: &[Saddle], proof: &Proof) -> bool {
+        let is_own = |pass: &Pass| found.iter().any(|f| same(f.spins(), pass.saddle.spins()));
+        self.is_coarse(c)
+            || !c.stop.is_converged()
+            || proof.links.len() > 1
+            || c.top_mev() > over(c, &proof.links)
+            || !proof.links.iter().all(is_own)
+    }
+
+    /// Puts the path together from stretch to stretch of its route, in the place of the band; says whether it took the place.
+    pub(super) fn lead_over(&mut self, c: &mut FirstPath<'a>, proof: &Proof) -> Result<bool> {
+        let h = self.problem.evaluator();
+        if !proof.doubts.is_empty() || !self.problem.relax_ends {
+            return Ok(false);
+        }
+        self.observer.stage("putting the path together");
+        let ends = [&self.ends[0].spins, &self.ends[1].spins];
+        let images = match self.problem.images {
+            Images::Auto => None,
+            Images::Count(n) => Some(n),
+        };
+        let assembled = assemble(h, &proof.links, ends, images, 0.9 * RESOLVED, &self.tools())?;
+        let Some(Assembled { path, stops }) = assembled else { return Ok(false) };
+        let mut band = Band::continued(h, path, c.band.evaluations());
+        for k in stops {
+            let m = band.path().image(k).to_vec();
+            band.hold(k, &m);
+        }
+        let before = std::mem::replace(&mut c.band, band);
+        let stop = c.stop;
+        self.relax(c, Goal::Tight, c.band.evaluations() + FIRST)?;
+        let fits = c.top_mev() <= over(c, &proof.links);
+        if fits && !c.stop.is_converged() {
+            self.relax(c, Goal::Tight, usize::MAX)?;
+        }
+        let good = fits && (c.stop.is_converged() || !stop.is_converged());
+        if !good {
+            (c.band, c.stop) = (before, stop);
+        }
+        Ok(good)
+    }
+
+    /// Puts the passes of a path's saddles into the landscape, the highest first, and connects its ends from there; the lowest route
+    /// that there is then, if it stays below a height (meV above the initial state), and what stands against it.
+    fn prove(&mut self, c: &FirstPath<'a>, found: &[Saddle], below_mev: f64) -> Result<Proof> {
+        let h = self.problem.evaluator();
+        let ends = self.minima.map(|k| self.land.minima()[k].clone());
+        let highest = found.iter().max_by(|p, q| p.refined.state.energy_mev.total_cmp(&q.refined.state.energy_mev));
+        let Some(highest) = highest.filter(|_| self.problem.certify) else {
+            let doubt = match (self.problem.certify, self.problem.seeks_saddles()) {
+                (false, _) => Doubt::NotAskedFor,
+                (_, false) => Doubt::NotRefined,
+                _ => Doubt::NoSaddle,
+            };
+            return Ok(Proof { ends, links: Vec::new(), doubts: vec![doubt] });
+        };
+        self.observer.stage("proving the saddles");
+        let scale = self.scales.stiffness_mev;
+        if !self.problem.relax_ends {
+            let alone = match self.problem.rates {
+                None => Pass::between(h, highest.clone(), ends.clone()),
+                Some(_) => None,
+            };
+            let pass = alone.map_or_else(|| Pass::recorded(h, highest.clone(), scale), Ok)?;
+            let doubts = pass.doubt(h).into_iter().collect();
+            return Ok(Proof { ends, links: vec![pass], doubts });
+        }
+        if self.land.height_mev(highest.spins()) >= below_mev {
+            return Ok(Proof { ends, links: Vec::new(), doubts: vec![Doubt::NoRoute(0)] });
+        }
+        let (mut own, mut doubts) = (Vec::new(), Vec::new());
+        let others = found.iter().filter(|f| !std::ptr::eq(*f, highest));
+        for saddle in std::iter::once(highest).chain(others) {
+            let pass = Pass::recorded(h, saddle.clone(), scale)?;
+            doubts.extend(pass.doubt(h));
+            if pass.doubt(h).is_none() {
+                self.land.add(pass.clone());
+            }
+            own.push(pass);
+            if self.land.top_mev(self.minima[0], self.minima[1]).is_some_and(|top| top < below_mev) {
+                break;
+            }
+        }
+        let tools = self.tools();
+        let connector = Connector {
+            bands: &tools,
+            path: c.band.path(),
+            below_mev,
+            evaluations: self.problem.neb.max_evaluations.saturating_mul(c.band.images()),
+            c: scale,
+            hop: self.scales.half_site_rad(),
+            context: self.context(),
+        };
+        let gap = connector.connect(&mut self.land, self.minima)?;
+        let route = self.land.route(self.minima[0], self.minima[1]).filter(|route| route.top_mev < below_mev);
+        let (links, mut doubts) = match route {
+            Some(route) => (self.land.passes_of(&route), Vec::new()),
+            None => (own, doubts.into_iter().chain(gap).collect()),
+        };
+        let unproven = ends.iter().zip(PathEnd::BOTH).filter(|(end, _)| !end.is_proven());
+        doubts.extend(unproven.map(|(_, which)| Doubt::NoMinimum(which)));
+        doubts.dedup_by_key(|doubt| doubt.to_string());
+        Ok(Proof { ends, links, doubts })
+    }
+
+    fn tools(&self) -> Tools<'a> {
+        Tools {
+            settings: &self.problem.neb,
+            scales: self.scales,
+            axes: self.axes.clone(),
+            laplacian: self.laplacian.clone(),
+        }
+    }
+
+    /// Every maximum within a tenth of the highest, refined; saddles found twice count once.
+    fn all_saddles(&mut self, c: &FirstPath<'a>) -> Result<Vec<Saddle>> {
+        let scale = self.scales.stiffness_mev;
+        if !self.problem.seeks_saddles() {
+            return Ok(Vec::new());
+        }
+        let h = self.problem.evaluator();
+        let mut found: Vec<Saddle> = Vec::new();
+        for top in peaks(&c.band, WINDOW * height(&c.band)) {
+            let f = match c.found.as_ref().filter(|f| is_seated(&c.band, top.image, f)) {
+                Some(f) => Saddle { top, refined: f.refined.clone() },
+                None => Saddle::recorded(h, top, scale, self.scales.half_site_rad())?,
+            };
+            if f.is_saddle(scale) && !found.iter().any(|g| same(&g.refined.state.m, &f.refined.state.m)) {
+                found.push(f);
+            }
+        }
+        Ok(found)
+    }
+
+    /// More images, each time relaxed loosely: to the number asked for, or until neighbours are within 1 rad a spin.
+    fn resolve(&mut self, c: &mut FirstPath<'a>, more: usize) -> Result<()> {
+        if !c.stop.is_converged() {
+            self.relax(c, Goal::Loose, c.band.evaluations() + 24)?;
+        }
+        let mut apart = f64::INFINITY;
+        loop {
+            let now = c.band.images();
+            // steps over minima stay as long as they are, however many images there are
+            let before = std::mem::replace(&mut apart, c.band.path().largest_rotation());
+            let many = now >= FEWEST_IMAGES && (more < usize::MAX || now > 257);
+            if many && self.problem.images == Images::Auto && apart > 0.8 * before {
+                return Ok(());
+            }
+            let next = match self.problem.images {
+                Images::Count(n) if now < n => image_levels(n, |_| true).into_iter().find(|l| *l > now).unwrap_or(n),
+                Images::Auto if now < FEWEST_IMAGES || self.is_coarse(c) && now < MOST_IMAGES => 2 * now - 1,
+                _ => return Ok(()),
+            };
+            self.observer.stage(&format!("{next} images"));
+            let evaluations = c.band.evaluations();
+            c.band = Band::continued(self.problem.evaluator(), refined(c.band.path(), next), evaluations);
+            self.relax(c, Goal::Loose, evaluations + 40)?;
+        }
+    }
+}
+
+/// Whether a saddle is image k of a band, and higher than its neighbours.
+fn is_seated(band: &Band, k: usize, saddle: &Saddle) -> bool {
+    let e = band.energies_mev();
+    let between_ends = k > 0 && k + 1 < e.len();
+    between_ends
+        && e[k] >= e[k - 1]
+        && e[k] >= e[k + 1]
+        && band.is_held(k)
+        && band.path().image(k) == saddle.refined.state.m
+}
+
+/// Puts refined saddles in the place of the images nearest to them, where they fit between the neighbours; says whether any did.
+fn seat(band: &mut Band, found: &[Saddle]) -> bool {
+    let last = band.images() - 1;
+    let mut seated = false;
+    for f in found {
+        let saddle = &f.refined.state.m;
+        let far = band.path().distances_from(saddle);
+        let k = (1..last).min_by(|&i, &j| far[i].total_cmp(&far[j])).unwrap_or(1);
+        let gap = distance(band.path().image(k - 1), band.path().image(k + 1));
+        let fits = far[k - 1] < gap && far[k + 1] < gap;
+        if fits && !band.is_held(k) {
+            band.hold(k, saddle);
+            seated = true;
+        }
+    }
+    seated
+}

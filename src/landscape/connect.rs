@@ -1,0 +1,182 @@
+//! Connecting two minima by a band's saddles: the graph names the next pair, a way between the two is relaxed a little, and its
+//! peaks are refined to saddles, whose passes go into the graph; until a route leads from end to end.
+
+use super::pass::Pass;
+use super::ways::{WAYS, way};
+use super::zoom::{ZOOMS, zoomed};
+use super::{Doubt, Landscape, Saddle, highest, peaks, turned, turns};
+use crate::band::Band;
+use crate::energy::Evaluator;
+use crate::error::Result;
+use crate::path::guess::GuessContext;
+use crate::path::{Path, distance};
+use crate::spins::Spins;
+
+/// Most pairs that are tried.
+const MOST: usize = 600;
+/// How often one is: along the band, and two other ways.
+const TRIES: usize = 3;
+/// Images of a way, at least, and intervals of a part of the path that is one.
+const IMAGES: usize = 9;
+const FEWEST: usize = 5;
+/// Band evaluations a way may take.
+const EVALUATIONS: usize = 30;
+/// Maxima of a way that are refined, at most.
+const PEAKS: usize = 5;
+/// A saddle higher than a way's highest peak by more than this part of the way's height is not the way's.
+const ABOVE: f64 = 0.2;
+/// Energies that differ by less than this part of the largest stiffness along a whole way make it flat, and how many evaluations
+/// may pass until it shows.
+const FLAT: f64 = 1e-11;
+const FLAT_EVALUATIONS: usize = 60;
+/// A way that is lower than this part of c after a little relaxation may be flat.
+const LOW: f64 = 1e-3;
+
+/// What relaxes bands.
+pub trait Bands: Sync {
+    /// Loosely, with at most so many evaluations.
+    fn loosely(&self, band: &mut Band, evaluations: usize) -> Result<()>;
+
+    /// As far as the run's tolerance, with at most so many evaluations.
+    fn tightly(&self, band: &mut Band, evaluations: usize) -> Result<()>;
+}
+
+/// What is needed to connect two minima.
+pub struct Connector<'c> {
+    /// Relaxes ways.
+    pub bands: &'c dyn Bands,
+    /// A relaxed path between the two.
+    pub path: &'c Path,
+    /// A route is to stay below this height (meV above the landscape's reference).
+    pub below_mev: f64,
+    /// Most evaluations of single states, all that were made before counted.
+    pub evaluations: usize,
+    /// Stiffness scale c (meV).
+    pub c: f64,
+    /// Largest rotation of a spin where a wall moves by half a site (rad).
+    pub hop: f64,
+    /// What first paths need to know.
+    pub context: GuessContext<'c>,
+}
+
+impl Connector<'_> {
+    /// Puts passes into a landscape until a route leads from one minimum to another; what stands against it if none does.
+    pub fn connect(&self, land: &mut Landscape, ends: [usize; 2]) -> Result<Option<Doubt>> {
+        let is_done = |land: &Landscape| {
+            let [a, b] = ends.map(|k| land.standing_for(k));
+            a == b || land.top_mev(a, b).is_some_and(|top| top < self.below_mev)
+        };
+        if is_done(land) {
+            return Ok(None);
+        }
+        land.unfold();
+        for tried in 0..MOST {
+            if is_done(land) {
+                return Ok(None);
+            }
+            let left = self.evaluations.saturating_sub(land.evaluator().evaluated().evaluations);
+            let next = if left > 0 { land.next_pair(ends, self.below_mev, TRIES) } else { None };
+            let Some(pair) = next else { return Ok(Some(Doubt::NoRoute(tried))) };
+            let k = land.try_once_more(pair);
+            let along = self.part_between(land, pair);
+            let way = match (along, k) {
+                (Some(part), 0) => Some(part),
+                (along, k) => way(land, pair, (k - usize::from(along.is_some())) % WAYS, IMAGES, &self.context),
+            };
+            if let Some(way) = way {
+                self.follow(land, pair, way)?;
+            }
+        }
+        Ok(if is_done(land) { None } else { Some(Doubt::NoRoute(MOST)) })
+    }
+
+    /// The part of the path between two states on it, turned about the symmetry axes to be near it, if it has images enough there.
+    fn part_between(&self, land: &Landscape, pair: [usize; 2]) -> Option<Path> {
+        let (h, path) = (land.evaluator(), self.path);
+        let near = |spins: &Spins, k: usize| turned(spins, &turns(h, spins, &path.spins(k)));
+        let nearest = |spins: &Spins| {
+            let far = |k: usize| distance(near(spins, k).as_slice(), path.image(k));
+            let far: Vec<f64> = (0..path.images()).map(far).collect();
+            (0..far.len()).min_by(|i, j| far[*i].total_cmp(&far[*j])).unwrap_or(0)
+        };
+        let ends = pair.map(|k| &land.minima()[k].spins);
+        let places = ends.map(nearest);
+        let [i, j] = places;
+        if i.abs_diff(j) < FEWEST {
+            return None;
+        }
+        let mut row: Vec<Spins> = (i.min(j) + 1..i.max(j)).map(|k| path.spins(k)).collect();
+        if i > j {
+            row.reverse();
+        }
+        row.insert(0, near(ends[0], i));
+        row.push(near(ends[1], j));
+        Some(Path::new(&row).resampled((i.abs_diff(j) + 1).max(IMAGES)))
+    }
+
+    /// Relaxes a way a little and puts the pass of its highest new saddle in; of saddles far above it one if there is no other.
+    fn follow(&self, land: &mut Landscape, pair: [usize; 2], way: Path) -> Result<()> {
+        let h = land.evaluator();
+        let mut band = Band::new(h, way);
+        self.bands.loosely(&mut band, EVALUATIONS)?;
+        if self.is_flat(&mut band)? {
+            land.merge(pair);
+            return Ok(());
+        }
+        for _ in 0..ZOOMS {
+            let Some(path) = zoomed(&band, highest(&band).as_ref(), band.images() + 4) else { break };
+            band = Band::new(h, path);
+            self.bands.loosely(&mut band, EVALUATIONS)?;
+        }
+        let tops = peaks(&band, f64::INFINITY);
+        let e = band.energies_mev();
+        let (first, last) = (e[0], e[band.images() - 1]);
+        let highest = tops.first().map_or(first.max(last), |top| top.energy_mev);
+        let most = highest + ABOVE * (highest - first.min(last));
+        if highest - land.reference_mev() > self.below_mev + ABOVE * (highest - first.min(last)) {
+            return Ok(());
+        }
+        let mut high: Option<Saddle> = None;
+        for top in tops.into_iter().take(PEAKS) {
+            let found = Saddle::recorded(h, top, self.c, self.hop)?;
+            if !found.is_saddle(self.c) || land.knows(&found) {
+                continue;
+            }
+            let energy = |f: &Saddle| f.refined.state.energy_mev;
+            if energy(&found) <= most {
+                self.add(land, found)?;
+                return Ok(());
+            }
+            if high.as_ref().is_none_or(|f| energy(&found) < energy(f)) {
+                high = Some(found);
+            }
+        }
+        if let Some(found) = high {
+            self.add(land, found)?;
+        }
+        Ok(())
+    }
+
+    /// Puts the pass of a saddle in if it is proven.
+    fn add(&self, land: &mut Landscape, saddle: Saddle) -> Result<()> {
+        let pass = Pass::recorded(land.evaluator(), saddle, self.c)?;
+        if pass.doubt(land.evaluator()).is_none() {
+            land.add(pass);
+        }
+        Ok(())
+    }
+
+    /// Whether a way between two minima is flat as far as double precision tells: a soliton on a ring, moved along it.
+    fn is_flat(&self, band: &mut Band) -> Result<bool> {
+        let h: Evaluator = band.evaluator();
+        let flat = FLAT * h.stiffness_mev();
+        let level = |band: &Band, k: usize| h.difference_mev(band.path().image(k), band.path().image(0)).abs() < flat;
+        let e = band.energies_mev();
+        let low = e.iter().all(|x| (x - e[0]).abs() < LOW * self.c);
+        if !low || !level(band, band.images() - 1) {
+            return Ok(false);
+        }
+        self.bands.tightly(band, FLAT_EVALUATIONS)?;
+        Ok(band.path().largest_rotation() < 1.0 && (0..band.images()).all(|k| level(band, k)))
+    }
+}
