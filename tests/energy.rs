@@ -6,7 +6,7 @@ use spinneb::energy::{EnergyTerm, Hamiltonian, Medium, TermSpec};
 use spinneb::field::{Components, ComponentsMut, project};
 use spinneb::geometry::{Direction, exp, rotate, tangent_basis, vector};
 use spinneb::hessian::{TangentBasis, assemble};
-use spinneb::lattice::{Chain, Frozen, Lattice, Selection};
+use spinneb::lattice::{Chain, Frozen, Lattice, LatticeSpec, Selection};
 use spinneb::linalg::Matrix;
 use spinneb::spins::Spins;
 use spinneb::units::{Length, Moment};
@@ -83,7 +83,8 @@ fn the_gradient_is_the_slope_of_the_energy_and_the_hessian_the_slope_of_the_grad
     for text in fragments() {
         for (sites, periodic) in [(1, false), (2, false), (8, false), (9, true)] {
             let longer_than_the_chain = text.contains("exchange") && text.contains(", \"");
-            if sites < 8 && (text.contains("bonds") || text.contains("sites") || longer_than_the_chain) {
+            let needs_more = ["bonds", "sites", "quads"].iter().any(|key| text.contains(key));
+            if sites < 8 && (needs_more || longer_than_the_chain) {
                 continue;
             }
             let chain = chain(sites, periodic).resolve().unwrap();
@@ -177,6 +178,120 @@ fn a_long_chain_in_tiles_has_the_gradient_of_its_sites_one_by_one() {
     for (a, b) in g.iter().zip(&direct) {
         assert!((a - b).abs() < 1e-12 * h.stiffness_mev());
     }
+}
+
+/// Terms on lattices of several atoms a cell.
+fn of_lattices() -> Vec<(&'static str, &'static str)> {
+    let kagome = r#"{"kagome": {"cells": [5, 4], "periodic": [true, false], "shape": {"disc": {"radius": 2.4}}}}"#;
+    let bcc = r#"{"bcc": {"cells": [3, 3, 2], "periodic": [true, true, false], "vacant": [3]}}"#;
+    let short = r#"{"square": {"cells": [2, 5], "periodic": true}}"#;
+    vec![
+        (kagome, r#"{"exchange": {"J": ["3 meV", "-1 meV"]}}"#),
+        (short, r#"{"exchange": {"J": ["3 meV"]}}"#),
+        (short, r#"{"dmi": {"D": "2 meV", "kind": "bulk"}}"#),
+        (kagome, r#"{"dmi": {"D": ["3 meV", "1 meV"], "kind": "interfacial"}}"#),
+        (bcc, r#"{"dmi": {"D": "3 meV", "kind": "bulk"}}"#),
+        (kagome, r#"{"biquadratic": {"B": ["1 meV", "-0.4 meV"]}}"#),
+        (bcc, r#"{"biquadratic": {"B": "-1 meV"}}"#),
+        (short, r#"{"biquadratic": {"B": "1 meV"}}"#),
+        (
+            bcc,
+            r#"{"pairs": {"convention": {"counting": "both directions", "energy": "-J/2", "dmi": "-D"}, "bonds": [
+                {"from": 0, "to": 1, "J": "4 meV", "D": ["1 meV", "0.5 meV", "0 meV"]},
+                {"from": 1, "to": 0, "J": "4 meV", "D": ["-1 meV", "-0.5 meV", "0 meV"]},
+                {"from": 1, "to": 1, "cell": [1, -1, 0], "tensor": [["1 meV", "2 meV", "0 meV"], ["0 meV", "3 meV", "1 meV"], ["1 meV", "0 meV", "0 meV"]]},
+                {"from": 1, "to": 1, "cell": [-1, 1, 0], "tensor": [["1 meV", "0 meV", "1 meV"], ["2 meV", "3 meV", "0 meV"], ["0 meV", "1 meV", "0 meV"]]}]}}"#,
+        ),
+        (
+            kagome,
+            r#"{"four_spin": {"quads": [
+                {"K": "1 meV", "atoms": [0, 1, 2, 1], "cells": [[0, 0, 0], [0, 0, 0], [0, 0, 0], [-1, 0, 0]]},
+                {"K": "-0.7 meV", "atoms": [0, 0, 0, 0], "cells": [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], "ring": true}]}}"#,
+        ),
+        (
+            short,
+            r#"{"four_spin": {"quads": [{"K": "1 meV", "cells": [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], "ring": true}]}}"#,
+        ),
+    ]
+}
+
+#[test]
+fn terms_on_any_lattice_have_the_derivatives_of_their_energy_and_the_blocks_of_their_hessian() {
+    for (lattice, text) in of_lattices() {
+        let lattice = serde_json::from_str::<LatticeSpec>(lattice).unwrap().resolve().unwrap();
+        let n = lattice.sites;
+        let h = Hamiltonian::new(&lattice, vec![build(text, &lattice)]).unwrap();
+        let (m, scale) = (random_spins(n, 3), h.stiffness_mev());
+        let (v, w) = (random_tangent(&m, 4), random_tangent(&m, 5));
+        let mut g = vec![0.0; 3 * n];
+        let above = h.energy_gradient(&m, &mut g);
+        assert!((h.reference_mev() + above - h.energy_mev(&m)).abs() < 1e-14 * scale * n as f64, "{text}");
+        let energy = |s: f64| h.energy_mev(&moved(&m, &v, s));
+        let t = 1e-4;
+        let slope = (8.0 * (energy(t) - energy(-t)) - (energy(2.0 * t) - energy(-2.0 * t))) / (12.0 * t);
+        assert!((slope - dot(&g, &v)).abs() < 1e-8 * scale, "{text}: {slope} {}", dot(&g, &v));
+        let (mut hv, mut hw) = (vec![0.0; 3 * n], vec![0.0; 3 * n]);
+        h.hessian_product(&m, &g, &v, &mut hv);
+        h.hessian_product(&m, &g, &w, &mut hw);
+        assert!((dot(&hv, &w) - dot(&hw, &v)).abs() < 1e-12 * scale, "{text}: the Hessian is not symmetric");
+        let t = 1e-3;
+        let outer = energy(2.0 * t) + energy(-2.0 * t);
+        let second = (16.0 * (energy(t) + energy(-t)) - outer - 30.0 * energy(0.0)) / (12.0 * t * t);
+        assert!((second - dot(&hv, &v)).abs() < 1e-5 * scale, "{text}: {second} {}", dot(&hv, &v));
+        let basis = TangentBasis::at(&m);
+        let mut y = vec![0.0; 2 * n];
+        assemble(&h, &m, &g, &basis).multiply(&basis.coordinates(&v), &mut y);
+        let mut found = vec![0.0; 3 * n];
+        basis.field(&y, &mut found);
+        let apart = found.iter().zip(&hv).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(apart < 1e-13 * scale.max(1.0), "{text}: {apart}");
+    }
+}
+
+#[test]
+fn conventions_of_pairs_and_shells_state_the_same_energy() {
+    let lattice = serde_json::from_str::<LatticeSpec>(r#"{"square": {"cells": [5, 4], "periodic": true}}"#);
+    let lattice = lattice.unwrap().resolve().unwrap();
+    let m = random_spins(20, 11);
+    let energy = |text: &str| Hamiltonian::new(&lattice, vec![build(text, &lattice)]).unwrap().energy_mev(&m);
+    let by_shell = energy(r#"{"exchange": {"J": ["6 meV"]}}"#) + energy(r#"{"dmi": {"D": "2 meV", "kind": "bulk"}}"#);
+    let pair = |cell: &str, j: f64, d: [f64; 2]| {
+        format!(
+            r#"{{"from": 0, "to": 0, "cell": {cell}, "J": "{j} meV", "D": ["{} meV", "{} meV", "0 meV"]}}"#,
+            d[0], d[1]
+        )
+    };
+    let there = |j: f64, d: f64| format!("{}, {}", pair("[1, 0, 0]", j, [d, 0.0]), pair("[0, 1, 0]", j, [0.0, d]));
+    let back = |j: f64, d: f64| format!("{}, {}", pair("[-1, 0, 0]", j, [-d, 0.0]), pair("[0, -1, 0]", j, [0.0, -d]));
+    for (counting, form, dmi, bonds) in [
+        ("once", "-J", "+D", there(6.0, 2.0)),
+        ("once", "-J", "+D", back(6.0, 2.0)),
+        ("once", "+2J", "-2D", there(-3.0, -1.0)),
+        ("both directions", "-J", "+D", format!("{}, {}", there(3.0, 1.0), back(3.0, 1.0))),
+        ("both directions", "-J/2", "-D/2", format!("{}, {}", there(6.0, -2.0), back(6.0, -2.0))),
+    ] {
+        let text = format!(
+            r#"{{"pairs": {{"bonds": [{bonds}], "convention": {{"counting": "{counting}", "energy": "{form}", "dmi": "{dmi}"}}}}}}"#
+        );
+        let found = energy(&text);
+        assert!((found - by_shell).abs() < 1e-12 * by_shell.abs(), "{text}: {found} {by_shell}");
+    }
+}
+
+#[test]
+fn the_d2d_kind_is_the_interfacial_one_with_spins_turned_over_the_diagonal() {
+    let lattice = serde_json::from_str::<LatticeSpec>(r#"{"square": {"cells": [5, 6], "periodic": true}}"#);
+    let lattice = lattice.unwrap().resolve().unwrap();
+    let m = random_spins(30, 12);
+    // (x, y, z) ↦ (y, x, −z)
+    let [x, y, z] = [&m[..30], &m[30..60], &m[60..]];
+    let turned: Vec<f64> = y.iter().chain(x).copied().chain(z.iter().map(|z| -z)).collect();
+    let energy = |kind: &str, m: &[f64]| {
+        let text = format!(r#"{{"dmi": {{"D": "2 meV", "kind": "{kind}"}}}}"#);
+        Hamiltonian::new(&lattice, vec![build(&text, &lattice)]).unwrap().energy_mev(m)
+    };
+    let (interfacial, d2d) = (energy("interfacial", &m), energy("d2d", &turned));
+    assert!((interfacial - d2d).abs() < 1e-12 && interfacial.abs() > 1.0, "{interfacial} {d2d}");
 }
 
 /// How much a turn of all spins about an axis changes the energy of a state (meV).

@@ -132,3 +132,129 @@ fn reference_lattices_have_the_sites_bonds_and_uniform_energies_of_the_reference
     }
     assert!(compared >= 13, "{compared}");
 }
+
+/// What is said of a config of this lattice and these terms, or its energy of all spins along z and its bonds.
+fn energy_of(lattice: &str, terms: &str) -> Result<(f64, usize), String> {
+    let text = format!(
+        r#"{{"material": {{"name": "m", "source": "x", "moment": "1 mu_B", "energy": []}}, "lattice": {lattice}, "energy": {terms},
+            "initial": {{"uniform": {{"direction": [0, 0, 1]}}}}, "final": {{"uniform": {{"direction": [0, 0, -1]}}}}}}"#
+    );
+    let states =
+        load_text(Path::new("some.json"), text).and_then(|loaded| loaded.states(true)).map_err(|e| e.to_string())?;
+    let bonds = states.hamiltonian.constant_blocks().bond.iter();
+    let count = bonds.map(|b| b.family.bonds().filter(|[i, _]| b.isotropic[*i] != 0.0).count()).sum();
+    Ok((states.hamiltonian.energy_mev(states.initial.as_slice()), count))
+}
+
+#[test]
+fn a_bond_term_takes_the_bonds_within_a_selection_or_between_two() {
+    let film = r#"{"square": {"cells": [6, 5], "regions": {"left": {"box": {"from": [0], "to": [2]}}}}}"#;
+    let layers = r#"{"cubic": {"cells": [4, 3, 4]}}"#;
+    let alloy = r#"{"crystal": {"vectors": [[1, 0, 0], [0, 1, 0], [0, 0, 1]], "cells": [3, 3, 3], "periodic": true,
+        "basis": [{"at": [0, 0, 0], "species": "Fe"}, {"at": [0.5, 0.5, 0.5], "species": "Pt"}]}}"#;
+    for (lattice, selection, bonds) in [
+        (film, r#""sites": "left""#, 2 * 5 + 3 * 4),
+        (film, r#""sites": {"not": {"box": {"from": [0], "to": [2]}}}"#, 2 * 5 + 3 * 4),
+        (film, r#""between": ["left", {"box": {"from": [3], "to": [5]}}]"#, 5),
+        (film, r#""sites": [0, 1, 6]"#, 2),
+        // two layers apart the first shell between them is the second neighbour along z
+        (
+            layers,
+            r#""between": [{"box": {"from": [0, 0, 0], "to": [9, 9, 0]}}, {"box": {"from": [0, 0, 2], "to": [9, 9, 2]}}]"#,
+            12,
+        ),
+        (alloy, r#""between": ["Fe", "Pt"]"#, 27 * 8),
+        (alloy, r#""between": ["Pt", "Pt"]"#, 27 * 3),
+        (alloy, r#""sites": "Fe""#, 27 * 3),
+    ] {
+        let terms = format!(r#"[{{"exchange": {{"J": ["1 meV"], {selection}}}}}]"#);
+        assert_eq!(energy_of(lattice, &terms).unwrap(), (-(bonds as f64), bonds), "{selection}");
+    }
+    for (lattice, term, said) in [
+        (
+            film,
+            r#"{"exchange": {"J": ["1 meV"], "bonds": [3]}}"#,
+            "energy[0].exchange.bonds: bonds are chosen by number",
+        ),
+        (film, r#"{"exchange": {"J": ["1 meV"], "sites": [0, 8]}}"#, "no bond has both its ends"),
+        (film, r#"{"exchange": {"J": ["1 meV"], "between": ["left", "right"]}}"#, "between[1]: no region \"right\""),
+        (alloy, r#"{"exchange": {"J": ["1 meV"], "sites": "Co"}}"#, "there are \"Fe\", \"Pt\""),
+        (film, r#"{"exchange": {"A": "10 pJ/m"}}"#, "give the lattice as a \"grid\""),
+        (film, r#"{"dmi": {"D": "1 meV"}}"#, "a DMI needs a \"kind\""),
+        (film, r#"{"dipolar": {}}"#, "along a chain only"),
+    ] {
+        let found = energy_of(lattice, &format!("[{term}]")).unwrap_err();
+        assert!(found.contains(said), "{term}: {found}");
+    }
+}
+
+#[test]
+fn a_grid_takes_its_numbers_from_densities_face_by_face() {
+    let grid = r#"{"grid": {"cells": [4, 3, 2], "cell": ["2 nm", "3 nm", "0.5 nm"]}}"#;
+    // 2 A S/a a face, in meV: 1 pJ/m is 1e-12/1.602176634e-22/1e9 meV/nm
+    let a = 10.0 / 0.1602176634;
+    let faces = 3.0 * 3.0 * 2.0 * (1.5 / 2.0) + 4.0 * 2.0 * 2.0 * (1.0 / 3.0) + 12.0 * (6.0 / 0.5);
+    let (energy, bonds) = energy_of(grid, r#"[{"exchange": {"A": "10 pJ/m"}}]"#).unwrap();
+    assert_eq!(bonds, 18 + 16 + 12);
+    assert!((energy + 2.0 * a * faces).abs() < 1e-9 * energy.abs(), "{energy} {}", 2.0 * a * faces);
+    let (energy, _) = energy_of(grid, r#"[{"anisotropy": {"K": "1 MJ/m^3", "axis": [0, 0, 1]}}]"#).unwrap();
+    assert!((energy + 24.0 * 3.0 * 1e6 * 1e-27 / 1.602176634e-22).abs() < 1e-9 * energy.abs(), "{energy}");
+    let layers =
+        r#""between": [{"box": {"from": [0, 0, 0], "to": [4, 3, 1]}}, {"box": {"from": [0, 0, 1], "to": [4, 3, 2]}}]"#;
+    let (energy, bonds) = energy_of(grid, &format!(r#"[{{"exchange": {{"J_area": "2 mJ/m^2", {layers}}}}}]"#)).unwrap();
+    assert_eq!(bonds, 12);
+    assert!((energy + 12.0 * 6.0 * 2e-3 * 1e-18 / 1.602176634e-22).abs() < 1e-9 * energy.abs(), "{energy}");
+}
+
+#[test]
+fn selections_choose_spins_that_are_frozen_vacant_or_of_another_moment_in_any_lattice_and_in_chains() {
+    let film = lattice(
+        r#"{"honeycomb": {"cells": [4, 4], "vacant": {"disc": {"center": [0, 0], "radius": 0.1}}, "shape": {"box": {"from": [0, 0], "to": [3, 9]}},
+            "frozen": [{"sites": {"box": {"from": [0, 2.5], "to": [9, 9]}}, "direction": [0, 0, 1]}],
+            "moments": [{"sites": "edge", "moment": "3 mu_B"}], "regions": {"edge": {"box": {"from": [2.5], "to": [3]}}}}}"#,
+    );
+    for i in 0..film.sites {
+        let [x, y, _] = film.position(i);
+        assert!((-1e-9..=3.0 + 1e-9).contains(&x), "{x}");
+        assert_eq!(film.vacant[i], x.abs() + y.abs() < 1e-9);
+        assert_eq!(film.is_frozen()[i], y > 2.5);
+        assert_eq!(film.moments_mub[i], (x > 2.5 - 1e-9).then_some(3.0));
+    }
+    let chain = lattice(r#"{"chain": {"sites": 20, "direction": [0, 1, 0], "vacant": {"disc": {"radius": 1}}}}"#);
+    assert_eq!((0..20).filter(|i| chain.vacant[*i]).collect::<Vec<_>>(), [9, 10]);
+}
+
+#[test]
+fn the_kinds_of_dmi_turn_spins_about_the_directions_of_their_symmetry() {
+    // E of one bond along r̂, with m_i = a and m_j = b: D d̂·(a × b)
+    let one = |sites: &str, kind: &str| {
+        let text = format!(r#"[{{"dmi": {{"D": ["2 meV"], {kind}, "sites": {sites}}}}}]"#);
+        let config = format!(
+            r#"{{"material": {{"name": "m", "source": "x", "energy": []}}, "lattice": {{"square": {{"cells": [2, 2]}}}}, "energy": {text},
+            "initial": {{"uniform": {{"direction": [0, 0, 1]}}}}, "final": {{"uniform": {{"direction": [0, 0, -1]}}}}}}"#
+        );
+        let states = load_text(Path::new("some.json"), config).unwrap().states(true).unwrap();
+        let at = |first: [f64; 3], second: [f64; 3]| {
+            let (i, j) = if sites == "[0, 1]" { (0, 1) } else { (0, 2) };
+            let mut m = vec![0.0; 12];
+            for c in 0..3 {
+                (0..4).for_each(|k| m[4 * c + k] = first[c]);
+                m[4 * c + i] = first[c];
+                m[4 * c + j] = second[c];
+            }
+            states.hamiltonian.energy_mev(&m)
+        };
+        // (d̂_x, d̂_y, d̂_z)
+        [at([0., 1., 0.], [0., 0., 1.]), at([0., 0., 1.], [1., 0., 0.]), at([1., 0., 0.], [0., 1., 0.])]
+            .map(|e| e / 2.0)
+    };
+    for (kind, along_x, along_y) in [
+        (r#""kind": "interfacial""#, [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]),
+        (r#""kind": "interfacial", "normal": [0, 0, -1]"#, [0.0, -1.0, 0.0], [1.0, 0.0, 0.0]),
+        (r#""kind": "bulk""#, [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]),
+        (r#""kind": "d2d""#, [1.0, 0.0, 0.0], [0.0, -1.0, 0.0]),
+        (r#""direction": [0, 0, 1]"#, [0.0, 0.0, 1.0], [0.0, 0.0, 1.0]),
+    ] {
+        assert_eq!([one("[0, 1]", kind), one("[0, 2]", kind)], [along_x, along_y], "{kind}");
+    }
+}

@@ -3,6 +3,7 @@
 use super::{Check, USAGE, report, worse};
 use anyhow::Result;
 use spinneb::config::estimate::Estimate;
+use spinneb::config::neighbours::{Shell, shells};
 use spinneb::config::physics::Physics;
 use spinneb::config::{Loaded, PartMaterial, expected_images, load, memory, needed_bytes};
 use spinneb::drive::{Images, Problem, Scales};
@@ -32,6 +33,9 @@ fn print(out: &mut impl Write, loaded: &Loaded, problem: &Problem) -> io::Result
     row("name", loaded.name.clone())?;
     row("material", material(loaded))?;
     row("lattice", lattice(loaded))?;
+    for (k, shell) in shells(h).iter().enumerate() {
+        row(if k == 0 { "shells" } else { "" }, neighbours(h.lattice(), shell))?;
+    }
     let states = [problem.initial.as_slice(), problem.final_state.as_slice()].map(|m| h.energies_mev(m));
     let numbers = |x: f64| format!("{x:>16.6}");
     row("energies", format!("{:<20}{:>16}{:>16}", "as given (meV)", "initial", "final"))?;
@@ -42,7 +46,7 @@ fn print(out: &mut impl Write, loaded: &Loaded, problem: &Problem) -> io::Result
     row("", format!("{:<20}{}{}", "total", total(0), total(1)))?;
     let physics = Physics::of(loaded, problem, &scales);
     row("stiffness", format!("{:.6} meV (softest mode of a stable spin)", scales.stiffness_mev))?;
-    row("exchange", format!("{:.6} meV a bond", scales.exchange_mev))?;
+    row("exchange", format!("{:.6} meV {}", scales.exchange_mev, stiffness_of(h.lattice())))?;
     if let Some(length) = physics.exchange_length_nm {
         row("l_ex", format!("{length:.4} nm (exchange length √(2A/μ₀Ms²))"))?;
     }
@@ -88,16 +92,47 @@ fn material(loaded: &Loaded) -> String {
 fn lattice(loaded: &Loaded) -> String {
     let lattice = &loaded.lattice;
     let spacing = lattice.spacing_nm.map_or(String::new(), |a| format!(", {} apart", Length(a)));
-    let kind = match (lattice.kind, lattice.is_ring()) {
-        ("chain", true) => "ring".into(),
-        ("chain", false) => "open chain".into(),
-        (kind, _) => format!("{kind} lattice, {},", cells(lattice)),
-    };
     let frozen = match lattice.frozen.len() {
         0 => String::new(),
         _ => ", some frozen".to_string(),
     };
-    format!("{kind} of {} sites{spacing}{frozen}", lattice.sites)
+    let sites = lattice.sites;
+    match (lattice.kind, lattice.is_ring()) {
+        ("chain", true) => format!("ring of {sites} sites{spacing}{frozen}"),
+        ("chain", false) => format!("open chain of {sites} sites{spacing}{frozen}"),
+        (kind, _) => format!("{kind}, {}, {sites} sites{}{frozen}", cells(lattice), extent(lattice)),
+    }
+}
+
+/// "1: 1 a, 480 bonds (1.875 a site), J 1 meV".
+fn neighbours(lattice: &Lattice, shell: &Shell) -> String {
+    let there = lattice.vacant.iter().filter(|vacant| !**vacant).count();
+    let [from, to] = shell.exchange_mev;
+    let range = |[low, high]: [f64; 2]| match high - low > 1e-9 * high.abs().max(low.abs()) {
+        true => format!("{low:.6} to {high:.6} meV"),
+        false => format!("{high:.6} meV"),
+    };
+    let species = shell.species.as_ref().map_or(String::new(), |[a, b]| format!("{a}–{b}, "));
+    let exchange = if from == 0.0 && to == 0.0 { String::new() } else { format!(", J {}", range([from, to])) };
+    let dmi = if shell.dmi_mev[1] == 0.0 { String::new() } else { format!(", |D| {}", range(shell.dmi_mev)) };
+    let unit = if lattice.spacing_nm.is_some() { "nm" } else { "a" };
+    let a_site = shell.bonds as f64 / there as f64;
+    format!(
+        "{}: {species}{:.4} {unit} apart, {} bonds ({a_site:.3} a site){exchange}{dmi}",
+        shell.number, shell.distance, shell.bonds
+    )
+}
+
+/// How large it is, and what is left out.
+fn extent(lattice: &Lattice) -> String {
+    let whole = lattice.grid.cells() * lattice.atoms.len();
+    let left = if whole > lattice.sites { format!(" ({} left out)", whole - lattice.sites) } else { String::new() };
+    let [low, high] = lattice.bounds();
+    let scale = lattice.spacing_nm.unwrap_or(1.0);
+    let size = [0, 1, 2]
+        .map(|c| format!("{:.4}", scale * (high[c] - low[c])).trim_end_matches('0').trim_end_matches('.').to_string());
+    let unit = if lattice.spacing_nm.is_some() { "nm" } else { "a" };
+    format!("{left}, {} {unit} from the first to the last", size.join(" × "))
 }
 
 /// "20 × 20 cells, periodic along the first".
@@ -107,7 +142,16 @@ fn cells(lattice: &Lattice) -> String {
     let periodic: Vec<&str> = along.map(|(name, _)| name).collect();
     let border =
         if periodic.is_empty() { "open".into() } else { format!("periodic along the {}", periodic.join(" and ")) };
-    format!("{size} cells, {border}")
+    let atoms = match lattice.atoms.len() {
+        1 => String::new(),
+        n => format!(" of {n} atoms"),
+    };
+    format!("{size} cells{atoms}, {border}")
+}
+
+/// Of what the exchange is.
+fn stiffness_of(lattice: &Lattice) -> &'static str {
+    if lattice.is_row() { "a bond" } else { "(½ Σ J r²/a² of a site, along one direction)" }
 }
 
 fn wall_width(physics: &Physics) -> String {

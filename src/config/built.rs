@@ -5,7 +5,7 @@ use crate::drive::{FEWEST_IMAGES, Images, Outcome, Problem, Scales};
 use crate::energy::{EnergyTerm, Hamiltonian, Medium, Part, TermSpec, symmetry_axes};
 use crate::error::{Error, Result, both};
 use crate::field::{Components, ComponentsMut};
-use crate::geometry::{Direction, Vector, angle};
+use crate::geometry::{Direction, angle};
 use crate::lattice::Lattice;
 use crate::linalg::slab;
 use crate::output::RunReport;
@@ -238,13 +238,13 @@ pub fn needed_bytes(problem: &Problem, scales: &Scales) -> f64 {
         + images * memory::image_bytes(h.sites(), h.layout())
 }
 
-/// Largest derivative of a term by a component (meV) where no two neighbours are alike; an error where it is absurd.
+/// Largest derivative of a term by a component (meV) in a state of no order; an error where it is absurd.
 fn torque(term: &dyn EnergyTerm, sites: usize) -> Result<f64> {
-    let directions: [Vector; 3] = [[0.8, 0.48, 0.36], [-0.48, 0.36, 0.8], [0.36, -0.8, -0.48]];
-    let m: Vec<f64> = (0..3).flat_map(|c| (0..sites).map(move |i| directions[i % 3][c])).collect();
+    let state = Spins::random(sites, 1);
+    let m = state.as_slice();
     let mut g = vec![0.0; 3 * sites];
     let mut density = vec![0.0; sites];
-    term.add_gradient(Components::new(&m), ComponentsMut::new(&mut g), &mut density, 0..sites);
+    term.add_gradient(Components::new(m), ComponentsMut::new(&mut g), &mut density, 0..sites);
     let largest = slab::max_abs(&g);
     let finite = term.reference_mev().is_finite() && density.iter().chain(&g).all(|x| x.is_finite());
     match finite && largest <= LARGEST_MEV {

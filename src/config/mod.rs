@@ -14,6 +14,7 @@ mod material_scales;
 pub mod memory;
 mod name;
 mod neb;
+pub mod neighbours;
 mod output;
 mod parts;
 mod path;

@@ -51,8 +51,8 @@ impl Loaded {
         let mut part = vec![0; self.lattice.sites];
         for (k, own) in self.parts.iter().enumerate() {
             let Some(name) = &own.region else { continue };
-            for i in self.lattice.region(name).map_err(|e| self.text.locate(e.within(&own.key)))? {
-                let before = std::mem::replace(&mut part[*i], k);
+            for i in self.lattice.named(name).map_err(|e| self.text.locate(e.within(&own.key)))? {
+                let before = std::mem::replace(&mut part[i], k);
                 if before != 0 {
                     let message = format!(
                         "site {i} is in the region {} too, and a site is made of one material: let the two not overlap",

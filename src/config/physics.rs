@@ -129,7 +129,11 @@ fn site_barriers(h: &Hamiltonian) -> [f64; 2] {
 fn by_torque(h: &Hamiltonian) -> Vec<(&'static str, f64)> {
     let directions: [Vector; 3] = [[0.8, 0.48, 0.36], [-0.48, 0.36, 0.8], [0.36, -0.8, -0.48]];
     let n = h.sites();
-    let m: Vec<f64> = (0..3).flat_map(|c| (0..n).map(move |i| directions[i % 3][c])).collect();
+    let step = |i: usize| {
+        let (atom, cell) = h.lattice().cell(i);
+        (atom + cell[0] + cell[1] + cell[2]) % 3
+    };
+    let m: Vec<f64> = (0..3).flat_map(|c| (0..n).map(move |i| directions[step(i)][c])).collect();
     let mut gradients: Vec<(&'static str, Vec<f64>)> = Vec::new();
     for term in h.terms() {
         let place = gradients.iter().position(|(name, _)| *name == term.name());

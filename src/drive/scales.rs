@@ -109,7 +109,10 @@ fn exchange_stiffness(h: &Hamiltonian) -> f64 {
             (&bonds.family, j.get(j.len() / 2).copied().unwrap_or(0.0))
         })
         .collect();
-    let nearest = medians.iter().min_by_key(|(family, _)| family.shell);
+    let nearest = medians
+        .iter()
+        .filter(|(_, j)| *j != 0.0)
+        .min_by(|(p, _), (q, _)| lattice.squared_length(p.hop).total_cmp(&lattice.squared_length(q.hop)));
     let sign = nearest.map_or(1.0, |(_, j)| 1f64.copysign(*j));
     let part = |(family, j): &(&BondFamily, f64)| {
         let squared = lattice.squared_length(family.hop);

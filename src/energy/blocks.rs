@@ -1,5 +1,6 @@
 //! The Euclidean Hessian of short-ranged terms as 3 × 3 blocks: one a site, one a bond of each family.
 
+use crate::geometry::matrix::transposed;
 use crate::geometry::{Vector, vector};
 use crate::lattice::BondFamily;
 
@@ -62,6 +63,18 @@ impl Blocks {
     /// The blocks of a family's bonds; nothing where it has none in the lattice.
     pub fn of(&mut self, family: &BondFamily) -> Option<&mut Bonds> {
         self.bond.iter_mut().find(|bonds| bonds.family.hop == family.hop)
+    }
+
+    /// Adds a block to the bond of two sites (rows, columns), which are those of one of the families, either way.
+    pub fn add_bond(&mut self, [i, j]: [usize; 2], block: Block) {
+        for bonds in &mut self.bond {
+            if bonds.family.next(i) == Some(j) {
+                return bonds.add(i, block);
+            }
+            if bonds.family.next(j) == Some(i) {
+                return bonds.add(j, transposed(&block));
+            }
+        }
     }
 
     /// Adds s·1 to a site's block.

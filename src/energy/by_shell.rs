@@ -1,5 +1,6 @@
 //! Values of the bonds of one shell, or a list with those of each.
 
+use crate::error::{Error, Result};
 use crate::profile::Profile;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::{MapAccessDeserializer, StrDeserializer};
@@ -19,6 +20,19 @@ pub enum ByShell<T> {
 }
 
 impl<T: Copy> ByShell<T> {
+    /// The shells, each with the place of its values below that of the whole.
+    pub fn shells(&self, key: &str) -> Result<Vec<(usize, String, &Profile<T>)>> {
+        match self {
+            ByShell::One(profile) => Ok(vec![(1, key.into(), profile)]),
+            ByShell::List(list) if list.is_empty() => {
+                Err(Error::invalid(key, "the list is empty: give one energy a neighbour shell, [\"2 meV\"]"))
+            }
+            ByShell::List(list) => {
+                Ok(list.iter().enumerate().map(|(k, profile)| (k + 1, format!("{key}[{k}]"), profile)).collect())
+            }
+        }
+    }
+
     /// A list read as one value a bond; nothing where it cannot be.
     pub fn by_bond(&self) -> Option<Profile<T>> {
         let ByShell::List(list) = self else { return None };

@@ -34,6 +34,7 @@ impl Described for DemagSpec {
 
 impl TermBuilder for DemagSpec {
     fn build(&self, medium: &Medium) -> Result<Box<dyn EnergyTerm>> {
+        medium.in_a_chain()?;
         let sections = medium.lattice.known_sections_nm()?;
         let spacing = medium.lattice.known_spacing_nm()?;
         for edges in sections {

@@ -25,6 +25,7 @@ impl Described for DipolarSpec {
 
 impl TermBuilder for DipolarSpec {
     fn build(&self, medium: &Medium) -> Result<Box<dyn EnergyTerm>> {
+        medium.in_a_chain()?;
         let Some(spacing) = medium.lattice.spacing_nm else {
             return Err(Error::invalid(
                 "",

@@ -13,6 +13,7 @@
 use super::EnergyTerm;
 use super::blocks::{Blocks, cross_block};
 use super::by_shell::ByShell;
+use super::choice::Choice;
 use super::couplings::Couplings;
 use super::spec::{Medium, TermBuilder};
 use crate::error::{Error, Result};
@@ -43,6 +44,12 @@ pub struct DmiSpec {
     /// The normal n of an interface; ẑ if not given.
     #[serde(default)]
     pub normal: Option<Direction>,
+    /// Only bonds with both ends among these sites; all if absent.
+    #[serde(default)]
+    pub sites: Option<Selection>,
+    /// Only bonds from the first of these to the second, with shells of their own.
+    #[serde(default)]
+    pub between: Option<[Selection; 2]>,
     /// Only these bonds of a chain; all if absent.
     #[serde(default)]
     pub bonds: Option<Selection>,
@@ -106,28 +113,23 @@ impl DmiSpec {
 
     /// D family by family.
     fn couplings(&self, medium: &Medium) -> Result<Vec<Couplings>> {
+        let choice = Choice { sites: self.sites.as_ref(), between: self.between.as_ref(), bonds: self.bonds.as_ref() };
         let on = |d: &Profile<BondEnergy>, families, key: &str| {
-            medium.on_bonds(d, families, self.bonds.as_ref(), key, |d, bond| medium.bond_energy_mev(d, bond))
+            medium.on_bonds(d, families, &choice, key, |d, bond| {
+                let turned = bond.reversed && self.direction.is_some();
+                Ok(medium.bond_energy_mev(d, bond)? * if turned { -1.0 } else { 1.0 })
+            })
         };
         let by_bond = medium.lattice.is_row() && self.kind.is_none();
         let families = |d: &Profile<BondEnergy>, shell: usize, key: &str| match d.written().first() {
             Some(BondEnergy::PerArea(_)) if shell == 1 => medium.faces(key),
-            _ => medium.shell(shell, key),
+            _ => medium.shell(shell, key, &choice),
         };
-        match (&self.D, self.D.by_bond().filter(|_| by_bond)) {
-            (ByShell::One(d), _) => on(d, families(d, 1, "D")?, "D"),
-            (_, Some(list)) => on(&list, families(&list, 1, "D")?, "D"),
-            (ByShell::List(list), None) if list.is_empty() => {
-                Err(Error::invalid("D", "the list is empty: give one energy a neighbour shell, [\"2 meV\"]"))
-            }
-            (ByShell::List(list), None) => {
-                let shell = |(k, d): (usize, &Profile<BondEnergy>)| {
-                    let key = format!("D[{k}]");
-                    on(d, families(d, k + 1, &key)?, &key)
-                };
-                Ok(list.iter().enumerate().map(shell).collect::<Result<Vec<_>>>()?.concat())
-            }
+        if let Some(list) = self.D.by_bond().filter(|_| by_bond) {
+            return on(&list, families(&list, 1, "D")?, "D");
         }
+        let shell = |(shell, key, d): (usize, String, &_)| on(d, families(d, shell, &key)?, &key);
+        Ok(self.D.shells("D")?.into_iter().map(shell).collect::<Result<Vec<_>>>()?.concat())
     }
 }
 

@@ -10,6 +10,7 @@
 
 use super::EnergyTerm;
 use super::blocks::Blocks;
+use super::choice::Choice;
 use super::couplings::Couplings;
 use super::spec::{Medium, TermBuilder};
 use crate::error::{Error, Result};
@@ -38,7 +39,13 @@ pub struct ExchangeSpec {
     /// Exchange an area of the cross-section, between layers.
     #[serde(default)]
     pub J_area: Option<Profile<SurfaceEnergy>>,
-    /// Only these bonds (of every shell given); all if absent.
+    /// Only bonds with both ends among these sites; all if absent.
+    #[serde(default)]
+    pub sites: Option<Selection>,
+    /// Only bonds from the first of these to the second, with shells of their own.
+    #[serde(default)]
+    pub between: Option<[Selection; 2]>,
+    /// Only these bonds of a chain (of every shell given); all if absent.
     #[serde(default)]
     pub bonds: Option<Selection>,
 }
@@ -53,12 +60,12 @@ impl Described for ExchangeSpec {
 impl ExchangeSpec {
     /// Energies family by family.
     pub fn couplings(&self, medium: &Medium) -> Result<Vec<Couplings>> {
-        let bonds = self.bonds.as_ref();
+        let choice = Choice { sites: self.sites.as_ref(), between: self.between.as_ref(), bonds: self.bonds.as_ref() };
         Ok(match (&self.J, &self.A, &self.J_area) {
             (Some(j), None, None) if !j.is_empty() => {
                 let shell = |(k, j): (usize, &Profile<Energy>)| {
                     let key = format!("J[{k}]");
-                    medium.on_bonds(j, medium.shell(k + 1, &key)?, bonds, &key, |e, _| Ok(e.0))
+                    medium.on_bonds(j, medium.shell(k + 1, &key, &choice)?, &choice, &key, |e, _| Ok(e.0))
                 };
                 j.iter().enumerate().map(shell).collect::<Result<Vec<_>>>()?.concat()
             }
@@ -67,11 +74,11 @@ impl ExchangeSpec {
             }
             (None, Some(a), None) => {
                 let faces = medium.faces("A")?;
-                medium.on_bonds(a, faces, bonds, "A", |a, bond| medium.bond_from_stiffness_mev(a, bond))?
+                medium.on_bonds(a, faces, &choice, "A", |a, bond| medium.bond_from_stiffness_mev(a, bond))?
             }
             (None, None, Some(j)) => {
                 let faces = medium.faces("J_area")?;
-                medium.on_bonds(j, faces, bonds, "J_area", |j, bond| medium.bond_from_area_mev(j, bond))?
+                medium.on_bonds(j, faces, &choice, "J_area", |j, bond| medium.bond_from_area_mev(j, bond))?
             }
             (None, None, None) => {
                 let message =

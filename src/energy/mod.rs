@@ -2,13 +2,16 @@
 //!
 //! ```text
 //! E = − Σ J_ij m_i·m_j + Σ D d̂·(m_i × m_j) − Σ K (m_i·e)² − Σ K₂ (m_i·e)⁴ + Σ K_c (α₁²α₂² + …) − Σ μ_i m_i·B
+//!   + Σ m_iᵀ T_ij m_j − Σ B_ij (m_i·m_j)² − Σ K_ijkl (m_i·m_j)(m_k·m_l)
 //! ```
 //! Every bond is counted once; energies are in meV, moments in μ_B, fields in T. One file a term; to add a term, write
 //! its file and name it in [`TermSpec`].
 
 mod anisotropy;
+mod biquadratic;
 mod blocks;
 mod by_shell;
+mod choice;
 mod coupling;
 mod couplings;
 mod cubic_anisotropy;
@@ -17,16 +20,20 @@ mod dipolar;
 mod dmi;
 mod evaluator;
 mod exchange;
+mod four_spin;
 mod hamiltonian;
 pub mod magnetostatics;
+mod pairs;
 mod recorded;
 mod spec;
 mod symmetry;
 mod zeeman;
 
 pub use anisotropy::{Anisotropy, AnisotropySpec};
+pub use biquadratic::{Biquadratic, BiquadraticSpec};
 pub use blocks::{Block, Blocks, Bonds, multiply};
 pub use by_shell::ByShell;
+pub use choice::Choice;
 pub use coupling::{AllPairs, Coupling};
 pub use couplings::Couplings;
 pub use cubic_anisotropy::{CubicAnisotropy, CubicAnisotropySpec};
@@ -35,8 +42,10 @@ pub use dipolar::DipolarSpec;
 pub use dmi::{Dmi, DmiKind, DmiSpec};
 pub use evaluator::Evaluator;
 pub use exchange::{Exchange, ExchangeSpec};
+pub use four_spin::{FourSpin, FourSpinSpec, QuadSpec};
 pub use hamiltonian::{Hamiltonian, LONG};
 pub use magnetostatics::Magnetostatics;
+pub use pairs::{Convention, Counting, DmiForm, EnergyForm, PairSpec, Pairs, PairsSpec};
 pub use recorded::{Stored, recorded};
 pub use spec::{FamilyBond, Medium, Part, TermBuilder, TermSpec};
 pub use symmetry::symmetry_axes;

@@ -1,8 +1,9 @@
 //! From a term as written in a config to a term with numbers a site: units, cell sizes and selections.
 
+use super::choice::{Choice, Chosen};
 use super::{
-    AnisotropySpec, Couplings, CubicAnisotropySpec, DemagSpec, DipolarSpec, DmiSpec, EnergyTerm, ExchangeSpec,
-    ZeemanSpec,
+    AnisotropySpec, BiquadraticSpec, Couplings, CubicAnisotropySpec, DemagSpec, DipolarSpec, DmiSpec, EnergyTerm,
+    ExchangeSpec, FourSpinSpec, PairsSpec, ZeemanSpec,
 };
 use crate::error::{Error, Result};
 use crate::lattice::{BondFamily, Hop, Lattice, Selection};
@@ -17,6 +18,9 @@ family! {
         Anisotropy(AnisotropySpec),
         CubicAnisotropy(CubicAnisotropySpec),
         Dmi(DmiSpec),
+        Pairs(PairsSpec),
+        Biquadratic(BiquadraticSpec),
+        FourSpin(FourSpinSpec),
         Zeeman(ZeemanSpec),
         Dipolar(DipolarSpec),
         Demag(DemagSpec),
@@ -64,8 +68,16 @@ impl Part {
     }
 }
 
-/// A bond: its family and its two sites.
-pub type FamilyBond<'a> = (&'a BondFamily, [usize; 2]);
+/// A bond: its family, its two sites, and whether it leads from the second of two selections to the first.
+#[derive(Clone, Copy, Debug)]
+pub struct FamilyBond<'a> {
+    /// Its family.
+    pub family: &'a BondFamily,
+    /// Its ends.
+    pub sites: [usize; 2],
+    /// Whether it was chosen as one that leads the other way.
+    pub reversed: bool,
+}
 
 impl<'a> Medium<'a> {
     /// All of a lattice.
@@ -110,28 +122,38 @@ impl<'a> Medium<'a> {
     pub fn bond_energy_mev(&self, d: BondEnergy, bond: FamilyBond) -> Result<f64> {
         match d {
             BondEnergy::PerBond(e) => Ok(e.0),
-            BondEnergy::PerArea(d) => Ok(d.over_area(self.lattice.bond_section_nm2(bond)?).0),
+            BondEnergy::PerArea(d) => Ok(d.over_area(self.lattice.bond_section_nm2(bond.family, bond.sites)?).0),
         }
     }
 
     /// Exchange energy of a bond (meV) of one an area.
     pub fn bond_from_area_mev(&self, j: SurfaceEnergy, bond: FamilyBond) -> Result<f64> {
-        Ok(j.over_area(self.lattice.bond_section_nm2(bond)?).0)
+        Ok(j.over_area(self.lattice.bond_section_nm2(bond.family, bond.sites)?).0)
     }
 
     /// Exchange energy of a bond (meV) of a stiffness.
     pub fn bond_from_stiffness_mev(&self, a: ExchangeStiffness, bond: FamilyBond) -> Result<f64> {
-        Ok(2.0 * a.over_length(self.lattice.bond_section_nm2(bond)? / self.lattice.bond_length_nm(bond.0)?).0)
+        Ok(2.0
+            * a.over_length(
+                self.lattice.bond_section_nm2(bond.family, bond.sites)? / self.lattice.bond_length_nm(bond.family)?,
+            )
+            .0)
     }
 
-    /// [`moments_mub`](Self::moments_mub), 0 where a site is vacant, for moments that act on each other; an error where they stand
-    /// in no chain.
-    pub fn acting_moments_mub(&self) -> Result<Vec<f64>> {
-        if !self.lattice.is_row() {
-            let message =
-                "moments act on each other along a chain only: give the lattice as one, or leave this term out";
-            return Err(Error::invalid("", message));
+    /// Refuses moments that act on each other and stand in no chain.
+    pub fn in_a_chain(&self) -> Result<()> {
+        match self.lattice.is_row() {
+            true => Ok(()),
+            false => {
+                let message =
+                    "moments act on each other along a chain only: give the lattice as one, or leave this term out";
+                Err(Error::invalid("", message))
+            }
         }
+    }
+
+    /// [`moments_mub`](Self::moments_mub), 0 where a site is vacant, for moments that act on each other.
+    pub fn acting_moments_mub(&self) -> Result<Vec<f64>> {
         let (mut moments, vacant) = (self.moments_mub()?, &self.lattice.vacant);
         moments.iter_mut().zip(vacant).filter(|(_, vacant)| **vacant).for_each(|(moment, _)| *moment = 0.0);
         Ok(moments)
@@ -155,54 +177,36 @@ impl<'a> Medium<'a> {
         Ok(list)
     }
 
-    /// The bonds of a shell; `key` is the place of what acts on them.
-    pub fn shell(&self, shell: usize, key: &str) -> Result<Vec<BondFamily>> {
-        self.lattice.admits(shell).map_err(|e| e.within(key))?;
-        Ok(self.lattice.shell(shell))
-    }
-
-    /// The bonds of cells that share a face.
-    pub fn faces(&self, key: &str) -> Result<Vec<BondFamily>> {
-        self.lattice.faces().map_err(|e| e.within(key))
-    }
-
     /// The values of a profile on the chosen bonds of some families, made numbers by `convert`, which is told the bond; 0 on all
     /// others and where a site of the bond is vacant. `key` is the profile's place.
     pub fn on_bonds<T: Copy>(
         &self,
         profile: &Profile<T>,
         families: Vec<BondFamily>,
-        selection: Option<&Selection>,
+        choice: &Choice,
         key: &str,
         convert: impl Fn(T, FamilyBond) -> Result<f64>,
     ) -> Result<Vec<Couplings>> {
-        let mut couplings = Couplings::none(families, self.lattice.sites);
-        let numbered = |(k, c): (usize, &Couplings)| c.family.bonds().map(|sites| (k, sites)).collect::<Vec<_>>();
-        let mut chosen: Vec<(usize, [usize; 2])> = couplings.iter().enumerate().flat_map(numbered).collect();
-        if let Some(selection) = selection {
-            chosen = self.numbered(selection, &chosen).map_err(|e| e.within("bonds"))?;
-        }
-        if let Some(part) = &self.part {
-            chosen.retain(|(_, sites)| sites.iter().any(|i| part.inside[*i]));
-        }
-        let value = |value, k: usize| convert(value, (&couplings[chosen[k].0].family, chosen[k].1));
+        let chosen = self.choose(&families, choice)?;
+        let value = |value, k: usize| {
+            let Chosen { family, sites, reversed } = chosen[k];
+            convert(value, FamilyBond { family: &families[family], sites, reversed })
+        };
         let values = profile.values(chosen.len(), "bond", value).map_err(|e| e.within(key))?;
-        for ((k, [i, j]), value) in chosen.into_iter().zip(values) {
+        let mut couplings = Couplings::none(families, self.lattice.sites);
+        for (Chosen { family, sites: [i, j], .. }, value) in chosen.into_iter().zip(values) {
             if !self.lattice.vacant[i] && !self.lattice.vacant[j] {
-                let share = self.part.as_ref().map_or(1.0, |part| part.share(couplings[k].family.hop, [i, j]));
-                couplings[k].mev[i] = value * share;
+                let share = self.part.as_ref().map_or(1.0, |part| part.share(couplings[family].family.hop, [i, j]));
+                couplings[family].mev[i] = value * share;
             }
         }
         Ok(couplings)
     }
 
-    /// Bonds of a chain by their numbers.
-    fn numbered(&self, selection: &Selection, bonds: &[(usize, [usize; 2])]) -> Result<Vec<(usize, [usize; 2])>> {
-        if !self.lattice.is_row() {
-            let message = "bonds are chosen by number in a chain only: choose \"sites\", with both ends among them";
-            return Err(Error::invalid("", message));
-        }
-        Ok(selection.indices(bonds.len(), "bond")?.into_iter().map(|k| bonds[k]).collect())
+    /// The share of a part in what joins so many sites: that of its sites among them.
+    pub fn share<const N: usize>(&self, sites: [usize; N]) -> f64 {
+        let Some(part) = &self.part else { return 1.0 };
+        sites.iter().filter(|i| part.inside[**i]).count() as f64 / N as f64
     }
 
     /// The chosen sites that are not vacant; all of these if there is no choice.
@@ -213,10 +217,9 @@ impl<'a> Medium<'a> {
     }
 
     fn chosen(&self, selection: Option<&Selection>) -> Result<Vec<usize>> {
-        let Lattice { sites: count, regions, .. } = self.lattice;
         let mut sites = match selection {
-            None => (0..*count).collect(),
-            Some(s) => s.sites(*count, regions).map_err(|e| e.within("sites"))?,
+            None => (0..self.lattice.sites).collect(),
+            Some(s) => s.sites(self.lattice).map_err(|e| e.within("sites"))?,
         };
         if let Some(part) = &self.part {
             sites.retain(|i| part.inside[*i]);

@@ -156,7 +156,6 @@ impl Lattice {
     pub fn admits(&self, shell: usize) -> Result<()> {
         let (sites, row, Grid { size, periodic }) = (self.sites, self.is_row(), self.grid);
         let hops = self.hops_of(shell);
-        let closes = |hop: &Hop| hop.atoms[0] == hop.atoms[1] && self.grid.closes(hop.shift);
         let message = match row {
             true if periodic[0] && 2 * shell >= sites => {
                 let most = (sites - 1) / 2;
@@ -165,7 +164,7 @@ impl Lattice {
             true if !periodic[0] && shell > 1.max(sites - 1) => {
                 format!("shell {shell} reaches further than the chain of {sites} sites is long")
             }
-            false if hops.iter().any(closes) => {
+            false if hops.iter().any(|hop| self.closes(*hop)) => {
                 let way_out = "make a periodic direction longer, or open";
                 format!("shell {shell} joins sites with images of themselves in a lattice of {size:?} cells: {way_out}")
             }

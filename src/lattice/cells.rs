@@ -30,7 +30,7 @@ impl Lattice {
     }
 
     /// Area between the centres of two cells that share a face (nm²).
-    pub fn bond_section_nm2(&self, (family, sites): (&BondFamily, [usize; 2])) -> Result<f64> {
+    pub fn bond_section_nm2(&self, family: &BondFamily, sites: [usize; 2]) -> Result<f64> {
         let sections = self.known_sections_nm()?;
         let across = match family.hop.shift.map(|n| n != 0) {
             [_, false, false] => [None, None],

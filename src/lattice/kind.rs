@@ -127,6 +127,9 @@ macro_rules! cells_of {
             /// Whether the last cell in a direction is followed by the first: a flag a direction, or one for all.
             #[serde(default)]
             pub periodic: $crate::lattice::Periodic,
+            /// Sites outside do not exist; all are there if not given.
+            #[serde(default)]
+            pub shape: Option<$crate::lattice::Shape>,
             /// Spins that never move.
             #[serde(default)]
             pub frozen: Vec<$crate::lattice::Frozen>,
@@ -153,6 +156,7 @@ macro_rules! cells_of {
                 let cell = self.unit_cell()?;
                 let mut lattice = cell.resolve(name, &self.cells, &self.periodic, nm.unwrap_or(1.0))?;
                 lattice.spacing_nm = nm;
+                let mut lattice = lattice.cut(self.shape.as_ref())?;
                 common.name_regions(&mut lattice)?;
                 common.complete(lattice)
             }

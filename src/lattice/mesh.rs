@@ -2,7 +2,7 @@
 
 use super::kind::{UnitCell, common};
 use super::sites::{Frozen, Periodic, SiteMoment, positive};
-use super::{Lattice, LatticeKind, Selection};
+use super::{Lattice, LatticeKind, Selection, Shape};
 use crate::error::Result;
 use crate::registry::Described;
 use crate::units::Length;
@@ -21,6 +21,9 @@ pub struct Mesh {
     /// Whether the last cell in a direction is followed by the first: a flag a direction, or one for all.
     #[serde(default)]
     pub periodic: Periodic,
+    /// Cells outside do not exist; all are there if not given.
+    #[serde(default)]
+    pub shape: Option<Shape>,
     /// Spins that never move.
     #[serde(default)]
     pub frozen: Vec<Frozen>,
@@ -61,6 +64,8 @@ impl LatticeKind for Mesh {
         let mut lattice = self.unit_cell().resolve(Mesh::NAME, &self.cells, &self.periodic, 1.0)?;
         let [x, y, z] = self.cell.map(|edge| edge.0);
         (lattice.spacing_nm, lattice.sections_nm) = (Some(x), Some(vec![[y, z]; lattice.sites]));
+        let mut lattice = lattice.cut(self.shape.as_ref())?;
+        lattice.sections_nm = Some(vec![[y, z]; lattice.sites]);
         common.name_regions(&mut lattice)?;
         common.complete(lattice)
     }

@@ -23,6 +23,7 @@ mod measure;
 mod order;
 mod places;
 mod selection;
+mod shape;
 mod shells;
 mod sites;
 mod slots;
@@ -53,6 +54,7 @@ pub use kagome::Kagome;
 pub use measure::shortest;
 pub use mesh::Mesh;
 pub use selection::Selection;
+pub use shape::{Corners, Disc, Ellipse, Ring, Shape};
 pub use shells::Hop;
 pub use sites::{Frozen, Periodic, SiteMoment, SiteSection};
 pub use slots::Slots;
@@ -164,9 +166,12 @@ impl Lattice {
         frozen
     }
 
-    /// The sites of a region.
-    pub fn region(&self, name: &str) -> Result<&[usize]> {
-        selection::region(&self.regions, name)
+    /// The sites of a region, or of a species.
+    pub fn named(&self, name: &str) -> Result<Vec<usize>> {
+        if let Some(species) = self.species.iter().position(|s| s == name) {
+            return Ok((0..self.sites).filter(|i| self.atoms[self.cell(*i).0].species == species).collect());
+        }
+        selection::region(&self.regions, &self.species, name).map(<[usize]>::to_vec)
     }
 
     /// The same lattice with its vacant sites frozen, their idle spins along `direction`.

@@ -1,9 +1,12 @@
 //! Which sites or bonds something is for.
 
+use super::shape::{Corners, Disc, Ellipse, Ring};
+use super::{Lattice, Shape};
 use crate::error::{Error, Result};
+use crate::units::Extent;
 use crate::words::{nearest, quoted};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::de::{MapAccess, SeqAccess, Visitor};
+use serde::de::{Error as _, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use serde_json::json;
 use std::borrow::Cow;
@@ -23,16 +26,26 @@ pub enum Selection {
         /// From one to the next; 1 if not given.
         step: usize,
     },
-    /// `"top"`: the sites of one of the lattice's regions.
+    /// `"top"`: the sites of one of the lattice's regions, or of a species.
     Region(String),
+    /// `{"disc": {"radius": 8}}`: the sites inside.
+    Shape(Shape),
 }
 
 impl Selection {
-    /// The chosen sites of so many, some of which may have names together.
-    pub fn sites(&self, count: usize, regions: &BTreeMap<String, Vec<usize>>) -> Result<Vec<usize>> {
+    /// The chosen sites of a lattice.
+    pub fn sites(&self, lattice: &Lattice) -> Result<Vec<usize>> {
         match self {
-            Selection::Region(name) => region(regions, name).map(<[usize]>::to_vec),
-            _ => self.indices(count, "site"),
+            Selection::Region(name) => lattice.named(name),
+            Selection::Shape(shape) => {
+                let inside = shape.inside(lattice)?;
+                let sites: Vec<usize> = (0..lattice.sites).filter(|i| inside[*i]).collect();
+                match sites.is_empty() {
+                    true => Err(Error::invalid("", "no site is inside this shape")),
+                    false => Ok(sites),
+                }
+            }
+            _ => self.indices(lattice.sites, "site"),
         }
     }
 
@@ -66,6 +79,9 @@ impl Selection {
                 }
                 Ok((*from..=*to).step_by(*step).collect())
             }
+            Selection::Shape(_) => {
+                Err(Error::invalid("", format!("{what}s are chosen here by number, [3, 4], not by a shape")))
+            }
             Selection::Region(name) => {
                 let name = quoted(name);
                 Err(Error::invalid(
@@ -78,24 +94,24 @@ impl Selection {
 }
 
 /// The sites of a region.
-pub(super) fn region<'a>(regions: &'a BTreeMap<String, Vec<usize>>, name: &str) -> Result<&'a [usize]> {
+pub(super) fn region<'a>(
+    regions: &'a BTreeMap<String, Vec<usize>>,
+    species: &[String],
+    name: &str,
+) -> Result<&'a [usize]> {
     regions.get(name).map(Vec::as_slice).ok_or_else(|| {
-        let way_out = match nearest(name, regions.keys().map(String::as_str)) {
+        let way_out = match nearest(name, regions.keys().chain(species).map(String::as_str)) {
             Some(near) => format!("did you mean {}?", quoted(near)),
-            None if regions.is_empty() => {
-                format!("give the chain \"regions\": {{{}: {{\"from\": 3, \"to\": 9}}}}", quoted(name))
+            None if regions.is_empty() && species.is_empty() => {
+                format!("give the lattice \"regions\": {{{}: {{\"from\": 3, \"to\": 9}}}}", quoted(name))
             }
             None => {
-                let names: Vec<String> = regions.keys().map(|name| quoted(name)).collect();
+                let names: Vec<String> = regions.keys().chain(species).map(|name| quoted(name)).collect();
                 format!("there are {}", names.join(", "))
             }
         };
         Error::invalid("", format!("no region {} in the lattice: {way_out}", quoted(name)))
     })
-}
-
-fn one() -> usize {
-    1
 }
 
 fn out_of_range(place: String, found: usize, count: usize, what: &str) -> Error {
@@ -111,10 +127,10 @@ impl JsonSchema for Selection {
         "Selection".into()
     }
 
-    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let index = json!({"type": "integer", "minimum": 0});
         json_schema!({
-            "description": "indices like [3, 4] or a range like {\"from\": 3, \"to\": 9, \"step\": 2}, both ends included",
+            "description": "indices like [3, 4], a range like {\"from\": 3, \"to\": 9, \"step\": 2} with both ends, a shape, or a name",
             "oneOf": [
                 {"type": "array", "items": index, "uniqueItems": true},
                 {
@@ -123,7 +139,8 @@ impl JsonSchema for Selection {
                     "required": ["from", "to"],
                     "additionalProperties": false,
                 },
-                {"type": "string", "description": "the name of one of the lattice's regions"},
+                {"type": "string", "description": "the name of one of the lattice's regions, or a species"},
+                generator.subschema_for::<Shape>(),
             ],
         })
     }
@@ -136,7 +153,7 @@ impl<'de> Deserialize<'de> for Selection {
             type Value = Selection;
             fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
                 f.write_str(
-                    "a list of indices like [3, 4], a range like {\"from\": 3, \"to\": 9} or the name of a region",
+                    "a list of indices like [3, 4], a range like {\"from\": 3, \"to\": 9}, a shape like {\"disc\": {\"radius\": 8}} or the name of a region",
                 )
             }
             fn visit_str<E: serde::de::Error>(self, name: &str) -> std::result::Result<Selection, E> {
@@ -152,14 +169,42 @@ impl<'de> Deserialize<'de> for Selection {
             fn visit_map<A: MapAccess<'de>>(self, m: A) -> std::result::Result<Selection, A::Error> {
                 #[derive(Deserialize)]
                 #[serde(deny_unknown_fields)]
-                struct Ends {
-                    from: usize,
-                    to: usize,
-                    #[serde(default = "one")]
-                    step: usize,
+                struct Keys {
+                    from: Option<usize>,
+                    to: Option<usize>,
+                    step: Option<usize>,
+                    r#box: Option<Corners>,
+                    disc: Option<Disc>,
+                    ellipse: Option<Ellipse>,
+                    polygon: Option<Vec<[Extent; 2]>>,
+                    ring: Option<Ring>,
+                    all: Option<Vec<Shape>>,
+                    any: Option<Vec<Shape>>,
+                    not: Option<Box<Shape>>,
                 }
-                let e = Ends::deserialize(serde::de::value::MapAccessDeserializer::new(m))?;
-                Ok(Selection::Range { from: e.from, to: e.to, step: e.step })
+                let keys = Keys::deserialize(serde::de::value::MapAccessDeserializer::new(m))?;
+                let shapes = [
+                    keys.r#box.map(Shape::Box),
+                    keys.disc.map(Shape::Disc),
+                    keys.ellipse.map(Shape::Ellipse),
+                    keys.polygon.map(Shape::Polygon),
+                    keys.ring.map(Shape::Ring),
+                    keys.all.map(Shape::All),
+                    keys.any.map(Shape::Any),
+                    keys.not.map(Shape::Not),
+                ];
+                let mut shapes = shapes.into_iter().flatten();
+                match (shapes.next(), shapes.next(), (keys.from, keys.to, keys.step)) {
+                    (Some(shape), None, (None, None, None)) => Ok(Selection::Shape(shape)),
+                    (None, _, (Some(from), Some(to), step)) => {
+                        Ok(Selection::Range { from, to, step: step.unwrap_or(1) })
+                    }
+                    (None, _, (None, ..)) => Err(A::Error::missing_field("from")),
+                    (None, ..) => Err(A::Error::missing_field("to")),
+                    _ => Err(A::Error::custom(
+                        "found more than one choice: take one shape, or join several with \"all\" or \"any\"",
+                    )),
+                }
             }
         }
         d.deserialize_any(Seen)

@@ -4,7 +4,8 @@
 //! Distances are those of the unbounded lattice, along the directions of more than one cell: a shell is the same in a small box as in
 //! a large one. A bond leads up: to larger z, of the same z to larger y, of the same y to larger x; in a row ahead.
 
-use super::{Lattice, Shift};
+use super::{BondFamily, Lattice, Shift};
+use crate::error::{Error, Result};
 use crate::geometry::matrix::determinant;
 use crate::geometry::{Vector, vector};
 
@@ -60,6 +61,9 @@ impl Lattice {
 
     /// Whether a bond leads up.
     pub fn leads_up(&self, hop: Hop) -> bool {
+        if self.is_row() {
+            return hop.shift[0] > 0;
+        }
         let r = self.along(hop);
         let least = SAME * vector::norm(r);
         r.iter().rev().find(|c| c.abs() > least).is_some_and(|c| *c > 0.0)
@@ -70,17 +74,57 @@ impl Lattice {
         if self.is_row() {
             return (1..=shells).map(|n| (n, Hop::ahead(n))).collect();
         }
-        let longest = (0..3).filter(|d| self.grid.extends(*d)).map(|d| self.steps[d].0).fold(0.0, f64::max);
-        let mut radius = longest;
+        let mut radius = self.longest_step();
         loop {
             let (within, known) = (self.hops(radius), self.pairs());
             let ranked = self.ranked(&within);
             let all = |pair: &usize| ranked.iter().any(|(shell, hop)| *shell > shells && self.pair(*hop) == *pair);
-            if longest == 0.0 || shells == 0 || known.iter().all(all) {
+            if radius == 0.0 || shells == 0 || known.iter().all(all) {
                 return ranked.into_iter().filter(|(shell, _)| *shell <= shells).collect();
             }
             radius *= FURTHER;
         }
+    }
+
+    /// The families of the shell of that number among the bonds that join two selections of sites.
+    pub fn shell_between(&self, shell: usize, ends: [&[bool]; 2]) -> Result<Vec<BondFamily>> {
+        let joins = |family: &BondFamily| {
+            let [a, b] = ends;
+            family.bonds().any(|[i, j]| (a[i] && b[j]) || (b[i] && a[j]))
+        };
+        let (mut radius, mut found, mut done) = (0.0, 0, 0.0);
+        let diagonal: f64 = (0..3).map(|d| self.steps[d].0 * (self.grid.size[d] + 1) as f64).sum();
+        while radius <= FURTHER * diagonal {
+            radius = if radius == 0.0 { self.longest_step() } else { FURTHER * radius };
+            let hops = self.hops(radius);
+            for alike in hops.chunk_by(|a, b| b.0 - a.0 <= SAME * b.0).filter(|alike| alike[0].0 > done * (1.0 + SAME))
+            {
+                let held =
+                    alike.iter().map(|(_, hop)| *hop).filter(|hop| self.grid.holds(hop.shift) && !self.closes(*hop));
+                let families: Vec<BondFamily> =
+                    held.map(|hop| BondFamily::new(self, shell, hop)).filter(&joins).collect();
+                found += usize::from(!families.is_empty());
+                if found == shell && !families.is_empty() {
+                    return Ok(families);
+                }
+            }
+            done = radius;
+        }
+        let message = format!("there are only {found} shells of bonds between these two");
+        Err(Error::invalid("", message))
+    }
+
+    /// Whether a hop leads from a site to an image of itself; in a ring, whether it is half way round or further.
+    pub fn closes(&self, hop: Hop) -> bool {
+        match self.is_row() {
+            true => self.grid.periodic[0] && 2 * hop.shift[0].unsigned_abs() >= self.sites,
+            false => hop.atoms[0] == hop.atoms[1] && self.grid.closes(hop.shift),
+        }
+    }
+
+    /// The longest step along a direction that extends.
+    fn longest_step(&self) -> f64 {
+        (0..3).filter(|d| self.grid.extends(*d)).map(|d| self.steps[d].0).fold(0.0, f64::max)
     }
 
     /// All hops that lead up and are no longer than that, with their lengths, the shortest first.

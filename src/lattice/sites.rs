@@ -101,7 +101,13 @@ impl Common<'_> {
             if name == "default" {
                 return Err(Error::invalid(place, "\"default\" is what is in no region: give this one another name"));
             }
-            let chosen = chosen.indices(lattice.sites, "site").map_err(|e| e.within(&place))?;
+            if lattice.species.contains(name) {
+                return Err(Error::invalid(place, "a species has this name: give the region another one"));
+            }
+            // a region is no part of another one
+            let known = std::mem::take(&mut lattice.regions);
+            let chosen = lattice.chosen(chosen).map_err(|e| e.within(&place))?;
+            lattice.regions = known;
             lattice.regions.insert(name.clone(), chosen);
         }
         Ok(())
@@ -158,7 +164,7 @@ impl Common<'_> {
 impl Lattice {
     /// The sites of a selection.
     pub fn chosen(&self, selection: &Selection) -> Result<Vec<usize>> {
-        selection.sites(self.sites, &self.regions)
+        selection.sites(self)
     }
 }
 

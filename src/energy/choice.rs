@@ -1,0 +1,94 @@
+//! Which bonds a term is for.
+
+use super::spec::Medium;
+use crate::error::{Error, Result};
+use crate::lattice::{BondFamily, Selection};
+
+/// As written in a config; all bonds if nothing is said.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Choice<'a> {
+    /// Bonds with both ends among these.
+    pub sites: Option<&'a Selection>,
+    /// Bonds with one end among the first and the other among the second.
+    pub between: Option<&'a [Selection; 2]>,
+    /// Bonds of a chain by their numbers.
+    pub bonds: Option<&'a Selection>,
+}
+
+/// A bond that is chosen: number of its family, its sites, and whether it leads from the second of two selections to the first.
+#[derive(Clone, Copy, Debug)]
+pub struct Chosen {
+    pub family: usize,
+    pub sites: [usize; 2],
+    pub reversed: bool,
+}
+
+impl Medium<'_> {
+    /// The bonds of a shell, between two selections one of their own; `key` is the place of what acts on them.
+    pub fn shell(&self, shell: usize, key: &str, choice: &Choice) -> Result<Vec<BondFamily>> {
+        let Some(between) = choice.between else {
+            self.lattice.admits(shell).map_err(|e| e.within(key))?;
+            return Ok(self.lattice.shell(shell));
+        };
+        let [a, b] = self.ends(between)?;
+        self.lattice.shell_between(shell, [&a, &b]).map_err(|e| e.within(key))
+    }
+
+    /// The bonds of cells that share a face.
+    pub fn faces(&self, key: &str) -> Result<Vec<BondFamily>> {
+        self.lattice.faces().map_err(|e| e.within(key))
+    }
+
+    /// The chosen bonds of some families, family after family.
+    pub(super) fn choose(&self, families: &[BondFamily], choice: &Choice) -> Result<Vec<Chosen>> {
+        let of = |(family, bonds): (usize, &BondFamily)| -> Vec<Chosen> {
+            bonds.bonds().map(|sites| Chosen { family, sites, reversed: false }).collect()
+        };
+        let mut chosen: Vec<Chosen> = families.iter().enumerate().flat_map(of).collect();
+        if let Some(selection) = choice.bonds {
+            chosen = self.numbered(selection, &chosen).map_err(|e| e.within("bonds"))?;
+        }
+        if let Some(selection) = choice.sites {
+            let inside = self.among(selection).map_err(|e| e.within("sites"))?;
+            chosen.retain(|bond| bond.sites.iter().all(|i| inside[*i]));
+            if chosen.is_empty() {
+                return Err(Error::invalid("sites", "no bond has both its ends among these sites"));
+            }
+        }
+        if let Some(between) = choice.between {
+            let [a, b] = self.ends(between)?;
+            chosen.iter_mut().for_each(|bond| {
+                let [i, j] = bond.sites;
+                bond.reversed = !(a[i] && b[j]) && b[i] && a[j];
+            });
+            chosen.retain(|bond| bond.reversed || (a[bond.sites[0]] && b[bond.sites[1]]));
+            if chosen.is_empty() {
+                return Err(Error::invalid("between", "no bond leads from the first to the second of these"));
+            }
+        }
+        if let Some(part) = &self.part {
+            chosen.retain(|bond| bond.sites.iter().any(|i| part.inside[*i]));
+        }
+        Ok(chosen)
+    }
+
+    fn ends(&self, between: &[Selection; 2]) -> Result<[Vec<bool>; 2]> {
+        let end = |k: usize| self.among(&between[k]).map_err(|e| e.within(&format!("between[{k}]")));
+        Ok([end(0)?, end(1)?])
+    }
+
+    /// Whether each site is in a selection.
+    fn among(&self, selection: &Selection) -> Result<Vec<bool>> {
+        let mut inside = vec![false; self.lattice.sites];
+        selection.sites(self.lattice)?.into_iter().for_each(|i| inside[i] = true);
+        Ok(inside)
+    }
+
+    fn numbered(&self, selection: &Selection, bonds: &[Chosen]) -> Result<Vec<Chosen>> {
+        if !self.lattice.is_row() {
+            let message = "bonds are chosen by number in a chain only: choose \"sites\", with both ends among them";
+            return Err(Error::invalid("", message));
+        }
+        Ok(selection.indices(bonds.len(), "bond")?.into_iter().map(|k| bonds[k]).collect())
+    }
+}
