@@ -49,7 +49,7 @@ impl Regions {
     /// Which sites a state is for.
     fn sites(&self, name: &str, context: &StateContext) -> Result<Vec<usize>> {
         if name != DEFAULT {
-            return context.lattice.region(name).map(<[usize]>::to_vec).map_err(|e| e.within(name));
+            return context.lattice.named(name).map_err(|e| e.within(name));
         }
         let mut free = vec![true; context.lattice.sites];
         for name in self.states.keys().filter(|name| *name != DEFAULT) {

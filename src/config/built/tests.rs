@@ -1,6 +1,7 @@
 use super::*;
 use crate::config::load_text;
 use crate::drive::{Silent, run};
+use crate::geometry::Vector;
 use crate::path::guess::{FirstGuess, Waypoints};
 use serde_json::{Value, json};
 use std::path::Path;
