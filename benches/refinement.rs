@@ -122,7 +122,7 @@ fn problem(sites: usize) -> Problem {
     let h = Hamiltonian::new(&chain, terms).expect("a valid chain");
     let [up, down] = [Direction::Z, Direction::Z.reversed()].map(|d| Spins::uniform(sites, d));
     let mut problem = Problem::new(h, up, down);
-    problem.guess = Some(GuessSpec::Sweep(Sweep { from: Edge::Left, width: None, axis: None }));
+    problem.guess = Some(GuessSpec::Sweep(Sweep::from(Edge::Left)));
     problem.images = Images::Count(IMAGES);
     problem
 }

@@ -64,7 +64,7 @@ fn case(name: &str, n: usize) -> Problem {
     };
     let mut problem = build.problem(state(1.0), state(-1.0));
     let from = if name == "ring in a field" { Edge::Center } else { Edge::Left };
-    problem.guess = Some(GuessSpec::Sweep(Sweep { from, width: None, axis: None }));
+    problem.guess = Some(GuessSpec::Sweep(Sweep::from(from)));
     problem.noise = Some(NoiseSpec { amplitude: Angle(2f64.to_radians()), seed: 1 });
     problem.images = Images::Count(17);
     (problem.refine, problem.certify, problem.neb.climb) = (false, false, false);

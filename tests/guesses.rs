@@ -98,7 +98,7 @@ fn every_entry_parses_into_the_member_of_its_name_and_summarises_itself_in_a_lin
         names(StateSpec::ENTRIES),
         "uniform domain_wall soliton skyrmion vortex spiral random vectors file regions"
     );
-    assert_eq!(names(GuessSpec::ENTRIES), "geodesic sweep rotation nlerp waypoints file");
+    assert_eq!(names(GuessSpec::ENTRIES), "geodesic sweep shrink drift droplet rotation nlerp waypoints file");
 }
 
 /// The members whose examples need no file; those of files are tested in `files.rs`.

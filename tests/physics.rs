@@ -115,7 +115,7 @@ fn a_wall_hops_in_the_peierls_regime_by_one_and_by_several_sites() {
 #[test]
 fn states_joined_by_a_flat_valley_have_a_certified_barrier_of_zero_and_the_reason_is_said() {
     // an easy plane: turning within it costs nothing, whatever the first path
-    for guess in [None, Some(GuessSpec::Sweep(Sweep { from: Edge::Left, width: None, axis: None }))] {
+    for guess in [None, Some(GuessSpec::Sweep(Sweep::from(Edge::Left)))] {
         let plane = Build::open(8).hard(0.1);
         let mut problem = plane.problem(Spins::uniform(8, Direction::Z), Spins::uniform(8, Direction::Y));
         problem.guess = guess;

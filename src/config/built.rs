@@ -219,8 +219,9 @@ pub fn expected_images(problem: &Problem, scales: &Scales) -> usize {
     match problem.images {
         Images::Count(n) => n,
         Images::Auto => {
-            let moving = moving_sites(&problem.initial, &problem.final_state);
-            FEWEST_IMAGES.max(scales.images_between(problem.hamiltonian.sites(), moving) + 2)
+            let lattice = problem.hamiltonian.lattice();
+            let moving = moving_sites(&problem.initial, &problem.final_state, lattice);
+            FEWEST_IMAGES.max(scales.images_between(lattice.sites_along(), moving) + 2)
         }
     }
 }

@@ -55,7 +55,7 @@ impl Estimate {
     /// Of a problem.
     pub fn of(problem: &Problem, scales: &Scales) -> Estimate {
         let start = expected_images(problem, scales);
-        let moving = moving_sites(&problem.initial, &problem.final_state);
+        let moving = moving_sites(&problem.initial, &problem.final_state, problem.hamiltonian.lattice());
         let saddles = if scales.wall_width_sites < PINNED { moving.max(1) } else { 1 };
         let images = match problem.images {
             Images::Count(n) => n,

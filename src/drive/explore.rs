@@ -39,7 +39,7 @@ impl Natural {
     }
 
     fn sweep(from: Edge, axis: Direction) -> Sweep {
-        Sweep { from, width: None, axis: Some(axis) }
+        Sweep { axis: Some(axis), ..from.into() }
     }
 
     fn about(self, axis: Direction) -> GuessSpec {

@@ -5,7 +5,8 @@ use super::outcome::{HistoryRow, RejectedPath};
 use crate::band::Band;
 use crate::geometry::Direction;
 use crate::landscape::Saddle;
-use crate::path::guess::GuessSpec;
+use crate::path::guess::{Drift, GuessSpec};
+use crate::units::Angle;
 
 /// Barriers that differ by no more than this part are alike.
 const ROUNDING: f64 = 1e-6;
@@ -90,8 +91,18 @@ pub fn describe(guess: &GuessSpec, axis: bool) -> String {
         Some(direction) if axis => format!("{name} about {direction}"),
         _ => name,
     };
+    let at = |name: String, helicity: &Option<Angle>| match helicity {
+        Some(angle) if axis => format!("{name} at {:.0}°", angle.0.to_degrees()),
+        _ => name,
+    };
     match guess {
-        GuessSpec::Sweep(s) => about(format!("sweep from {}", s.from), &s.axis),
+        GuessSpec::Sweep(s) => at(about(format!("sweep from {}", s.from), &s.axis), &s.helicity),
+        GuessSpec::Shrink(s) => at(about(guess.name().to_string(), &s.axis), &s.helicity),
+        GuessSpec::Droplet(d) => {
+            let from = d.center.as_ref().map_or(String::new(), |center| format!(" from {center}"));
+            at(about(format!("droplet{from}"), &d.axis), &d.helicity)
+        }
+        GuessSpec::Drift(Drift { direction: Some(direction) }) => format!("drift towards {direction}"),
         GuessSpec::Geodesic(g) => about(guess.name().to_string(), &g.axis),
         other => other.name().to_string(),
     }

@@ -136,7 +136,10 @@ impl<'a> Run<'a, '_> {
             })
         };
         let coarsest = match self.problem.images {
-            Images::Auto => self.scales.images_between(self.problem.hamiltonian.sites(), moving_sites(a, b)) + 2,
+            Images::Auto => {
+                let lattice = context.states.lattice;
+                self.scales.images_between(lattice.sites_along(), moving_sites(a, b, lattice)) + 2
+            }
             Images::Count(n) => image_levels(n, |n| make(n).is_ok_and(|p| p.largest_rotation() <= COARSEST))[0],
         };
         let band = Band::new(self.problem.evaluator(), make(coarsest)?);

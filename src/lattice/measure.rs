@@ -73,6 +73,13 @@ impl Lattice {
         })
     }
 
+    /// So many sites, a spacing apart, are as long as the lattice is along x, y or z, whichever is most; of a row, all its sites.
+    pub fn sites_along(&self) -> usize {
+        let [low, high] = if self.is_row() { [[0.0; 3]; 2] } else { self.bounds() };
+        let longest = vector::sub(high, low).into_iter().fold(0.0, f64::max);
+        if self.is_row() { self.sites } else { longest.round() as usize + 1 }
+    }
+
     /// The middle of the box of all sites, in spacings.
     pub fn middle(&self) -> Vector {
         let [low, high] = self.bounds();
@@ -104,6 +111,15 @@ impl Lattice {
             point[c] = self.coordinate_along(c, *extent).map_err(|e| e.within(&format!("[{c}]")))?;
         }
         Ok(point)
+    }
+
+    /// A point in spacings as a config has it: the place of which [`point`](Self::point) is this.
+    pub fn place_of(&self, point: Vector) -> Place {
+        let number = |axis: usize| {
+            let one = self.coordinate_along(axis, Extent::Spacings(1.0)).unwrap_or(1.0);
+            Extent::Spacings(point[axis] / one)
+        };
+        Place([0, 1, 2].map(number).into())
     }
 
     /// x, y or z of a place, in spacings; cells of a grid are counted by their own edges.

@@ -35,6 +35,13 @@ impl fmt::Display for Extent {
     }
 }
 
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let coordinates: Vec<String> = self.0.iter().map(Extent::to_string).collect();
+        write!(f, "[{}]", coordinates.join(", "))
+    }
+}
+
 impl JsonSchema for Extent {
     fn schema_name() -> Cow<'static, str> {
         "Extent".into()

@@ -10,6 +10,7 @@ use crate::path::Path;
 use crate::spins::Spins;
 use crate::threads::{MADE, apiece};
 use rayon::prelude::*;
+use std::borrow::Cow;
 
 /// Ends farther apart than this (rad) are nearly opposite: they turn about the common axis, not in their own plane.
 pub const NEARLY_OPPOSITE: f64 = 3.0;
@@ -101,7 +102,7 @@ pub struct Ways<'a> {
 /// The ways about one axis.
 #[derive(Clone, Debug)]
 pub struct About<'w> {
-    rows: &'w [u32],
+    rows: Cow<'w, [u32]>,
     ways: Vec<Way>,
 }
 
@@ -150,7 +151,28 @@ impl<'a> Ways<'a> {
             let i = self.firsts[row];
             ways[row] = Way::new(self.a.get(i), self.b.get(i), axis);
         }
-        About { rows: &self.rows, ways }
+        About { rows: Cow::Borrowed(&self.rows), ways }
+    }
+
+    /// The ways of all spins, each nearly opposite one about an axis of its own, from its site and the line on which it turns over;
+    /// all these lines point to one side.
+    pub(super) fn about_each(&self, axis: impl Fn(usize, Vector) -> Direction) -> About<'_> {
+        let line = |i: usize| line(self.a.get(i), self.b.get(i));
+        let first = self.opposite.first().map_or([0.0, 0.0, 1.0], |row| line(self.firsts[*row]));
+        let below = first.iter().rev().find(|c| c.abs() > 1e-6).is_some_and(|c| *c < 0.0);
+        let side = if below { vector::scale(-1.0, first) } else { first };
+        let mut is_opposite = vec![false; self.direct.len()];
+        self.opposite.iter().for_each(|row| is_opposite[*row] = true);
+        let way = |i: usize| {
+            let row = self.rows[i] as usize;
+            if !is_opposite[row] {
+                return self.direct[row];
+            }
+            let up = if vector::dot(line(i), side) < 0.0 { vector::scale(-1.0, line(i)) } else { line(i) };
+            Way::new(self.a.get(i), self.b.get(i), axis(i, up))
+        };
+        let sites = 0..self.a.sites();
+        About { rows: Cow::Owned(sites.clone().map(|i| i as u32).collect()), ways: sites.map(way).collect() }
     }
 
     fn common_axis(&self, axis: Direction) -> Direction {

@@ -4,21 +4,32 @@
 //! neighbours would come apart on the way and the exchange energy would explode.
 
 mod clock;
+mod difference;
+mod drift;
+mod droplet;
 mod file;
+mod front;
 mod geodesic;
+mod natural;
 mod nlerp;
 mod noise;
+mod outline;
 mod rotation;
+mod shrink;
 mod smooth;
 mod sweep;
 mod waypoints;
 
 pub use clock::{NEARLY_OPPOSITE, Way, Ways, common_axis, ways};
+pub use drift::Drift;
+pub use droplet::Droplet;
 pub use file::PathFile;
 pub use geodesic::Geodesic;
+pub use natural::natural;
 pub use nlerp::{Nlerp, component_sag};
 pub use noise::{NoiseSpec, add_noise};
 pub use rotation::{Rotation, best_turn};
+pub use shrink::Shrink;
 pub use smooth::smooth;
 pub use sweep::{Edge, Sweep, moving_sites};
 pub use waypoints::Waypoints;
@@ -35,6 +46,9 @@ family! {
     GuessSpec as FirstGuess {
         Geodesic(Geodesic),
         Sweep(Sweep),
+        Shrink(Shrink),
+        Drift(Drift),
+        Droplet(Droplet),
         Rotation(Rotation),
         Nlerp(Nlerp),
         Waypoints(Waypoints),
@@ -53,6 +67,6 @@ pub struct GuessContext<'a> {
 
 /// A first path.
 pub trait FirstGuess {
-    /// A path of `images` images (at least two) from a to b, states of the same chain; both are kept exactly.
+    /// A path of `images` images (at least two) from a to b, states of the same lattice; both are kept exactly.
     fn path(&self, a: &Spins, b: &Spins, images: usize, context: &GuessContext) -> Result<Path>;
 }

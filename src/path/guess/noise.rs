@@ -3,6 +3,8 @@
 //! ```text
 //! v_i(t) = sin πt Σ_j w_j cos(π j (i + ½)/N),  j = 0 … 4,      m ← Exp_m(v − (v·m) m)
 //! ```
+//! along a row; in other lattices with the products of cosines along each direction, by cells, j = 0 … 2 for each,
+//!
 //! with w_j normally distributed: G. E. P. Box, M. E. Muller, Ann. Math. Statist. 29, 610 (1958), doi:10.1214/aoms/1177706645.
 
 use super::clock::fraction;
@@ -17,8 +19,10 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use std::f64::consts::{PI, TAU};
 
-/// Cosines along the chain, the constant one counted.
-const MODES: usize = 5;
+/// Cosines along a row, the constant one counted.
+const IN_A_ROW: usize = 5;
+/// Those along each direction of another lattice.
+const EACH: usize = 3;
 
 /// `{"amplitude": "2 deg", "seed": 1}`.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
@@ -37,15 +41,20 @@ pub fn add_noise(path: &Path, noise: &NoiseSpec, lattice: &Lattice) -> Path {
         let (u, v): (f64, f64) = (r.random_range(f64::MIN_POSITIVE..1.0), r.random_range(0.0..TAU));
         (-2.0 * libm::log(u)).sqrt() * libm::cos(v)
     };
-    let weights: Vec<Vector> = (0..MODES).map(|_| [0; 3].map(|_| noise.amplitude.0 * gaussian())).collect();
+    let modes = modes(lattice);
+    let weights: Vec<Vector> = modes.iter().map(|_| [0; 3].map(|_| noise.amplitude.0 * gaussian())).collect();
     let n = path.sites();
     let frozen = lattice.is_frozen();
     let field: Vec<Vector> = (0..n)
         .into_par_iter()
         .map(|i| {
-            let x = (i as f64 + 0.5) / n as f64;
-            let mode = |(j, w): (usize, &Vector)| vector::scale(libm::cos(PI * j as f64 * x), *w);
-            if frozen[i] { [0.0; 3] } else { weights.iter().enumerate().map(mode).fold([0.0; 3], vector::add) }
+            let (cell, size) = (lattice.cell(i).1, lattice.grid.size);
+            let x = [0, 1, 2].map(|d| (cell[d] as f64 + 0.5) / size[d] as f64);
+            let mode = |(j, w): (&[usize; 3], &Vector)| {
+                let along = |d: usize| libm::cos(PI * j[d] as f64 * x[d]);
+                vector::scale((0..3).filter(|d| j[*d] > 0).map(along).product(), *w)
+            };
+            if frozen[i] { [0.0; 3] } else { modes.iter().zip(&weights).map(mode).fold([0.0; 3], vector::add) }
         })
         .collect();
     let images = path.images();
@@ -62,4 +71,16 @@ pub fn add_noise(path: &Path, noise: &NoiseSpec, lattice: &Lattice) -> Path {
             out.set(i, exp(m.get(i), vector::normal_part(v, m.get(i))));
         }
     })
+}
+
+/// The cosines of all modes, by direction.
+fn modes(lattice: &Lattice) -> Vec<[usize; 3]> {
+    let size = lattice.grid.size;
+    let many = |d: usize| match size[d] {
+        _ if lattice.is_row() => [IN_A_ROW, 1, 1][d],
+        1 => 1,
+        _ => EACH,
+    };
+    let all = (0..many(2)).flat_map(|c| (0..many(1)).flat_map(move |b| (0..many(0)).map(move |a| [a, b, c])));
+    all.collect()
 }

@@ -1,80 +1,125 @@
-//! A wall that enters: each spin's geodesic, delayed along the chain.
-//!
-//! ```text
-//! u_i(T) = clip((T − x_i)/w, 0, 1)      x_i: distance from where the wall enters, w the wall's width, 0 ≤ T ≤ max x + w
-//! ```
-//! at times T of equal distances √Σ(θ_i Δu_i)². Only sites that move by more than 0.3 rad count for the x_i.
+//! A front that passes over the lattice: a wall that enters at one side and leaves at the other. See
+//! [`front`](super::front) for its equation.
 
-use super::clock::{Ways, clocked, fraction};
+use super::clock::Ways;
+use super::difference::Difference;
+use super::front::{Fold, Front, MOVES};
+use super::outline::Outline;
 use super::{FirstGuess, GuessContext};
 use crate::error::{Error, Result};
-use crate::geometry::{Direction, angle};
-use crate::linalg::slab;
+use crate::geometry::{Direction, Vector, angle, vector};
+use crate::lattice::{Lattice, shortest};
 use crate::path::Path;
 use crate::registry::Described;
 use crate::spins::Spins;
-use crate::threads::{READ, apiece};
-use multiversion::multiversion;
-use rayon::prelude::*;
-use schemars::JsonSchema;
-use serde::Deserialize;
+use crate::units::{Angle, Extent};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::value::SeqAccessDeserializer;
+use serde::de::{self, Deserialize, Deserializer, SeqAccess, Visitor};
+use std::borrow::Cow;
 use std::fmt;
 use std::ops::Range;
 
-/// Spins that move by less (rad) do not make a wall.
-const MOVES: f64 = 0.3;
-
-/// Distances between images that agree to this fraction are equal.
-const EVEN: f64 = 0.01;
-
-/// Rounds of making them equal, at the most.
-const ROUNDS: usize = 20;
-
-/// Sites in one pass.
-const ROW: usize = 256;
-
-/// Where a wall enters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
+/// Where a front enters.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Edge {
-    /// At site 0.
+    /// At small x; in a chain at site 0.
     Left,
-    /// At the last site.
+    /// At large x; in a chain at the last site.
     Right,
-    /// In the middle, outwards both ways.
+    /// In the middle of what moves, outwards all ways.
     Center,
-    /// At both ends, inwards.
+    /// At both ends of a chain, inwards; of other lattices at all edges.
     Ends,
+    /// At all edges at once, inwards.
+    Edges,
+    /// At all corners at once, inwards.
+    Corners,
+    /// On the side that is in this direction.
+    From(Direction),
+}
+
+impl Edge {
+    /// Those with a name.
+    const NAMED: [(&'static str, Edge); 6] = [
+        ("left", Edge::Left),
+        ("right", Edge::Right),
+        ("center", Edge::Center),
+        ("ends", Edge::Ends),
+        ("edges", Edge::Edges),
+        ("corners", Edge::Corners),
+    ];
 }
 
 impl fmt::Display for Edge {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(match self {
-            Edge::Left => "left",
-            Edge::Right => "right",
-            Edge::Center => "center",
-            Edge::Ends => "ends",
-        })
+        match (self, Edge::NAMED.iter().find(|(_, edge)| edge == self)) {
+            (_, Some((name, _))) => f.write_str(name),
+            (Edge::From(direction), None) => direction.fmt(f),
+            (_, None) => Ok(()),
+        }
+    }
+}
+
+impl JsonSchema for Edge {
+    fn schema_name() -> Cow<'static, str> {
+        "Edge".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let direction = generator.subschema_for::<Direction>();
+        json_schema!({"oneOf": [{"type": "string", "enum": Edge::NAMED.map(|(name, _)| name)}, direction]})
+    }
+}
+
+impl<'de> Deserialize<'de> for Edge {
+    fn deserialize<D: Deserializer<'de>>(d: D) -> std::result::Result<Self, D::Error> {
+        struct Seen;
+        impl<'de> Visitor<'de> for Seen {
+            type Value = Edge;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("the name of a side or its direction, such as [1, 1, 0]")
+            }
+            fn visit_str<E: de::Error>(self, word: &str) -> std::result::Result<Edge, E> {
+                let known = &["left", "right", "center", "ends", "edges", "corners"];
+                let found = Edge::NAMED.iter().find(|(name, _)| *name == word);
+                found.map(|(_, edge)| *edge).ok_or_else(|| E::unknown_variant(word, known))
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, s: A) -> std::result::Result<Edge, A::Error> {
+                Direction::deserialize(SeqAccessDeserializer::new(s)).map(Edge::From)
+            }
+        }
+        d.deserialize_any(Seen)
     }
 }
 
 /// `{"sweep": {"from": "left"}}`.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, serde::Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Sweep {
-    /// Where the wall enters.
+    /// Where the front enters: "left", "right", "center", "ends", "edges" or "corners", or the direction of the side.
     pub from: Edge,
     /// Its width in sites; four times δ of the material if absent.
     #[serde(default)]
-    pub width: Option<f64>,
+    pub width: Option<Extent>,
     /// Axis about which opposite spins turn.
     #[serde(default)]
     pub axis: Option<Direction>,
+    /// In place of an axis: opposite spins turn by way of the direction at this angle to the way of the front.
+    #[serde(default)]
+    pub helicity: Option<Angle>,
+}
+
+impl From<Edge> for Sweep {
+    fn from(from: Edge) -> Sweep {
+        Sweep { from, width: None, axis: None, helicity: None }
+    }
 }
 
 impl Described for Sweep {
     const NAME: &'static str = "sweep";
-    const SUMMARY: &'static str = "a wall enters from the left, the right, the center or both ends";
+    const SUMMARY: &'static str =
+        "a front enters from a side (left, right or any direction), from the center, from all edges or corners";
     const EXAMPLE: &'static str = r#"{"sweep": {"from": "left", "width": 4}}"#;
 }
 
@@ -87,94 +132,100 @@ impl FirstGuess for Sweep {
 impl Sweep {
     /// The path along ways that are known.
     pub(crate) fn along(&self, ways: &Ways, images: usize, context: &GuessContext) -> Result<Path> {
-        let sites = ways.a.sites();
-        let about = ways.about(self.axis.unwrap_or(context.default_axis));
-        let lengths = about.lengths();
-        let moving = moving(sites, |i| lengths[i]);
-        let (first, n) = (moving.start as f64, moving.len() as f64);
-        let width = self.width.unwrap_or((4.0 * context.states.wall_width_sites).clamp(2.0, n.max(2.0)));
-        if !(width.is_finite() && width > 0.0) {
-            return Err(Error::invalid(
-                "width",
-                format!("found {width}, but a wall's width is a number of sites greater than 0"),
-            ));
-        }
-        let entry = |i: usize| {
-            let x = (i as f64 - first + 0.5).clamp(0.5, n - 0.5);
+        let lattice = context.states.lattice;
+        let front = if lattice.is_row() { self.along_row(ways, lattice) } else { self.over(ways, lattice)? };
+        front.with(self.width, self.axis, self.helicity).path(ways, images, context)
+    }
+
+    fn along_row<'l>(&self, ways: &Ways, lattice: &'l Lattice) -> Front<'l> {
+        let (along, fold) = (
+            lattice.direction(),
             match self.from {
-                Edge::Left => x,
-                Edge::Right => n - x,
-                Edge::Center => (x - n / 2.0).abs(),
-                Edge::Ends => n / 2.0 - (x - n / 2.0).abs(),
+                Edge::From(side) => return Front::straight(side, lattice),
+                Edge::Left | Edge::Right => None,
+                Edge::Center => Some(Fold::Outwards),
+                Edge::Ends | Edge::Edges | Edge::Corners => Some(Fold::Inwards),
+            },
+        );
+        let sign = if self.from == Edge::Right || fold == Some(Fold::Inwards) { -1.0 } else { 1.0 };
+        let moving = moving(ways.a, ways.b);
+        let middle = 0.5 * (moving.start + moving.end - 1) as f64;
+        let way = move |i: usize| {
+            let side = if fold.is_some() && (i as f64) < middle { -sign } else { sign };
+            vector::scale(side, along.vector())
+        };
+        let mut places: Vec<f64> = (0..lattice.sites).map(|i| i as f64).collect();
+        if self.from == Edge::Right {
+            places.iter_mut().for_each(|x| *x = -*x);
+        }
+        Front { fold, ..Front::new(places, way) }
+    }
+
+    fn over<'l>(&self, ways: &Ways, lattice: &'l Lattice) -> Result<Front<'l>> {
+        let sites = lattice.sites;
+        let outline = || match Outline::of(lattice) {
+            Outline { edges, .. } if edges.is_empty() => Err(Error::invalid(
+                "from",
+                "all directions of the lattice are periodic: it has no edges and no corners",
+            )),
+            outline => Ok(outline),
+        };
+        Ok(match self.from {
+            Edge::Left => Front::straight(Direction::X.reversed(), lattice),
+            Edge::Right => Front::straight(Direction::X, lattice),
+            Edge::From(side) => Front::straight(side, lattice),
+            Edge::Center => {
+                let difference = Difference::between(ways.a, ways.b, lattice);
+                let hollow = difference.hollow(difference.middle, lattice);
+                Front::round(difference.from(hollow, lattice), false, sites)
             }
-        };
-        let entries: Vec<f64> = (0..sites).map(entry).collect();
-        let times = even_times(&entries, &lengths, width, images);
-        Ok(clocked(ways, &about, images, |k, i| reached(times[k], entries[i], width)))
+            Edge::Ends | Edge::Edges => {
+                let edges = outline()?.edges;
+                let furthest = |e: &Vector| {
+                    (0..sites).map(|i| vector::dot(lattice.place(i), *e)).fold(f64::NEG_INFINITY, f64::max)
+                };
+                let edges: Vec<(f64, Vector)> = edges.into_iter().map(|e| (furthest(&e), e)).collect();
+                let nearest = move |i: usize| {
+                    let inside =
+                        |(at, e): &(f64, Vector)| (at - vector::dot(lattice.place(i), *e), vector::scale(-1.0, *e));
+                    edges.iter().map(inside).fold((f64::INFINITY, [0.0; 3]), |a, b| if b.0 < a.0 { b } else { a })
+                };
+                let places = (0..sites).map(|i| nearest(i).0).collect();
+                Front::new(places, move |i| nearest(i).1)
+            }
+            Edge::Corners => {
+                let corners: Vec<Vector> = outline()?.corners.into_iter().map(|i| lattice.place(i)).collect();
+                let periods = lattice.periods();
+                let nearest = move |i: usize| {
+                    let from = corners.iter().map(|c| shortest(vector::sub(lattice.place(i), *c), &periods));
+                    from.fold([f64::INFINITY; 3], |a, b| if vector::norm(b) < vector::norm(a) { b } else { a })
+                };
+                Front::round(nearest, false, sites)
+            }
+        })
     }
 }
 
-/// Number of sites from the first to the last one that moves from a to b; all of them if none does.
-pub fn moving_sites(a: &Spins, b: &Spins) -> usize {
-    moving(a.sites(), |i| angle(a.get(i), b.get(i))).len()
-}
-
-/// From the first to the last site that moves, where `far` tells by how much (rad); all of them if none does.
-fn moving(sites: usize, far: impl Fn(usize) -> f64) -> Range<usize> {
-    let moves = |i: &usize| far(*i) > MOVES;
-    let ends = (0..sites).find(moves).zip((0..sites).rfind(moves));
-    ends.map_or(0..sites, |(first, last)| first..last + 1)
-}
-
-/// The fraction of its way a spin has gone at time T.
-#[inline(always)]
-fn reached(time: f64, entry: f64, width: f64) -> f64 {
-    ((time - entry) / width).clamp(0.0, 1.0)
-}
-
-/// How far each spin goes between two times (rad), squared.
-#[multiversion(targets("x86_64+avx2"))]
-fn squared_steps(times: [f64; 2], entries: &[f64], lengths: &[f64], width: f64, squares: &mut [f64]) {
-    for ((square, x), l) in squares.iter_mut().zip(entries).zip(lengths) {
-        let step = l * (reached(times[1], *x, width) - reached(times[0], *x, width));
-        *square = step * step;
+/// How far it is from the first to the last site that moves from a to b, each of them counted: in sites of a row, in spacings along
+/// x, y or z, whichever is most, of any other lattice. All of it if none moves.
+pub fn moving_sites(a: &Spins, b: &Spins, lattice: &Lattice) -> usize {
+    if lattice.is_row() {
+        return moving(a, b).len();
     }
+    let moves = |i: &usize| angle(a.get(*i), b.get(*i)) > MOVES;
+    let found: Vec<usize> = (0..a.sites()).filter(moves).collect();
+    let all = || (0..a.sites()).collect();
+    let sites: Vec<usize> = if found.is_empty() { all() } else { found };
+    let along = |c: usize| {
+        let x = || sites.iter().map(|i| lattice.place(*i)[c]);
+        x().fold(f64::NEG_INFINITY, f64::max) - x().fold(f64::INFINITY, f64::min) + 1.0
+    };
+    (0..3).map(along).fold(1.0, f64::max).round() as usize
 }
 
-/// Times at which neighbouring images are equally far apart: equal steps, stretched and squeezed until the distances agree.
-fn even_times(entries: &[f64], lengths: &[f64], width: f64, images: usize) -> Vec<f64> {
-    let end = entries.iter().copied().fold(0.0, f64::max) + width;
-    let mut times: Vec<f64> = (0..images).map(|k| end * fraction(k, images)).collect();
-    for _ in 0..ROUNDS {
-        let distance = |pair: &[f64]| {
-            let mut squares = [0.0; ROW];
-            let rows = entries.chunks(ROW).zip(lengths.chunks(ROW));
-            let sums: Vec<f64> = rows
-                .map(|(entries, lengths)| {
-                    let squares = &mut squares[..entries.len()];
-                    squared_steps([pair[0], pair[1]], entries, lengths, width, squares);
-                    slab::sum(squares)
-                })
-                .collect();
-            slab::sum(&sums).sqrt()
-        };
-        let pairs = times.par_windows(2).with_min_len(apiece(3 * entries.len(), READ));
-        let distances: Vec<f64> = pairs.map(distance).collect();
-        let mut s = vec![0.0];
-        for d in &distances {
-            s.push(s[s.len() - 1] + d);
-        }
-        let total = s[s.len() - 1];
-        if total == 0.0 || distances.iter().all(|d| (d * distances.len() as f64 / total - 1.0).abs() < EVEN) {
-            break;
-        }
-        let at = |place: f64| {
-            let i = s.partition_point(|x| *x <= place).clamp(1, s.len() - 1) - 1;
-            let step = s[i + 1] - s[i];
-            let t = if step > 0.0 { (place - s[i]) / step } else { 0.0 };
-            times[i] + t.clamp(0.0, 1.0) * (times[i + 1] - times[i])
-        };
-        times = (0..images).map(|k| at(total * fraction(k, images))).collect();
-    }
-    times
+/// From the first to the last site of a row that moves; all of them if none does.
+fn moving(a: &Spins, b: &Spins) -> Range<usize> {
+    let moves = |i: &usize| angle(a.get(*i), b.get(*i)) > MOVES;
+    let ends = (0..a.sites()).find(moves).zip((0..a.sites()).rfind(moves));
+    ends.map_or(0..a.sites(), |(first, last)| first..last + 1)
 }

@@ -1,0 +1,62 @@
+//! A round front from a point outwards: a droplet of the final state that grows.
+//!
+//! Its spins within a radius turn together; from there on they turn as the front reaches them.
+
+use super::clock::Ways;
+use super::difference::Difference;
+use super::front::Front;
+use super::{FirstGuess, GuessContext};
+use crate::error::{Error, Result};
+use crate::geometry::Direction;
+use crate::path::Path;
+use crate::registry::Described;
+use crate::spins::Spins;
+use crate::units::{Angle, Extent, Place};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+/// `{"droplet": {"center": [0, 0]}}`.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Droplet {
+    /// Where it begins; at the hollow nearest to the middle of what differs if absent.
+    #[serde(default)]
+    pub center: Option<Place>,
+    /// What turns together, in spacings; 0 if absent.
+    #[serde(default)]
+    pub radius: Option<Extent>,
+    /// Width of the front in sites; four times δ of the material if absent.
+    #[serde(default)]
+    pub width: Option<Extent>,
+    /// Axis about which opposite spins turn.
+    #[serde(default)]
+    pub axis: Option<Direction>,
+    /// In place of an axis: opposite spins turn by way of the direction at this angle to the way of the front.
+    #[serde(default)]
+    pub helicity: Option<Angle>,
+}
+
+impl Described for Droplet {
+    const NAME: &'static str = "droplet";
+    const SUMMARY: &'static str = "a droplet of the final state grows from a point, such as a corner";
+    const EXAMPLE: &'static str = r#"{"droplet": {"center": [0, 0], "radius": 1}}"#;
+}
+
+impl FirstGuess for Droplet {
+    fn path(&self, a: &Spins, b: &Spins, images: usize, context: &GuessContext) -> Result<Path> {
+        let lattice = context.states.lattice;
+        let difference = Difference::between(a, b, lattice);
+        let center = match &self.center {
+            Some(place) => lattice.point(place).map_err(|e| e.within("center"))?,
+            None => difference.hollow(difference.middle, lattice),
+        };
+        let radius = self.radius.map(|radius| lattice.spacings(radius).map_err(|e| e.within("radius")));
+        let radius = radius.transpose()?.unwrap_or(0.0);
+        if radius < 0.0 {
+            return Err(Error::invalid("radius", format!("found {radius}, but a radius is 0 or more")));
+        }
+        let mut front = Front::round(difference.from(center, lattice), false, lattice.sites);
+        front.places.iter_mut().for_each(|r| *r = r.max(radius));
+        front.with(self.width, self.axis, self.helicity).path(&Ways::between(a, b), images, context)
+    }
+}

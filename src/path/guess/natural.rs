@@ -1,0 +1,174 @@
+//! The first paths that are natural between two states of a lattice that is no chain.
+//!
+//! | the states differ | paths |
+//! |---|---|
+//! | in a spot or a tube | geodesic; shrinking about the nearest hollow; drifting over each edge |
+//! | in a band across the lattice | geodesic; a front from either side of it |
+//! | everywhere | geodesic; a front from every edge (face); a droplet from every corner; where directions are periodic a front along each, and where all are a droplet from the middle |
+//!
+//! Opposite spins turn in the sense whose image halfway has the least energy, of ±x, ±y, ±z, the energy's own axes, and fronts also
+//! outwards, inwards and both ways round of their way; and in the opposite sense too where that has another energy. Of paths whose
+//! energies are the same all along, images of each other by a symmetry, the first stays.
+
+use super::difference::Difference;
+use super::drift::exits;
+use super::outline::Outline;
+use super::{Drift, Droplet, Edge, Geodesic, GuessContext, GuessSpec, NoiseSpec, Shrink, Sweep, Ways};
+use crate::energy::Hamiltonian;
+use crate::geometry::{Direction, Vector, vector};
+use crate::lattice::Lattice;
+use crate::path::Path;
+use crate::spins::Spins;
+use crate::units::Angle;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// Noise that frees a front from accidental symmetries (rad).
+const NOISE: f64 = 2e-3;
+/// Energies that differ by less than this part of the largest stiffness are equal to rounding.
+const ROUNDING: f64 = 1e-9;
+/// Those of two senses, or of two paths, differ by more than this part.
+const DIFFERENT: f64 = 1e-6;
+/// Images on which two paths are compared.
+const COMPARED: usize = 9;
+
+/// How opposite spins turn.
+#[derive(Clone, Copy)]
+enum Sense {
+    About(Direction),
+    AtHelicity(f64),
+}
+
+impl Sense {
+    fn axis(self) -> Option<Direction> {
+        if let Sense::About(axis) = self { Some(axis) } else { None }
+    }
+
+    fn helicity(self) -> Option<Angle> {
+        if let Sense::AtHelicity(angle) = self { Some(Angle(angle)) } else { None }
+    }
+
+    fn reversed(self) -> Sense {
+        match self {
+            Sense::About(axis) => Sense::About(axis.reversed()),
+            Sense::AtHelicity(angle) => Sense::AtHelicity(if angle > 0.0 { angle - PI } else { angle + PI }),
+        }
+    }
+}
+
+/// A way that a change may take through the lattice, but for the sense of opposite spins.
+#[derive(Clone)]
+enum Route {
+    Geodesic,
+    Front(Direction),
+    Droplet(Option<Vector>),
+    Shrink,
+    Drift(Direction),
+}
+
+impl Route {
+    fn guess(&self, sense: Sense, lattice: &Lattice) -> GuessSpec {
+        let (axis, helicity) = (sense.axis(), sense.helicity());
+        match self {
+            Route::Geodesic => GuessSpec::Geodesic(Geodesic { axis }),
+            Route::Front(side) => GuessSpec::Sweep(Sweep { axis, helicity, ..Edge::From(*side).into() }),
+            Route::Droplet(at) => {
+                let center = at.map(|at| lattice.place_of(at));
+                GuessSpec::Droplet(Droplet { center, axis, helicity, ..Droplet::default() })
+            }
+            Route::Shrink => GuessSpec::Shrink(Shrink { axis, helicity, ..Shrink::default() }),
+            Route::Drift(direction) => GuessSpec::Drift(Drift { direction: Some(*direction) }),
+        }
+    }
+
+    /// The senses that may differ.
+    fn senses(&self, h: &Hamiltonian, choice: bool) -> Vec<Sense> {
+        let cartesian = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let oblique = h.symmetry_axes().iter().filter(|v| v.iter().all(|c| c.abs() < 1.0));
+        let axes = cartesian.iter().chain(oblique).flat_map(|v| [*v, v.map(|c| -c)]);
+        let axes = axes.filter_map(|v| Direction::new(v).ok()).map(Sense::About);
+        let around = [0.0, PI, FRAC_PI_2, -FRAC_PI_2].map(Sense::AtHelicity);
+        match self {
+            _ if !choice => vec![Sense::About(Direction::X)],
+            Route::Drift(_) => vec![Sense::About(Direction::X)],
+            Route::Geodesic => axes.collect(),
+            _ => axes.chain(around).collect(),
+        }
+    }
+}
+
+/// The natural first paths from a to b, each with the noise that it starts with: the geodesic, then the others by their highest
+/// energies as they are made.
+pub fn natural(h: &Hamiltonian, a: &Spins, b: &Spins, context: &GuessContext) -> Vec<(GuessSpec, Option<NoiseSpec>)> {
+    let lattice = h.lattice();
+    let choice = Ways::between(a, b).have_a_choice();
+    let path = |guess: &GuessSpec, images: usize| guess.member().path(a, b, images, context).ok();
+    let mut found: Vec<(GuessSpec, Vec<f64>)> = Vec::new();
+    for route in routes(a, b, lattice) {
+        let halfway = |sense: Sense| {
+            let middle = path(&route.guess(sense, lattice), 3);
+            middle.map_or(f64::INFINITY, |path| h.energy_mev(path.image(1)))
+        };
+        for sense in best_senses(route.senses(h, choice), h.stiffness_mev(), halfway) {
+            let guess = route.guess(sense, lattice);
+            let Some(energies) = path(&guess, COMPARED).map(|path| profile(h, &path)) else { continue };
+            let alike = |other: &(GuessSpec, Vec<f64>)| same(&energies, &other.1, h.stiffness_mev());
+            if !found.iter().any(alike) {
+                found.push((guess, energies));
+            }
+        }
+    }
+    let highest = |(_, energies): &(GuessSpec, Vec<f64>)| energies.iter().copied().fold(f64::MIN, f64::max);
+    let is_geodesic = |guess: &GuessSpec| matches!(guess, GuessSpec::Geodesic(_));
+    found.sort_by(|p, q| is_geodesic(&q.0).cmp(&is_geodesic(&p.0)).then(highest(p).total_cmp(&highest(q))));
+    let noise = NoiseSpec { amplitude: Angle(NOISE), seed: 5 };
+    let coherent = |guess: &GuessSpec| is_geodesic(guess) && choice && !Difference::between(a, b, lattice).is_spot();
+    found.into_iter().map(|(guess, _)| (guess.clone(), (!coherent(&guess)).then_some(noise))).collect()
+}
+
+/// The ways that fit how two states differ.
+fn routes(a: &Spins, b: &Spins, lattice: &Lattice) -> Vec<Route> {
+    let difference = Difference::between(a, b, lattice);
+    let direction = |v: &Vector| Direction::new(*v).ok();
+    let mut routes = vec![Route::Geodesic];
+    if difference.is_spot() {
+        routes.push(Route::Shrink);
+        routes.extend(exits(a, b, lattice).iter().filter_map(direction).map(Route::Drift));
+        return routes;
+    }
+    if let [across] = difference.across[..] {
+        routes.extend([vector::scale(-1.0, across), across].iter().filter_map(direction).map(Route::Front));
+        return routes;
+    }
+    let (outline, cells) = (Outline::of(lattice), lattice.cell_vectors());
+    routes.extend(outline.edges.iter().filter_map(direction).map(Route::Front));
+    routes.extend(outline.corners.iter().map(|i| Route::Droplet(Some(lattice.place(*i)))));
+    let periodic = (0..3).filter(|d| lattice.grid.periodic[*d] && lattice.grid.size[*d] > 1);
+    routes.extend(periodic.filter_map(|d| direction(&vector::scale(-1.0, cells[d]))).map(Route::Front));
+    if outline.edges.is_empty() {
+        routes.push(Route::Droplet(None));
+    }
+    routes
+}
+
+/// The sense of least energy (meV), the first of equal ones, and the opposite one if that differs.
+fn best_senses(senses: Vec<Sense>, stiffness: f64, energy: impl Fn(Sense) -> f64) -> Vec<Sense> {
+    let mut best: Option<(Sense, f64)> = None;
+    for sense in senses {
+        let here = energy(sense);
+        if best.is_none_or(|(_, least)| here < least - ROUNDING * stiffness) {
+            best = Some((sense, here));
+        }
+    }
+    let Some((sense, least)) = best else { return Vec::new() };
+    let differs = (energy(sense.reversed()) - least).abs() > DIFFERENT * stiffness;
+    if differs { vec![sense, sense.reversed()] } else { vec![sense] }
+}
+
+/// The energies of the images between the ends (meV).
+fn profile(h: &Hamiltonian, path: &Path) -> Vec<f64> {
+    (1..path.images() - 1).map(|k| h.energy_mev(path.image(k))).collect()
+}
+
+fn same(p: &[f64], q: &[f64], stiffness: f64) -> bool {
+    p.iter().zip(q).all(|(p, q)| (p - q).abs() <= DIFFERENT * stiffness)
+}

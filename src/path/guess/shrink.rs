@@ -1,0 +1,55 @@
+//! A round front that closes on a point: what differs between the two states shrinks to nothing there, or grows from there.
+//!
+//! The point is the hollow between the sites that is nearest to the middle of the difference: a skyrmion goes out where no spin has to
+//! be its last. The state in which neighbours differ more is the one that shrinks.
+
+use super::clock::Ways;
+use super::difference::{Difference, is_rougher};
+use super::front::Front;
+use super::{FirstGuess, GuessContext};
+use crate::error::Result;
+use crate::geometry::Direction;
+use crate::path::Path;
+use crate::registry::Described;
+use crate::spins::Spins;
+use crate::units::{Angle, Extent, Place};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+/// `{"shrink": {}}`.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Shrink {
+    /// Where it closes; at the hollow nearest to the middle of what differs if absent.
+    #[serde(default)]
+    pub center: Option<Place>,
+    /// Width of the front in sites; four times δ of the material if absent.
+    #[serde(default)]
+    pub width: Option<Extent>,
+    /// Axis about which opposite spins turn.
+    #[serde(default)]
+    pub axis: Option<Direction>,
+    /// In place of an axis: opposite spins turn by way of the direction at this angle to the way of the front.
+    #[serde(default)]
+    pub helicity: Option<Angle>,
+}
+
+impl Described for Shrink {
+    const NAME: &'static str = "shrink";
+    const SUMMARY: &'static str = "a round front closes on a point: a skyrmion shrinks to nothing";
+    const EXAMPLE: &'static str = r#"{"shrink": {"center": [5.5, 0]}}"#;
+}
+
+impl FirstGuess for Shrink {
+    fn path(&self, a: &Spins, b: &Spins, images: usize, context: &GuessContext) -> Result<Path> {
+        let lattice = context.states.lattice;
+        let difference = Difference::between(a, b, lattice);
+        let center = match &self.center {
+            Some(place) => lattice.point(place).map_err(|e| e.within("center"))?,
+            None => difference.hollow(difference.middle, lattice),
+        };
+        let inwards = !is_rougher(b, a, lattice);
+        let front = Front::round(difference.from(center, lattice), inwards, lattice.sites);
+        front.with(self.width, self.axis, self.helicity).path(&Ways::between(a, b), images, context)
+    }
+}
