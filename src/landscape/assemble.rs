@@ -30,7 +30,7 @@ pub struct Assembled {
 }
 
 /// The path from `a` to `b` over passes, with so many images, or as many as bring neighbours within `apart` (rad, any spin). None
-/// where the passes do not meet state for state (minima that are flat), or where there are fewer images than stretches.
+/// where there are no passes or fewer images than stretches.
 pub fn assemble(
     h: Evaluator,
     passes: &[Pass],
@@ -55,47 +55,51 @@ pub fn assemble(
     Ok(Some(Assembled { path: Path::new(&row), stops }))
 }
 
-/// The descents from the saddles, end to end from `a` to `b`: minimum to saddle, saddle to minimum, …
+/// The descents from the saddles, end to end from `a` to `b`: minimum to saddle, saddle to minimum, …; and flat ways where a pass does
+/// not begin where the one before it ends.
 fn stretches(h: Evaluator, passes: &[Pass], a: &Spins, b: &Spins) -> Option<Vec<Path>> {
     let mut pieces = Vec::new();
     let mut here = a.clone();
-    for (k, pass) in passes.iter().enumerate() {
+    let apart = |a: &Spins, b: &Spins| largest_angle(a.as_slice(), b.as_slice()) > SAME;
+    for pass in passes {
         let turn = turns(h, &pass.before.spins, &here);
         let turned = |s: &Spins| turned(s, &turn);
-        if largest_angle(turned(&pass.before.spins).as_slice(), here.as_slice()) > SAME {
-            return None;
+        let before = turned(&pass.before.spins);
+        if apart(&before, &here) {
+            pieces.push(flat(h, &here, &before));
+            here = before;
         }
-        let saddle = turned(&Spins::from_unit_components(&pass.saddle.refined.state.m));
-        let mut up = vec![here.clone()];
+        let saddle = turned(&Spins::from_unit_components(pass.saddle.spins()));
+        let mut up = vec![here];
         up.extend(pass.ways[0].iter().rev().map(turned));
         up.push(saddle.clone());
-        let mut there = turned(&pass.after.spins);
-        let mut rest = None;
-        if k + 1 == passes.len() {
-            if largest_angle(there.as_slice(), b.as_slice()) > SAME {
-                rest = Some(turned_to(h, &there, b)?);
-            } else {
-                there = b.clone();
-            }
+        here = turned(&pass.after.spins);
+        if std::ptr::eq(pass, passes.last()?) && !apart(&here, b) {
+            here = b.clone();
         }
         let mut down = vec![saddle];
         down.extend(pass.ways[1].iter().map(turned));
-        down.push(there.clone());
+        down.push(here.clone());
         pieces.extend([Path::new(&up), Path::new(&down)]);
-        pieces.extend(rest);
-        here = there;
     }
-    (!pieces.is_empty()).then_some(pieces)
+    if apart(&here, b) {
+        pieces.push(flat(h, &here, b));
+    }
+    (!passes.is_empty()).then_some(pieces)
 }
 
-/// The way from a state to one that a rotation about the axis of symmetry makes of it, as one of a cone to another: flat.
-fn turned_to(h: Evaluator, from: &Spins, to: &Spins) -> Option<Path> {
+/// The way between two minima that a flat valley joins, to be relaxed: the turn about the axis of symmetry, if that makes the one of
+/// the other, as of states of one cone; or the geodesic.
+fn flat(h: Evaluator, from: &Spins, to: &Spins) -> Path {
     let turns = turns(h, from, to);
-    let [(axis, angle)] = turns[..] else { return None };
-    let mut row: Vec<Spins> = (0..TURN).map(|k| turned(from, &[(axis, angle * k as f64 / TURN as f64)])).collect();
-    let off = largest_angle(turned(from, &turns).as_slice(), to.as_slice());
-    row.push(to.clone());
-    (off < SAME).then(|| Path::new(&row))
+    let row = match turns[..] {
+        [(axis, angle)] if largest_angle(turned(from, &turns).as_slice(), to.as_slice()) < SAME => {
+            let part = |k: usize| turned(from, &[(axis, angle * k as f64 / TURN as f64)]);
+            (0..TURN).map(part).chain([to.clone()]).collect()
+        }
+        _ => vec![from.clone(), to.clone()],
+    };
+    Path::new(&row)
 }
 
 /// Images of each stretch, both ends counted: so many that neighbours are at most `apart` (rad, any spin), or so many that all

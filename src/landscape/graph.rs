@@ -18,8 +18,9 @@ const BESIDE: f64 = 0.05;
 /// Passes count as lower by more than this part of the height, and of the stiffness.
 const LOWER: f64 = 1e-7;
 const ROUNDING: f64 = 1e-10;
-/// Images by symmetry of every minimum and pass, at most, and of how many spins.
+/// Images by symmetry of every minimum and pass, at most, and of how many spins; and minima, from which on no more images are added.
 const IMAGES: usize = 64;
+const MINIMA: usize = 1000;
 const IMAGE_SPINS: usize = 2_000_000;
 
 /// A pass, or an image of one.
@@ -152,7 +153,7 @@ impl<'a> Landscape<'a> {
     }
 
     fn unfold_minimum(&mut self, k: usize) {
-        for by in 0..self.operations.as_ref().map_or(0, Vec::len) {
+        for by in 0..self.images_to_come() {
             self.place(&self.minima[k].image(&self.operations_known()[by]), Some(k));
         }
     }
@@ -162,7 +163,7 @@ impl<'a> Landscape<'a> {
         let height = self.height_mev(minimum.spins.as_slice());
         let near = ENERGY * self.h.stiffness_mev();
         let alike =
-            |k: &usize| (self.heights_mev[*k] - height).abs() < near && self.minima[*k].is_same(self.h, minimum);
+            |k: &usize| (self.heights_mev[*k] - height).abs() < near && self.minima[*k].is_identical(self.h, minimum);
         if let Some(known) = (0..self.minima.len()).find(alike) {
             return self.stands_for[known];
         }
@@ -208,7 +209,7 @@ impl<'a> Landscape<'a> {
     }
 
     fn unfold_pass(&mut self, number: usize) {
-        for by in 0..self.operations.as_ref().map_or(0, Vec::len) {
+        for by in 0..self.images_to_come() {
             let (pass, operation) = (&self.passes[number], &self.operations_known()[by]);
             let saddle = operation.apply(pass.saddle.spins());
             let height_mev = self.height_mev(pass.saddle.spins());
@@ -220,6 +221,11 @@ impl<'a> Landscape<'a> {
             let ends = [0, 1].map(|k| self.place(&images[k], of.map(|of| of[k])));
             self.edges.push(Edge { ends, height_mev, pass: number, by: Some(by), saddle });
         }
+    }
+
+    /// Of the next minimum or pass.
+    fn images_to_come(&self) -> usize {
+        if self.minima.len() < MINIMA { self.operations_known().len() } else { 0 }
     }
 
     fn operations_known(&self) -> &[Operation] {

@@ -5,23 +5,26 @@
 //! doi:10.1063/1.1931587.)
 
 use super::{Landscape, turned, turns};
-use crate::path::distance;
+use crate::geometry::Direction;
+use crate::linalg::slab;
+use crate::path::guess::best_turn;
 use std::collections::BTreeMap;
 
 /// A pair that was tried k times counts as (1 + k)⁴ times as far.
 const TIRED: i32 = 4;
+/// Squares of distances that differ by less are equal.
+const EQUAL: f64 = 1e-5;
 
 /// What is known of pairs of minima.
 #[derive(Debug, Default)]
 pub(super) struct Pairs {
-    /// Squares of distances (rad²).
-    apart: BTreeMap<[usize; 2], f64>,
+    /// Squares of distances of minimum k from those before it, as far as they were asked for; NaN where they were not.
+    apart: Vec<Vec<f64>>,
     /// How often each was tried, it or an image of it by symmetry: the orbits of the two, and the square of their distance.
     tried: BTreeMap<([usize; 2], i64), usize>,
+    /// Whether any pair with a minimum of an orbit was tried.
+    is_tried: Vec<bool>,
 }
-
-/// Squares of distances (rad²) that differ by less are equal.
-const EQUAL: f64 = 1e-5;
 
 /// The square of a distance that counts a pair as further apart with every try.
 pub(super) fn tired(squared: f64, tries: usize) -> f64 {
@@ -29,16 +32,34 @@ pub(super) fn tired(squared: f64, tries: usize) -> f64 {
 }
 
 impl Landscape<'_> {
-    /// The square of the distance of two minima, turned about the symmetry axes to be near each other (rad²).
+    /// The square of the distance of two minima, Σ |m − m'|², turned about the symmetry axes to be near each other.
     pub(super) fn squared_distance(&self, [a, b]: [usize; 2]) -> f64 {
         let [a, b] = [a.min(b), a.max(b)].map(|k| &self.minima()[k].spins);
-        let b = turned(b, &turns(self.evaluator(), b, a));
-        distance(a.as_slice(), b.as_slice()).powi(2)
+        let together = match self.evaluator().symmetry_axes() {
+            [] => slab::dot(a.as_slice(), b.as_slice()),
+            [axis] if let Ok(axis) = Direction::new(*axis) => best_turn(a, b, axis).1,
+            _ => slab::dot(a.as_slice(), turned(b, &turns(self.evaluator(), b, a)).as_slice()),
+        };
+        2.0 * (a.sites() as f64 - together).max(0.0)
+    }
+
+    fn known_distance(&self, pairs: &mut Pairs, [a, b]: [usize; 2]) -> f64 {
+        let (a, b) = (a.min(b), a.max(b));
+        if pairs.apart[b].is_empty() {
+            pairs.apart[b] = vec![f64::NAN; b];
+        }
+        if pairs.apart[b][a].is_nan() {
+            pairs.apart[b][a] = self.squared_distance([a, b]);
+        }
+        pairs.apart[b][a]
     }
 
     /// How often a pair was tried; one time more from now on.
     pub(super) fn try_once_more(&mut self, pair: [usize; 2]) -> usize {
         let key = self.alike(pair, self.squared_distance(pair));
+        let is_tried = &mut self.pairs.is_tried;
+        is_tried.resize(is_tried.len().max(key.0[1] + 1), false);
+        key.0.iter().for_each(|k| is_tried[*k] = true);
         let tried = self.pairs.tried.entry(key).or_default();
         *tried += 1;
         *tried - 1
@@ -50,46 +71,51 @@ impl Landscape<'_> {
         ([a.min(b), a.max(b)], (squared / EQUAL).round() as i64)
     }
 
+    fn tries(&self, pairs: &Pairs, pair: [usize; 2], squared: f64) -> usize {
+        if pair.iter().any(|k| !pairs.is_tried.get(self.orbit(*k)).is_some_and(|tried| *tried)) {
+            return 0;
+        }
+        pairs.tried.get(&self.alike(pair, squared)).copied().unwrap_or(0)
+    }
+
     /// The pair to try next on the way from one minimum to another over passes below a height (meV); none if all that lead on were
     /// tried so many times.
     pub fn next_pair(&mut self, [from, to]: [usize; 2], below_mev: f64, tries: usize) -> Option<[usize; 2]> {
         let [from, to] = [from, to].map(|k| self.standing_for(k));
         let part = self.parts_below(below_mev);
         let is_node = |k: usize| self.standing_for(k) == k && (self.heights_mev()[k] < below_mev || k == to);
-        let nodes: Vec<usize> = (0..part.len()).filter(|k| is_node(*k)).collect();
+        let mut open: Vec<usize> = (0..part.len()).filter(|k| is_node(*k)).collect();
         let mut pairs = std::mem::take(&mut self.pairs);
+        pairs.apart.resize(part.len(), Vec::new());
         // the shortest way to each minimum so far, and where its last step comes from
-        let mut reached: BTreeMap<usize, (f64, usize)> = BTreeMap::from([(from, (0.0, from))]);
-        let mut done: BTreeMap<usize, usize> = BTreeMap::new();
-        while !done.contains_key(&to) {
-            let open = reached.iter().filter(|(k, _)| !done.contains_key(*k));
-            let Some((&here, &(far, before))) = open.min_by(|p, q| p.1.0.total_cmp(&q.1.0)) else { break };
-            done.insert(here, before);
-            for &there in nodes.iter().filter(|k| !done.contains_key(*k)) {
-                let pair = [here.min(there), here.max(there)];
+        let mut far = vec![f64::INFINITY; part.len()];
+        let mut before = vec![from; part.len()];
+        far[from] = 0.0;
+        while let Some(place) = (0..open.len()).min_by(|i, j| far[open[*i]].total_cmp(&far[open[*j]])) {
+            let here = open.swap_remove(place);
+            if here == to || far[here] == f64::INFINITY {
+                break;
+            }
+            for &there in &open {
                 let mut step = 0.0;
                 if part[here] != part[there] {
-                    let squared = *pairs.apart.entry(pair).or_insert_with(|| self.squared_distance(pair));
-                    let tried = pairs.tried.get(&self.alike(pair, squared)).copied().unwrap_or(0);
-                    if tried >= tries {
-                        continue;
-                    }
-                    step = tired(squared, tried);
+                    let squared = self.known_distance(&mut pairs, [here, there]);
+                    let tried = self.tries(&pairs, [here, there], squared);
+                    step = if tried < tries { tired(squared, tried) } else { f64::INFINITY };
                 }
-                if reached.get(&there).is_none_or(|(least, _)| far + step < *least) {
-                    reached.insert(there, (far + step, here));
+                if far[here] + step < far[there] {
+                    (far[there], before[there]) = (far[here] + step, here);
                 }
             }
         }
         self.pairs = pairs;
         let mut pair = None;
         let mut here = to;
-        while here != from {
-            let before = *done.get(&here)?;
-            if part[before] != part[here] {
-                pair = Some([before, here]);
+        while here != from && far[to] < f64::INFINITY {
+            if part[before[here]] != part[here] {
+                pair = Some([before[here], here]);
             }
-            here = before;
+            here = before[here];
         }
         pair
     }
