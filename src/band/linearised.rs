@@ -8,8 +8,10 @@ use crate::hessian::{Assembly, TangentBasis};
 use crate::linalg::{Factors, Matrix, eigenvalues_symmetric, orthonormal, slab, solve_dense};
 use std::mem::take;
 
-/// μ never falls below this part of c.
+/// μ never falls below this part of c in a row, nor elsewhere where the force is larger than that part.
 pub const SHIFT_FLOOR: f64 = 1e-3;
+/// μ never falls below this part of the stiffness: rounding errors of the force, undamped, turn no spin by a tolerance.
+const SHIFT_LEAST: f64 = 1e-8;
 /// Most growth steps of μ in one evaluation.
 const SHIFT_TRIES: usize = 14;
 /// Sites in one pass: all that belongs to them stays in the second cache.
@@ -52,7 +54,8 @@ impl Linearised {
     /// Factorises image k, with symmetry axes `axes`, the stiffness scale c and the shift μ of its last visit (meV).
     pub fn prepare(&mut self, band: &Band, k: usize, axes: &[Vector], c: f64, old: f64) {
         self.sigma = upwind_rate(band, k);
-        self.shift = if old < 0.26 * c { SHIFT_FLOOR * c } else { (old / 4.0).max(SHIFT_FLOOR * c) };
+        let floor = shift_floor(band, k, c);
+        self.shift = if old < 0.26 * c { floor } else { (old / 4.0).max(floor) };
         self.tries = 1;
         self.factor_anew(band, k, axes);
         while !self.is_positive() && self.tries < SHIFT_TRIES {
@@ -227,6 +230,18 @@ impl Linearised {
 /// σ = |F·τ|/|m_u − m| (meV), 0 at extrema.
 fn upwind_rate(band: &Band, k: usize) -> f64 {
     if band.uphill(k).is_some() { band.along(k).abs() / band.chord(k).max(1e-12) } else { 0.0 }
+}
+
+/// The least μ of an image (meV). A row has no soft mode but the path's own; any other lattice has modes across the path that are
+/// all but free (a skyrmion moves sideways), along which a shift makes steps short. There it falls with the force, so that the last
+/// steps are Newton's. (D.-H. Li, M. Fukushima, L. Qi, N. Yamashita, Comput. Optim. Appl. 28, 131 (2004),
+/// doi:10.1023/B:COAP.0000026881.96694.32, for regularised Newton methods.)
+fn shift_floor(band: &Band, k: usize, c: f64) -> f64 {
+    let h = band.hamiltonian();
+    match h.lattice().is_row() {
+        true => SHIFT_FLOOR * c,
+        false => (SHIFT_FLOOR * c).min(band.force(k)).max(SHIFT_LEAST * h.stiffness_mev()),
+    }
 }
 
 /// The longest of the pairs (x₀, x₁), (x₂, x₃), …; NaN if any entry is NaN or infinite.

@@ -224,6 +224,11 @@ impl<'h> Band<'h> {
         self.evaluations
     }
 
+    /// Largest component of the force across the path at image k (meV).
+    pub fn force(&self, k: usize) -> f64 {
+        self.largest[k]
+    }
+
     /// Largest component of the force across the path (meV).
     pub fn max_perpendicular_mev(&self) -> f64 {
         self.largest.iter().fold(0.0, |m, x| if x.is_nan() { f64::NAN } else { x.max(m) })

@@ -10,7 +10,7 @@ use crate::lattice::Lattice;
 use crate::linalg::slab;
 use crate::output::RunReport;
 use crate::output::canvas::Look;
-use crate::path::guess::{GuessContext, moving_sites};
+use crate::path::guess::GuessContext;
 use crate::path::largest_angle;
 use crate::rates::RateSettings;
 use crate::sphere::{IDENTICAL, SAME};
@@ -221,7 +221,7 @@ pub fn expected_images(problem: &Problem, scales: &Scales) -> usize {
         Images::Auto => {
             let lattice = problem.hamiltonian.lattice();
             let moving = moving_sites(&problem.initial, &problem.final_state, lattice);
-            FEWEST_IMAGES.max(scales.images_between(lattice.sites_along(), moving) + 2)
+            FEWEST_IMAGES.max(scales.images_between(lattice, moving) + 2)
         }
     }
 }

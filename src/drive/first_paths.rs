@@ -10,7 +10,7 @@ use crate::band::{Band, align_rotations};
 use crate::error::Result;
 use crate::landscape::{Peak, Saddle, ZOOMS, highest, zoomed};
 use crate::path::Path;
-use crate::path::guess::{GuessSpec, NoiseSpec, add_noise, moving_sites, smooth};
+use crate::path::guess::{GuessSpec, NoiseSpec, add_noise, smooth};
 
 /// Evaluations after which first paths are compared.
 const TRIAL: usize = 8;
@@ -138,7 +138,7 @@ impl<'a> Run<'a, '_> {
         let coarsest = match self.problem.images {
             Images::Auto => {
                 let lattice = context.states.lattice;
-                self.scales.images_between(lattice.sites_along(), moving_sites(a, b, lattice)) + 2
+                self.scales.images_between(lattice, moving_sites(a, b, lattice)) + 2
             }
             Images::Count(n) => image_levels(n, |n| make(n).is_ok_and(|p| p.largest_rotation() <= COARSEST))[0],
         };

@@ -150,7 +150,7 @@ fn stored_link(h: Evaluator, saddle: &SaddlePoint, beside: &[Minimum]) -> Pass {
     let size = slab::norm(&tau);
     slab::scale(&mut tau, 1.0 / size.max(f64::MIN_POSITIVE));
     let (s, image) = (saddle.reaction_coordinate_rad, saddle.image);
-    let top = Peak { m: state.m.clone(), tau, energy_mev: state.energy_mev, s, image };
+    let top = Peak { m: state.m.clone(), tau, energy_mev: state.energy_mev, s, image, floor_mev: f64::NEG_INFINITY };
     let index = spectrum.negative;
     let verdict = if index > 1 { stationary::Verdict::HigherIndex } else { stationary::Verdict::Saddle };
     let refined =

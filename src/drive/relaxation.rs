@@ -20,6 +20,10 @@ use std::sync::Arc;
 pub const LOOSE: f64 = 5e-3;
 /// Methods that follow forces take so many times as many evaluations as the sweep.
 const SLOWER: usize = 20;
+/// Moves of more (rad, any spin) are too long to be told by their slope.
+const FREE: f64 = 1e-2;
+/// A top that moves by less than this part of its height in an evaluation stands still.
+const STILL: f64 = 1e-3;
 /// A maximum climbs if it stands out by more than this part of the path's height.
 const PROMINENT: f64 = 1e-3;
 
@@ -186,8 +190,9 @@ impl Relaxation<'_> {
         self.align(band);
         band.evaluate();
         let force = band.max_perpendicular_mev();
-        if goal == Goal::Loose && force < LOOSE * self.scales.stiffness_mev {
-            let rotation = force / self.scales.stiffness_mev;
+        let enough = LOOSE * self.scales.stiffness_mev;
+        if goal == Goal::Loose && (force < enough || self.top_stands(band, enough)) {
+            let rotation = force.min(enough) / self.scales.stiffness_mev;
             self.record(band, rotation);
             return Some(Stop::Converged { rotation, tolerance: LOOSE });
         }
@@ -200,7 +205,7 @@ impl Relaxation<'_> {
         if !rotation.is_finite() || !force.is_finite() {
             return Some(Stop::NotFinite);
         }
-        if goal == Goal::Tight && rotation <= tolerance {
+        if goal == Goal::Tight && (rotation <= tolerance || rotation < FREE && is_level(band, direction)) {
             return Some(Stop::Converged { rotation, tolerance });
         }
         if band.evaluations() >= limit {
@@ -214,6 +219,16 @@ impl Relaxation<'_> {
         }
         now.optimiser.advance(band.inner_mut(), size, direction);
         None
+    }
+
+    /// Whether the highest image is relaxed and stays as high as it is. In a row all images relax about as quickly; on other lattices
+    /// the way down from a nucleus, which no barrier depends on, takes much longer than its top.
+    fn top_stands(&self, band: &Band, enough: f64) -> bool {
+        let Some(last) = self.history.last().filter(|last| last.images == band.images()) else { return false };
+        let (e, top) = (band.energies_mev(), band.highest());
+        let height = e[top] - e[0].max(e[e.len() - 1]);
+        let moved = (e[top] - e[0] - last.highest_image_mev).abs();
+        !band.hamiltonian().lattice().is_row() && height > 0.0 && moved < STILL * height && band.force(top) < enough
     }
 
     fn align(&self, band: &mut Band) {
@@ -352,6 +367,17 @@ fn fingerprint(print: Fingerprint, band: &Band, goal: Goal, limit: usize) -> Fin
     let held = (0..band.images()).filter(|&k| band.is_held(k)).fold(print, Fingerprint::whole);
     let print = held.whole(usize::from(goal == Goal::Tight)).whole(limit);
     print.whole(band.evaluations()).row(band.path().as_slice())
+}
+
+/// Whether no image's energy is to change by more than rounding, to first order, however far a mode that is all but free still
+/// moves it: never in a row, which has no such mode but the path's own.
+fn is_level(band: &Band, moves: &[f64]) -> bool {
+    if band.hamiltonian().lattice().is_row() {
+        return false;
+    }
+    let rounding = band.hamiltonian().rounding_mev();
+    let images = moves.chunks(3 * band.path().sites()).enumerate();
+    images.map(|(k, y)| slab::dot(band.perpendicular(k + 1), y)).all(|fall| fall.abs() <= rounding)
 }
 
 /// Whether an optimiser needs the preconditioner.

@@ -2,7 +2,7 @@
 
 use crate::energy::{Evaluator, Hamiltonian};
 use crate::field::Components;
-use crate::lattice::BondFamily;
+use crate::lattice::{BondFamily, Lattice};
 use crate::linalg::{eigenvalues_symmetric, slab};
 use crate::state::StateContext;
 use crate::stationary::State;
@@ -52,11 +52,12 @@ impl Scales {
         0.5 / self.wall_width_sites.max(0.5)
     }
 
-    /// Images between the ends that resolve a wall sweeping through `moving` of `sites` sites: 2 rad a spin between neighbours,
-    /// and at least 15, or 7 where a wall in the middle of a chain only moves by a few times its width.
-    pub fn images_between(&self, sites: usize, moving: usize) -> usize {
+    /// Images between the ends that resolve a wall sweeping through `moving` of the sites along a lattice: 2 rad a spin between
+    /// neighbours, and at least 15, or 7 where a wall in the middle of a chain only moves by a few times its width.
+    pub fn images_between(&self, lattice: &Lattice, moving: usize) -> usize {
+        let sites = lattice.sites_along();
         let (n, w) = (moving as f64, self.sweep_width(sites));
-        let least = if 2 * moving < sites && n < 3.0 * w { 7 } else { 15 };
+        let least = if lattice.is_row() && 2 * moving < sites && n < 3.0 * w { 7 } else { 15 };
         ((std::f64::consts::PI * (n + w) / (2.0 * w)).ceil() as usize).max(least)
     }
 

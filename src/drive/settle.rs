@@ -46,6 +46,14 @@ impl<'a> Run<'a, '_> {
     /// A path in full, led over a route below a height (meV above the initial state) if there is one.
     pub(super) fn settle(&mut self, mut c: FirstPath<'a>, below_mev: f64) -> Result<Settled<'a>> {
         let proves = self.problem.certify && self.problem.seeks_saddles();
+        if proves && !self.problem.hamiltonian.lattice().is_row() {
+            // away from its tops a band of a film relaxes slowly, and the descents from its saddles are the path
+            let found = self.all_saddles(&c)?;
+            let proof = self.prove(&c, &found, below_mev)?;
+            if self.lead_over(&mut c, &proof)? {
+                return Ok(Settled { first: c, found, proof });
+            }
+        }
         if proves {
             self.relax_resolved(&mut c, FIRST)?;
             let found = self.all_saddles(&c)?;

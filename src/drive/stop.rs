@@ -45,6 +45,11 @@ impl Stop {
 impl fmt::Display for Stop {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
+            Stop::Converged { rotation, tolerance } if rotation > tolerance => write!(
+                f,
+                "converged: no image's energy is predicted to fall by more than rounding, though a spin may still turn by \
+                 {rotation:.1e} rad along a mode that is all but free"
+            ),
             Stop::Converged { rotation, tolerance } => {
                 write!(
                     f,

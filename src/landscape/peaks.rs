@@ -21,7 +21,13 @@ pub struct Peak {
     pub s: f64,
     /// The nearest image.
     pub image: usize,
+    /// A stationary state below this (meV above the reference) is not what the peak rises to: a search that falls so far has slid
+    /// down the path.
+    pub floor_mev: f64,
 }
+
+/// A saddle is lower than its peak by no more than this part of what the peak rises above the higher end.
+const NEAR: f64 = 0.2;
 
 /// Every maximum whose energy is within `window` (meV) of the highest, highest first.
 pub fn peaks(band: &Band, window: f64) -> Vec<Peak> {
@@ -60,6 +66,7 @@ fn beside(band: &Band, profile: &Profile, k: usize) -> Peak {
         energy_mev: band.energies_mev()[k],
         s: profile.s[k],
         image: k,
+        floor_mev: floor(band, band.energies_mev()[k]),
     };
     let near = profile.extrema().into_iter().filter(|x| x.is_maximum && (x.interval == k || x.interval + 1 == k));
     let Some(x) = near.max_by(|p, q| p.energy.total_cmp(&q.energy)) else { return image };
@@ -73,7 +80,14 @@ fn beside(band: &Band, profile: &Profile, k: usize) -> Peak {
     let image_force = slab::max_abs(band.perpendicular(k)) + band.along(k).abs() * slab::max_abs(band.tangent(k));
     let height = band.energies_mev()[k] - band.energies_mev()[0].min(band.energies_mev()[band.images() - 1]);
     let trusted = slab::max_abs(&f) < 2.0 * image_force || (energy - top.energy_mev).abs() < 0.02 * height;
-    if trusted { Peak { energy_mev: energy.max(image.energy_mev), ..top } } else { image }
+    let floor_mev = image.floor_mev.min(floor(band, energy));
+    if trusted { Peak { energy_mev: energy.max(image.energy_mev), floor_mev, ..top } } else { image }
+}
+
+/// What a peak of this height is told from what lies below it by (meV above the reference).
+fn floor(band: &Band, peak_mev: f64) -> f64 {
+    let e = band.energies_mev();
+    peak_mev - NEAR * (peak_mev - e[0].max(e[e.len() - 1])).max(0.0)
 }
 
 /// The interpolated maximum of an interval: its spins on the great circles between the two images.
@@ -83,10 +97,14 @@ fn between(band: &Band, profile: &Profile, x: &Extremum) -> Peak {
     blend(a, b, x.fraction, &mut m);
     let tau = if x.fraction < 0.5 { direction(&m, b, 1.0) } else { direction(&m, a, -1.0) };
     let image = if x.fraction < 0.5 { x.interval } else { x.interval + 1 };
+    let energy_mev = x.energy + band.energies_mev()[0];
+    // of the energy that is there: the interpolation may overshoot
+    let floor_mev = floor(band, band.evaluator().difference_mev(&m, band.path().image(0)) + band.energies_mev()[0]);
     Peak {
         m,
         tau,
-        energy_mev: x.energy + band.energies_mev()[0],
+        energy_mev,
+        floor_mev,
         s: profile.s[x.interval] + x.fraction * (profile.s[x.interval + 1] - profile.s[x.interval]),
         image,
     }

@@ -43,7 +43,14 @@ impl Saddle {
     pub fn climbed(h: Evaluator, start: &[f64], limits: &Limits) -> Option<Saddle> {
         let Climb { saddle, steps } = climb(h, start, limits);
         let stationary::Saddle { point, mode, curvature_mev } = saddle.ok()?;
-        let top = Peak { m: start.to_vec(), tau: mode.clone(), energy_mev: point.energy_mev, s: 0.0, image: 0 };
+        let top = Peak {
+            m: start.to_vec(),
+            tau: mode.clone(),
+            energy_mev: point.energy_mev,
+            s: 0.0,
+            image: 0,
+            floor_mev: f64::NEG_INFINITY,
+        };
         let rotation_rad = largest_angle(start, &point.m);
         let refined = Refined {
             verdict: Verdict::Saddle,
@@ -79,7 +86,7 @@ impl Saddle {
             return;
         }
         for start in [self.refined.state.m.clone(), self.top.m.clone()] {
-            if let Some(refined) = follow_modes(h, &start).filter(|r| rest(r) <= 1.0) {
+            if let Some(refined) = follow_modes(h, &start, self.top.floor_mev).filter(|r| rest(r) <= 1.0) {
                 let found = Saddle { top: self.top.clone(), refined };
                 if found.is_stationary(c) {
                     *self = found;
@@ -90,10 +97,10 @@ impl Saddle {
     }
 
     fn near(h: Evaluator, top: Peak, c: f64, hop: f64) -> Saddle {
-        let refined = refine(h, &top.m, &top.tau, c);
+        let refined = refine(h, &top.m, &top.tau, c, top.floor_mev);
         let mut found = Saddle { top, refined };
         if !found.is_stationary(c) {
-            if let Some(refined) = follow_modes(h, &found.top.m) {
+            if let Some(refined) = follow_modes(h, &found.top.m, found.top.floor_mev) {
                 found.refined = refined;
             }
             return found;
@@ -131,14 +138,16 @@ impl Saddle {
             let better = found.is_stationary(c) && Spectrum::of(h, &found.refined.state, 0).negative <= 1;
             better.then_some(found)
         };
-        better(refine(h, &start, &self.refined.valley, c)).or_else(|| better(follow_modes(h, &start)?))
+        let floor = self.top.floor_mev;
+        better(refine(h, &start, &self.refined.valley, c, floor)).or_else(|| better(follow_modes(h, &start, floor)?))
     }
 
-    /// Stationary to machine precision, and still the start's saddle.
+    /// Stationary to machine precision, and still the start's saddle: near it, and near its height.
     pub fn is_stationary(&self, c: f64) -> bool {
         let done = matches!(self.refined.verdict, Verdict::Saddle | Verdict::Flat | Verdict::HigherIndex);
         let zero = (1e-9 * c).max(1e-12 * self.refined.state.hessian.norm1());
-        done && self.refined.state.max_torque_mev() < zero && self.refined.rotation_rad < SAME_PLACE
+        let near = self.refined.state.energy_mev >= self.top.floor_mev;
+        done && near && self.refined.state.max_torque_mev() < zero && self.refined.rotation_rad < SAME_PLACE
     }
 
     /// Whether `other` ended in this saddle too, symmetry turns apart.

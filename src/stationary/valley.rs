@@ -66,6 +66,7 @@ pub struct Refined {
 struct Search<'a> {
     h: Evaluator<'a>,
     c: f64,
+    floor_mev: f64,
     kappa: f64,
     start: Vec<f64>,
     state: State,
@@ -92,14 +93,16 @@ enum Next {
     Stop(Verdict),
 }
 
-/// Refines `m` to the saddle along the path direction `tau` (3N); `c` is the stiffness scale (meV).
-pub fn refine(h: Evaluator, m: &[f64], tau: &[f64], c: f64) -> Refined {
+/// Refines `m` to the saddle along the path direction `tau` (3N); `c` is the stiffness scale (meV). A search that falls below
+/// `floor_mev` (meV above the Hamiltonian's reference) has left the valley's top for what lies beside it.
+pub fn refine(h: Evaluator, m: &[f64], tau: &[f64], c: f64, floor_mev: f64) -> Refined {
     let state = State::at(h, m.to_vec());
     let tau = unit_tangent(&state.m, tau);
     let kappa = (h.stiffness_mev() / 3.0).max(c);
     let mut s = Search {
         h,
         c,
+        floor_mev,
         kappa,
         start: m.to_vec(),
         state,
@@ -242,7 +245,7 @@ impl Search<'_> {
             self.visited.push((self.x, slope));
         }
         let along = self.along(slope, curvature, size, across, trusted);
-        if (self.x + along).abs() > FARTHEST {
+        if (self.x + along).abs() > FARTHEST || self.state.energy_mev < self.floor_mev {
             return Next::Stop(Verdict::Left);
         }
         if step > 6
