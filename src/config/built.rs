@@ -10,7 +10,7 @@ use crate::lattice::Lattice;
 use crate::linalg::slab;
 use crate::output::RunReport;
 use crate::output::canvas::Look;
-use crate::path::guess::GuessContext;
+use crate::path::guess::{GuessContext, moving_sites};
 use crate::path::largest_angle;
 use crate::rates::RateSettings;
 use crate::sphere::{IDENTICAL, SAME};
@@ -234,9 +234,9 @@ pub fn needed_bytes(problem: &Problem, scales: &Scales) -> f64 {
         memory::far_bytes(h.sites(), state, rayon::current_num_threads())
     });
     let bonds = h.constant_blocks().bond.len();
-    let images = expected_images(problem, scales) as f64;
+    let images = expected_images(problem, scales);
     far + memory::hamiltonian_bytes(h.sites(), bonds, h.terms().len())
-        + images * memory::image_bytes(h.sites(), h.layout())
+        + memory::band_bytes(images, h.sites(), h.layout(), rayon::current_num_threads())
 }
 
 /// Largest derivative of a term by a component (meV) in a state of no order; an error where it is absurd.

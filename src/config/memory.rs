@@ -10,16 +10,17 @@ const USUAL: f64 = 64e9;
 /// Limits of a process that its memory counts against, as `/proc/self/limits` names them.
 const LIMITS: [&str; 2] = ["Max address space", "Max data size"];
 
-/// Memory of one image (bytes): spins, gradients, forces, tangents and moves of the band, and its Hessian with its factors.
-pub fn image_bytes(sites: usize, layout: &Layout) -> f64 {
+/// Memory of the images of a band (bytes): spins, gradients, forces, tangents and moves, and the Hessian of each with its factors;
+/// where those are no band, of as many images as so many threads prepare ahead.
+pub fn band_bytes(images: usize, sites: usize, layout: &Layout, threads: usize) -> f64 {
     let vectors = sites * 14 * 3 * size_of::<f64>();
-    let hessian = match layout {
+    let (factored, hessian) = match layout {
         // 2 rows a site, each with the blocks up to the furthest partner
-        Layout::Band { span, .. } => sites * 2 * 2 * (2 * span + 6) * size_of::<f64>(),
-        Layout::Sparse(plan) => plan.bytes(),
-        Layout::Dense => 2 * 4 * sites * sites * size_of::<f64>(),
+        Layout::Band { span, .. } => (images, sites * 2 * 2 * (2 * span + 6) * size_of::<f64>()),
+        Layout::Sparse(plan) => (images.min(2 * threads), plan.bytes()),
+        Layout::Dense => (images.min(2 * threads), 2 * 4 * sites * sites * size_of::<f64>()),
     };
-    (vectors + hessian) as f64
+    images as f64 * vectors as f64 + factored as f64 * hessian as f64
 }
 
 /// Memory of the Hessian's couplings of distant sites, and their factors (bytes), as many at a time as there are threads;

@@ -10,7 +10,7 @@ use crate::band::{Band, align_rotations};
 use crate::error::Result;
 use crate::landscape::{Peak, Saddle, ZOOMS, highest, zoomed};
 use crate::path::Path;
-use crate::path::guess::{GuessSpec, NoiseSpec, add_noise, smooth};
+use crate::path::guess::{GuessSpec, NoiseSpec, add_noise, moving_sites, smooth};
 
 /// Evaluations after which first paths are compared.
 const TRIAL: usize = 8;

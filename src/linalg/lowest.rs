@@ -1,4 +1,4 @@
-//! The lowest eigenvalues of a banded matrix: slice by slice, or by block Lanczos on the inverse.
+//! The lowest eigenvalues of a matrix: slice by slice, or by block Lanczos on the inverse.
 
 use super::ritz::{APART, Mode, combination, rayleigh_ritz};
 use super::slices::sliced;
@@ -16,10 +16,10 @@ const MOST: usize = 160;
 /// The `count` lowest modes of `matrix` in the space orthogonal to `known` (orthonormal vectors, invariant under it),
 /// ascending. Fewer where the space is smaller. Deterministic.
 ///
-/// By Rayleigh-quotient iteration in brackets that the inertia gives (see `slices`); where a factorisation is dear, since the
-/// matrix has a tail, block Lanczos on (A + s·1)⁻¹ with full orthogonalisation: blocks of a few vectors, so that degenerate modes
-/// are all found, until the wanted vectors are eigenvectors (Golub, Underwood, Mathematical Software III, 361 (1977),
-/// doi:10.1016/B978-0-12-587260-7.50018-2). The inertia tells whether one was missed; then the blocks become larger.
+/// By Rayleigh-quotient iteration in brackets that the inertia gives (see `slices`); where a factorisation is dear, block Lanczos on
+/// (A + s·1)⁻¹ with full orthogonalisation: blocks of a few vectors, so that degenerate modes are all found, until the wanted vectors
+/// are eigenvectors (Golub, Underwood, Mathematical Software III, 361 (1977), doi:10.1016/B978-0-12-587260-7.50018-2). The inertia
+/// tells whether one was missed; then the blocks become larger. Either way takes the other's place where that does not arrive.
 pub fn lowest_modes(matrix: &Matrix, count: usize, known: &[Vec<f64>]) -> Vec<Mode> {
     soft_modes(matrix, count, known, f64::INFINITY)
 }
@@ -33,12 +33,20 @@ pub fn soft_modes(matrix: &Matrix, count: usize, known: &[Vec<f64>], below: f64)
     if count == 0 {
         return Vec::new();
     }
-    let found = if !matches!(matrix, Matrix::Tail(_)) { sliced(matrix, count, known, below) } else { None };
-    found.unwrap_or_else(|| lanczos(matrix, count, known, below))
+    let slices = || sliced(matrix, count, known, below);
+    let found = match matrix {
+        Matrix::Tail(_) => None,
+        Matrix::Sparse(sparse) if sparse.is_dear() => {
+            let (modes, complete) = lanczos(matrix, count, known, below);
+            if complete { Some(modes) } else { slices().or(Some(modes)) }
+        }
+        _ => slices(),
+    };
+    found.unwrap_or_else(|| lanczos(matrix, count, known, below).0)
 }
 
-/// Some of the `count` lowest modes, at least one, by block Lanczos.
-fn lanczos(matrix: &Matrix, count: usize, known: &[Vec<f64>], below: f64) -> Vec<Mode> {
+/// Some of the `count` lowest modes, at least one, by block Lanczos; and whether they are eigenvectors, none missed.
+fn lanczos(matrix: &Matrix, count: usize, known: &[Vec<f64>], below: f64) -> (Vec<Mode>, bool) {
     let room = matrix.order() - known.len();
     let scale = matrix.norm1().max(1e-280);
     let shift = shift_below(matrix, scale);
@@ -48,13 +56,14 @@ fn lanczos(matrix: &Matrix, count: usize, known: &[Vec<f64>], below: f64) -> Vec
     let mut modes = Vec::new();
     for block in BLOCKS {
         let mut krylov = Krylov::new(factors, known, block);
-        modes = rayleigh_ritz(matrix, &krylov.largest(room, count, 1.0 / (below + shift)));
+        let (space, settled) = krylov.largest(room, count, 1.0 / (below + shift));
+        modes = rayleigh_ritz(matrix, &space);
         if none_is_missed(matrix, &modes, known, scale) {
-            break;
+            return (modes, settled);
         }
         factors = krylov.factors;
     }
-    modes
+    (modes, false)
 }
 
 /// Whether no eigenvalue below the last of these modes was left out.
@@ -88,14 +97,18 @@ impl<'a> Krylov<'a> {
     }
 
     /// The `count` eigenvectors to which the inverse is largest, orthonormal, but for the first only those to which it is more
-    /// than `least`; in a space of `room` dimensions.
-    fn largest(&mut self, room: usize, count: usize, least: f64) -> Vec<Vec<f64>> {
+    /// than `least`, in a space of `room` dimensions; and whether they are that.
+    fn largest(&mut self, room: usize, count: usize, least: f64) -> (Vec<Vec<f64>>, bool) {
         let mut look = count + 2 * self.block;
         loop {
             let last = !self.grow(room) || self.basis.len() >= MOST;
             if last || self.basis.len() >= look {
-                if let Some(vectors) = self.settled(count, least, last) {
-                    return vectors;
+                if let Some(vectors) = self.settled(count, least, false) {
+                    return (vectors, true);
+                }
+                if last {
+                    let all = self.basis.len() == room;
+                    return (self.settled(count, least, true).unwrap_or_default(), all);
                 }
                 // looking costs the cube of the size
                 look = look * 4 / 3;
@@ -220,7 +233,7 @@ mod tests {
     /// By slices and by Lanczos, with and without the other's help.
     fn all_ways(matrix: &Matrix, count: usize, known: &[Vec<f64>]) -> [Vec<Mode>; 3] {
         let slices = sliced(matrix, count, known, f64::INFINITY).expect("slices converge");
-        [slices, lanczos(matrix, count, known, f64::INFINITY), lowest_modes(matrix, count, known)]
+        [slices, lanczos(matrix, count, known, f64::INFINITY).0, lowest_modes(matrix, count, known)]
     }
 
     #[test]
