@@ -1,16 +1,18 @@
-//! A parameter along the chain: one value, a list, or a ramp.
+//! A parameter over the sites or bonds of a lattice: one value, a list, a ramp, or random values.
 //!
 //! ```text
 //! "0.5 meV"                                                   the same for all chosen sites (or bonds)
 //! ["0.5 meV", "0.4 meV", …]                                   one value each
-//! {"from": "1 meV", "to": "0.2 meV", "shape": "linear"}       from the first chosen one to the last
+//! {"from": "1 meV", "to": "0.2 meV", "shape": "linear"}       from the first chosen one of a chain to the last, elsewhere along x
 //! {"random": {"mean": "0.5 meV", "relative_deviation": 0.1, "seed": 1}}          drawn for each of them
 //! ```
-//! With t from 0 to 1 along the chosen ones a ramp is from + (to − from) s(t): linear s = t; step s = 0 below ½, else 1;
+//! With t from 0 to 1 over the chosen ones a ramp is from + (to − from) s(t): linear s = t; step s = 0 below ½, else 1;
 //! tanh s = ½ + ½ tanh(6t − 3)/tanh 3, two thirds of whose rise lie within a quarter of the length.
 
+mod places;
 mod random;
 
+pub use places::Places;
 pub use random::{Deviation, Distribution, Random};
 
 use crate::error::{Error, Result};
@@ -81,8 +83,16 @@ impl<T: Copy> Profile<T> {
         }
     }
 
-    /// The numbers for `count` sites or bonds (`what`), each value made a number by `convert`, which is told of which of them.
-    pub fn values(&self, count: usize, what: &str, convert: impl Fn(T, usize) -> Result<f64>) -> Result<Vec<f64>> {
+    /// The numbers for all sites or bonds (`what`) that stand at some places, or for so many in a row, each value made a number by
+    /// `convert`, which is told of which of them.
+    pub fn values(
+        &self,
+        places: impl Into<Places>,
+        what: &str,
+        convert: impl Fn(T, usize) -> Result<f64>,
+    ) -> Result<Vec<f64>> {
+        let places = places.into();
+        let count = places.count();
         match self {
             Profile::Same(value) => (0..count).map(|k| convert(*value, k)).collect(),
             Profile::List(list) if list.len() == count => {
@@ -97,18 +107,16 @@ impl<T: Copy> Profile<T> {
                 let value = |k: usize| {
                     let a = convert(*from, k).map_err(|e| e.within("from"))?;
                     let b = convert(*to, k).map_err(|e| e.within("to"))?;
-                    Ok(a + (b - a) * shape.at(place(k, count)))
+                    Ok(a + (b - a) * shape.at(places.share(k)))
                 };
                 (0..count).map(value).collect()
             }
-            Profile::Random(random) => (0..count).map(|k| random.value(k, |value| convert(value, k))).collect(),
+            Profile::Random(random) => {
+                let value = |k: usize| random.value(places.grain(k, random.length), |value| convert(value, k));
+                (0..count).map(value).collect()
+            }
         }
     }
-}
-
-/// Where number k of `count` is on the way from 0 to 1.
-fn place(k: usize, count: usize) -> f64 {
-    if count > 1 { k as f64 / (count - 1) as f64 } else { 0.0 }
 }
 
 impl<T: JsonSchema> JsonSchema for Profile<T> {
@@ -210,6 +218,25 @@ mod tests {
         let smooth = read(r#"{"from": "1 meV", "to": "3 meV", "shape": "tanh"}"#, 9).unwrap();
         assert_eq!((smooth[0], smooth[4], smooth[8]), (1.0, 2.0, 3.0));
         assert!(smooth.windows(2).all(|w| w[1] > w[0]) && smooth[5] - smooth[3] > 1.2);
+    }
+
+    #[test]
+    fn in_space_a_ramp_goes_along_x_and_a_grain_is_a_cube() {
+        let at: Vec<[f64; 3]> = (0..24).map(|k| [(k % 6) as f64, (k / 6) as f64, 0.0]).collect();
+        let of = |text: &str| {
+            let profile: Profile<Energy> = serde_json::from_str(text).unwrap();
+            profile.values(at.clone(), "site", |e, _| Ok(e.0)).unwrap()
+        };
+        let ramp = of(r#"{"from": "1 meV", "to": "6 meV"}"#);
+        assert!(ramp.iter().enumerate().all(|(k, e)| (e - 1.0 - (k % 6) as f64).abs() < 1e-14), "{ramp:?}");
+        let grains = of(r#"{"random": {"mean": "1 meV", "deviation": "0.1 meV", "seed": 1, "length": 2}}"#);
+        let grain = |k: usize| (k % 6 / 2, k / 12);
+        for (k, l) in (0..24).flat_map(|k| (0..k).map(move |l| (k, l))) {
+            assert_eq!(grains[k] == grains[l], grain(k) == grain(l), "{k} {l}");
+        }
+        // single sites draw as in a row
+        let each = r#"{"random": {"mean": "1 meV", "deviation": "0.1 meV", "seed": 1}}"#;
+        assert_eq!(of(each), read(each, 24).unwrap());
     }
 
     #[test]

@@ -78,10 +78,12 @@ impl Loaded {
             }
             let medium = Medium::new(lattice, None, None);
             let values = match (&own.material.moment, &own.material.Ms) {
-                (Some(m), _) => m.values(sites.len(), "site", |m, _| Ok(m.0)).map_err(|e| e.within("moment")),
-                (None, Some(ms)) => {
-                    ms.values(sites.len(), "site", |ms, k| medium.cell_moment(ms, sites[k])).map_err(|e| e.within("Ms"))
+                (Some(m), _) => {
+                    m.values(lattice.places_of(&sites), "site", |m, _| Ok(m.0)).map_err(|e| e.within("moment"))
                 }
+                (None, Some(ms)) => ms
+                    .values(lattice.places_of(&sites), "site", |ms, k| medium.cell_moment(ms, sites[k]))
+                    .map_err(|e| e.within("Ms")),
                 (None, None) => continue,
             };
             for (i, moment) in sites.iter().zip(values.map_err(|e| own.locate(&self.text, e))?) {

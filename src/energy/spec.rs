@@ -95,9 +95,10 @@ impl<'a> Medium<'a> {
         if own.iter().all(|m| m.is_some()) {
             return Ok(own.iter().copied().flatten().collect());
         }
+        let places = || self.lattice.places_of(&(0..n).collect::<Vec<_>>());
         let common = match (&self.moment, &self.saturation) {
-            (Some(m), _) => m.values(n, "site", |m, _| Ok(m.0)),
-            (None, Some(ms)) => ms.values(n, "site", |ms, i| self.cell_moment(ms, i)),
+            (Some(m), _) => m.values(places(), "site", |m, _| Ok(m.0)),
+            (None, Some(ms)) => ms.values(places(), "site", |ms, i| self.cell_moment(ms, i)),
             (None, None) => Err(Error::invalid(
                 "",
                 "a field acts on moments: give the material a \"moment\" (\"2 mu_B\") or \"Ms\" (\"800 kA/m\")",
@@ -168,8 +169,8 @@ impl<'a> Medium<'a> {
         convert: impl Fn(T, usize) -> Result<f64>,
     ) -> Result<Vec<f64>> {
         let chosen = self.chosen(selection)?;
-        let values =
-            profile.values(chosen.len(), "site", |value, k| convert(value, chosen[k])).map_err(|e| e.within(key))?;
+        let places = self.lattice.places_of(&chosen);
+        let values = profile.values(places, "site", |value, k| convert(value, chosen[k])).map_err(|e| e.within(key))?;
         let mut list = vec![0.0; self.lattice.sites];
         for (i, value) in chosen.into_iter().zip(values).filter(|(i, _)| !self.lattice.vacant[*i]) {
             list[i] = value;
@@ -192,7 +193,8 @@ impl<'a> Medium<'a> {
             let Chosen { family, sites, reversed } = chosen[k];
             convert(value, FamilyBond { family: &families[family], sites, reversed })
         };
-        let values = profile.values(chosen.len(), "bond", value).map_err(|e| e.within(key))?;
+        let firsts: Vec<usize> = chosen.iter().map(|bond| bond.sites[0]).collect();
+        let values = profile.values(self.lattice.places_of(&firsts), "bond", value).map_err(|e| e.within(key))?;
         let mut couplings = Couplings::none(families, self.lattice.sites);
         for (Chosen { family, sites: [i, j], .. }, value) in chosen.into_iter().zip(values) {
             if !self.lattice.vacant[i] && !self.lattice.vacant[j] {

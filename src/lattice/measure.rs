@@ -6,6 +6,7 @@
 use super::{Chain, Lattice};
 use crate::error::{Error, Result};
 use crate::geometry::{Direction, Vector, vector};
+use crate::profile::Places;
 use crate::registry::Described;
 use crate::units::{Extent, Length, Place};
 
@@ -23,6 +24,14 @@ impl Lattice {
         match self.counts_sites() {
             true => vector::scale(i as f64, self.direction().vector()),
             false => vector::scale(1.0 / self.spacing_nm.unwrap_or(1.0), self.position(i)),
+        }
+    }
+
+    /// Where some sites are to a profile: in a row one after the other, elsewhere at their places.
+    pub fn places_of(&self, sites: &[usize]) -> Places {
+        match self.is_row() {
+            true => Places::Row(sites.len()),
+            false => sites.iter().map(|i| self.place(*i)).collect::<Vec<Vector>>().into(),
         }
     }
 

@@ -138,10 +138,10 @@ impl Common<'_> {
             let chosen = lattice.chosen(&m.sites).map_err(|e| within(e.within("sites")))?;
             taken.take(k, &chosen)?;
             let (key, values) = match (&m.moment, &m.Ms) {
-                (Some(p), None) => ("moment", p.values(chosen.len(), "site", |m, _| Ok(m.0))),
+                (Some(p), None) => ("moment", p.values(lattice.places_of(&chosen), "site", |m, _| Ok(m.0))),
                 (None, Some(p)) => {
                     let moment = |k: usize| lattice.volume_nm3(chosen[k]);
-                    ("Ms", p.values(chosen.len(), "site", |ms, k| Ok(ms.in_volume(moment(k)?).0)))
+                    ("Ms", p.values(lattice.places_of(&chosen), "site", |ms, k| Ok(ms.in_volume(moment(k)?).0)))
                 }
                 _ => {
                     let message = "a moment of its own is a \"moment\" or an \"Ms\": give one of the two";

@@ -5,8 +5,9 @@
 //! uniform      mean + σ √3 (2u − 1)       u even between 0 and 1: from mean − √3 σ to mean + √3 σ
 //! log_normal   mean exp(s g − s²/2)       s² = ln(1 + (σ/mean)²): of the sign of the mean
 //! ```
-//! All three have this mean and the standard deviation σ. With `length` that many neighbours, a grain, share one draw. The draw of
-//! grain k is block k of the ChaCha8 stream of the seed: profiles with one seed vary together, whatever they are.
+//! All three have this mean and the standard deviation σ. With `length` that many neighbours of a chain, or a cube of so
+//! many spacings a side, a grain, share one draw. The draw of grain k is block k of the ChaCha8 stream of the seed: profiles with one
+//! seed vary together, whatever they are.
 
 use crate::error::{Error, Result};
 use rand::{Rng, SeedableRng};
@@ -30,7 +31,7 @@ pub struct Random<T> {
     pub distribution: Distribution,
     /// Seed of the generator.
     pub seed: u64,
-    /// How many neighbours share one draw.
+    /// How many neighbours share one draw: of a chain, or of each side of a cube.
     pub length: usize,
 }
 
@@ -74,7 +75,7 @@ struct Written<T> {
     distribution: Distribution,
     /// Seed of the generator.
     seed: u64,
-    /// How many neighbours share one draw; 1 if absent.
+    /// How many neighbours of a chain share one draw, elsewhere those of a cube with so many spacings a side; 1 if absent.
     #[serde(default)]
     #[schemars(range(min = 1))]
     length: Option<usize>,
@@ -114,8 +115,8 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Random<T> {
 }
 
 impl<T: Copy> Random<T> {
-    /// The value of number k, from the numbers that `convert` makes of mean and deviation.
-    pub(super) fn value(&self, k: usize, convert: impl Fn(T) -> Result<f64>) -> Result<f64> {
+    /// The value of a grain, from the numbers that `convert` makes of mean and deviation.
+    pub(super) fn value(&self, grain: usize, convert: impl Fn(T) -> Result<f64>) -> Result<f64> {
         let mean = convert(self.mean).map_err(|e| e.within("random.mean"))?;
         let sigma = match self.deviation {
             Deviation::Absolute(sigma) => convert(sigma).map_err(|e| e.within("random.deviation"))?,
@@ -124,7 +125,7 @@ impl<T: Copy> Random<T> {
         if !(sigma.is_finite() && sigma >= 0.0) {
             return Err(Error::invalid("random.deviation", "found a negative value, but a deviation is 0 or more"));
         }
-        let [u, v] = self.draw(k / self.length);
+        let [u, v] = self.draw(grain);
         let normal = || (-2.0 * libm::log(u)).sqrt() * libm::cos(TAU * v);
         Ok(match self.distribution {
             Distribution::Normal => mean + sigma * normal(),
