@@ -6,7 +6,9 @@
 use super::Problem;
 use crate::geometry::{Direction, vector};
 use crate::path::Path;
-use crate::path::guess::{Edge, Geodesic, GuessContext, GuessSpec, NoiseSpec, Rotation, Sweep, Ways, best_turn};
+use crate::path::guess::{
+    Edge, Geodesic, GuessContext, GuessSpec, NoiseSpec, Rotation, Sweep, Ways, best_turn, natural,
+};
 use crate::spins::Spins;
 use crate::threads::{MADE, apiece};
 use crate::units::Angle;
@@ -73,20 +75,22 @@ impl Natural {
 /// The geodesic; rigid rotations in both senses, where one brings the states together; a wall that enters from either end
 /// (from the middle of a ring): each with the noise it starts with. Opposite spins turn about the axis whose configuration
 /// halfway is lowest, for each guess its own (with a Dzyaloshinskii–Moriya interaction a wall from the left and one from the
-/// right want opposite senses), and also the other way round where the two senses differ.
+/// right want opposite senses), and also the other way round where the two senses differ. On a lattice that is no chain: [`natural`].
 pub fn natural_guesses(
     problem: &Problem,
     a: &Spins,
     b: &Spins,
     context: &GuessContext,
 ) -> Vec<(GuessSpec, Option<NoiseSpec>)> {
-    let mut guesses = Vec::new();
-    let ways = Ways::between(a, b);
-    guesses.extend(both_senses(problem, &ways, context, Natural::Geodesic, None).into_iter().map(|g| (g, None)));
-    for axis in rotation_axes(problem, a, b) {
-        guesses.push((GuessSpec::Rotation(Rotation { axis: Some(axis) }), None));
+    let (ways, lattice) = (Ways::between(a, b), problem.hamiltonian.lattice());
+    let turn = |axis| (GuessSpec::Rotation(Rotation { axis: Some(axis) }), None);
+    let rotations = rotation_axes(problem, a, b).into_iter().map(turn);
+    if !lattice.is_row() {
+        return natural(&problem.hamiltonian, a, b, context).into_iter().chain(rotations).collect();
     }
-    let lattice = problem.hamiltonian.lattice();
+    let mut guesses = Vec::new();
+    guesses.extend(both_senses(problem, &ways, context, Natural::Geodesic, None).into_iter().map(|g| (g, None)));
+    guesses.extend(rotations);
     if lattice.sites > 1 {
         let edges = if lattice.is_ring() { [Edge::Center, Edge::Left] } else { [Edge::Left, Edge::Right] };
         for from in edges {
