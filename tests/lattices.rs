@@ -258,3 +258,47 @@ fn the_kinds_of_dmi_turn_spins_about_the_directions_of_their_symmetry() {
         assert_eq!([one("[0, 1]", kind), one("[0, 2]", kind)], [along_x, along_y], "{kind}");
     }
 }
+
+#[test]
+fn a_table_of_pairs_is_the_list_of_its_bonds_and_the_config_as_run_has_them() {
+    let temporary = tempfile::tempdir().unwrap();
+    let folder = temporary.path();
+    std::fs::write(folder.join("bonds.csv"), "from,to,cell_1,cell_2,J_mRy,D_z_meV\n0,0,1,0,1,0.5\n0,0,0,1,0.5,0\n")
+        .unwrap();
+    let config = |pairs: &str| {
+        format!(
+            r#"{{"material": {{"name": "m", "source": "x", "energy": [{{"pairs": {{{pairs}}}}}]}}, "lattice": {{"square": {{"cells": [4, 3]}}}},
+            "initial": {{"random": {{"seed": 3}}}}, "final": {{"uniform": {{"direction": [0, 0, -1]}}}}}}"#
+        )
+    };
+    let load = |pairs: &str| load_text(&folder.join("film.json"), config(pairs)).map_err(|e| e.to_string());
+    let convention = r#""convention": {"counting": "once", "energy": "-2J"}"#;
+    let loaded = load(&format!(r#""file": "bonds.csv", {convention}"#)).unwrap();
+    let listed = load(&format!(
+        r#""bonds": [{{"from": 0, "to": 0, "cell": [1, 0, 0], "J": "1 mRy", "D": ["0 meV", "0 meV", "0.5 meV"]}},
+            {{"from": 0, "to": 0, "cell": [0, 1, 0], "J": "0.5 mRy"}}], {convention}"#
+    ));
+    let energy = |loaded: &spinneb::config::Loaded| {
+        let states = loaded.states(false).unwrap();
+        states.hamiltonian.energy_mev(states.initial.as_slice())
+    };
+    assert_eq!(energy(&loaded), energy(&listed.unwrap()));
+    let again = load_text(Path::new("elsewhere.json"), loaded.as_run.clone()).unwrap();
+    assert_eq!((energy(&again), again.sha256 == loaded.sha256), (energy(&loaded), true));
+    assert!(load(r#""file": "bonds.csv""#).err().unwrap().contains("pairs.convention: a table needs the convention"));
+    assert!(load(&format!(r#""file": "none.csv", {convention}"#)).err().unwrap().contains("none.csv"));
+}
+
+#[test]
+fn materials_by_region_meet_in_the_harmonic_mean_on_any_lattice() {
+    let text = r#"{"material": {
+            "default": {"name": "a", "source": "x", "moment": "1 mu_B", "energy": [{"exchange": {"J": ["2 meV", "1 meV"]}}]},
+            "right": {"name": "b", "source": "x", "moment": "3 mu_B", "energy": [{"exchange": {"J": ["6 meV"]}}, {"zeeman": {"B": ["0 T", "0 T", "1 T"]}}]}},
+        "lattice": {"square": {"cells": [4, 3], "regions": {"right": {"box": {"from": [2], "to": [3]}}}}},
+        "initial": {"uniform": {"direction": [0, 0, 1]}}, "final": {"uniform": {"direction": [0, 0, -1]}}}"#;
+    let states = load_text(Path::new("two.json"), text.into()).unwrap().states(false).unwrap();
+    // per half: 3 + 4 nearest and 4 second bonds; 3 nearest bonds of 2·2·6/8 = 3 between, whose second shell is that of one half alone
+    let expected = -(7.0 * 2.0 + 4.0 * 1.0 + 7.0 * 6.0 + 3.0 * 3.0) - 6.0 * 3.0 * 5.7883817982e-2;
+    let energy = states.hamiltonian.energy_mev(states.initial.as_slice());
+    assert!((energy - expected).abs() < 1e-12, "{energy} {expected}");
+}

@@ -3,7 +3,7 @@
 use spinneb::energy::{Hamiltonian, Medium, TermSpec};
 use spinneb::geometry::Direction;
 use spinneb::landscape::Minimum;
-use spinneb::lattice::Chain;
+use spinneb::lattice::{Chain, LatticeSpec};
 use spinneb::spins::Spins;
 use spinneb::stationary::relax_to_minimum;
 use spinneb::symmetry::{Group, Operation};
@@ -13,6 +13,15 @@ use spinneb::units::Moment;
 fn energy(chain: &str, terms: &str) -> Hamiltonian {
     let chain: Chain = serde_json::from_str(chain).unwrap();
     let lattice = chain.resolve().unwrap();
+    let specs: Vec<TermSpec> = serde_json::from_str(terms).unwrap();
+    let medium = Medium::new(&lattice, Some(Moment(2.0).into()), None);
+    let terms = specs.iter().map(|s| s.member().build(&medium).unwrap()).collect();
+    Hamiltonian::new(&lattice.clone().with_vacancies_frozen(Direction::Z), terms).unwrap()
+}
+
+/// The energy of any lattice.
+fn on(lattice: &str, terms: &str) -> Hamiltonian {
+    let lattice = serde_json::from_str::<LatticeSpec>(lattice).unwrap().resolve().unwrap();
     let specs: Vec<TermSpec> = serde_json::from_str(terms).unwrap();
     let medium = Medium::new(&lattice, Some(Moment(2.0).into()), None);
     let terms = specs.iter().map(|s| s.member().build(&medium).unwrap()).collect();
@@ -223,4 +232,49 @@ fn a_ring_of_unlike_sites_costs_no_more_than_an_even_one() {
             format!(r#"[{{"exchange": {{"J": ["1 meV"]}}}}, {{"anisotropy": {{"K": {k}, "axis": [0, 0, 1]}}}}]"#);
         assert_eq!(group(&energy(&ring, &terms)).order(), order);
     }
+}
+
+#[test]
+fn films_and_crystals_have_the_groups_of_their_lattices_and_interactions() {
+    let field = r#"{"zeeman": {"B": ["0 T", "0 T", "1 T"]}}"#;
+    let interface = r#"{"dmi": {"D": "0.4 meV", "kind": "interfacial"}}"#;
+    let bulk = r#"{"dmi": {"D": "0.4 meV", "kind": "bulk"}}"#;
+    let d2d = r#"{"dmi": {"D": "0.4 meV", "kind": "d2d"}}"#;
+    let both = |a: &str, b: &str| format!("{a}, {b}");
+    for (lattice, more, order) in [
+        // rotations about z counted as one: four classes of spins alone, and the motions of the square
+        (r#"{"square": {"cells": [4, 4]}}"#, String::new(), 4 * 8),
+        (r#"{"square": {"cells": [4, 4]}}"#, interface.into(), 2 * 8),
+        (r#"{"square": {"cells": [4, 4]}}"#, both(interface, field), 8),
+        (r#"{"square": {"cells": [4, 4]}}"#, both(bulk, field), 8),
+        (r#"{"square": {"cells": [4, 4]}}"#, both(d2d, field), 8),
+        (r#"{"square": {"cells": [5, 4], "periodic": true}}"#, both(interface, field), 4 * 20),
+        (r#"{"square": {"cells": [9, 9], "shape": {"disc": {"radius": 4}}}}"#, both(interface, field), 8),
+        (r#"{"square": {"cells": [4, 4], "vacant": [5]}}"#, both(interface, field), 2),
+        (r#"{"triangular": {"cells": [4, 4]}}"#, both(interface, field), 4),
+        (r#"{"triangular": {"cells": [6, 6], "periodic": true}}"#, both(interface, field), 12 * 36),
+        (r#"{"honeycomb": {"cells": [3, 3], "periodic": true}}"#, both(interface, field), 12 * 9),
+        (r#"{"kagome": {"cells": [3, 3], "periodic": true}}"#, both(interface, field), 12 * 9),
+        (r#"{"cubic": {"cells": [3, 3, 2], "periodic": [true, true, false]}}"#, both(bulk, field), 8 * 9),
+        // the corner of an open box of cubes keeps three axes alike, and its middle is a centre of inversion
+        (r#"{"bcc": {"cells": [3, 3, 3]}}"#, String::new(), 4 * 12),
+        (r#"{"hcp": {"cells": [3, 3, 2], "periodic": true}}"#, String::new(), 4 * 24 * 18),
+    ] {
+        let h = on(lattice, &with(&more));
+        assert_eq!(group(&h).order(), order, "{lattice} {more}");
+    }
+}
+
+#[test]
+fn operations_of_a_film_say_how_they_turn_it() {
+    let h = on(
+        r#"{"square": {"cells": [3, 3]}}"#,
+        &with(r#"{"dmi": {"D": "0.4 meV", "kind": "interfacial"}}, {"zeeman": {"B": ["0 T", "0 T", "1 T"]}}"#),
+    );
+    let said = names(&h);
+    assert!(said.contains(&"lattice mirrored along +x with m_x → −m_x".to_string()), "{said:?}");
+    assert!(
+        said.iter().any(|s| s.starts_with("lattice turned by 90° about") && s.contains("with m turned by 90° about")),
+        "{said:?}"
+    );
 }

@@ -4,9 +4,10 @@
 //! the spins and not of the place where a file was.
 
 use super::Config;
+use crate::energy::TermSpec;
 use crate::error::{Error, Result};
-use crate::files::Stored;
 use crate::files::disk::File;
+use crate::files::{Stored, open_file};
 use crate::output::INPUTS;
 use crate::path::guess::GuessSpec;
 use crate::state::StateSpec;
@@ -24,12 +25,15 @@ pub(super) struct Inputs {
     pub(super) read: Vec<PathBuf>,
     /// Where in the config each is named, as a JSON pointer, and its hash.
     places: Vec<(String, String)>,
+    /// Where in the config tables of pairs are named, as JSON pointers, and their bonds.
+    tables: Vec<(String, Value)>,
 }
 
 impl Inputs {
     /// Reads all files of a config, looked for in `folder`.
     pub(super) fn read(config: &mut Config, folder: &Path) -> Result<Inputs> {
         let mut inputs = Inputs::default();
+        inputs.pairs(&mut config.energy, "/energy", folder)?;
         inputs.state(&mut config.initial, "initial", "/initial", "initial", folder)?;
         inputs.state(&mut config.final_state, "final", "/final", "final", folder)?;
         match &mut config.path.guess {
@@ -48,6 +52,23 @@ impl Inputs {
             _ => {}
         }
         Ok(inputs)
+    }
+
+    /// Reads the tables of pairs among these terms, whose list stands at a JSON pointer.
+    pub(super) fn pairs(&mut self, terms: &mut [TermSpec], pointer: &str, folder: &Path) -> Result<()> {
+        for (k, term) in terms.iter_mut().enumerate() {
+            let TermSpec::Pairs(pairs) = term else { continue };
+            let Some(file) = pairs.file.clone() else { continue };
+            let path = folder.join(&file);
+            let here = |e: Error| e.within(&format!("energy[{k}].pairs"));
+            let refused = |e: std::io::Error| Error::invalid("file", format!("{}: {e}", path.display()));
+            let text = open_file(&path).and_then(std::io::read_to_string).map_err(|e| here(refused(e)))?;
+            pairs.fill(&text).map_err(here)?;
+            let bonds = serde_json::to_value(&pairs.bonds).map_err(|e| Error::Numerical(e.to_string()))?;
+            self.tables.push((format!("{pointer}/{k}/pairs"), bonds));
+            self.read.push(path);
+        }
+        Ok(())
     }
 
     fn state(&mut self, state: &mut StateSpec, place: &str, pointer: &str, name: &str, folder: &Path) -> Result<()> {
@@ -79,8 +100,14 @@ impl Inputs {
         }
     }
 
-    /// Names the kept files in a config as run.
+    /// Names the kept files in a config as run, and writes tables out.
     pub(super) fn rename(&self, config: &mut Value) {
+        for (pointer, bonds) in &self.tables {
+            if let Some(spec) = config.pointer_mut(pointer).and_then(Value::as_object_mut) {
+                spec.remove("file");
+                spec.insert("bonds".into(), bonds.clone());
+            }
+        }
         for ((pointer, hash), file) in self.places.iter().zip(&self.files) {
             if let Some(spec) = config.pointer_mut(pointer).and_then(Value::as_object_mut) {
                 spec.remove("segment");

@@ -91,7 +91,12 @@ fn load_from(path: &Path, text: Text, source: Option<PathBuf>) -> Result<Loaded>
     let name = name(path, &config).map_err(|e| text.locate(e));
     let parts = materials(path, &config, &text);
     let inputs = Inputs::read(&mut config, path.parent().unwrap_or(Path::new(""))).map_err(|e| text.locate(e));
-    let ((name, parts), inputs) = both(both(name, parts), inputs)?;
+    let ((name, mut parts), mut inputs) = both(both(name, parts), inputs)?;
+    for part in &mut parts {
+        let pointer = format!("/{}/energy", part.key.replace('.', "/"));
+        let read = inputs.pairs(&mut part.material.energy, &pointer, path.parent().unwrap_or(Path::new("")));
+        read.map_err(|e| part.locate(&text, e))?;
+    }
     let lattice = lattice(&config).map_err(|e| text.locate(e))?;
     let as_run = as_run(&text, &parts, &name, &inputs)?;
     let sha256 = Sha256::digest(as_run.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect();

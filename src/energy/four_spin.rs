@@ -136,7 +136,7 @@ struct Product {
 
 impl Product {
     /// The sites, that in slot s first with its partner, then the other two.
-    fn from_slot(&self, slot: usize) -> [usize; 4] {
+    fn seen_from(&self, slot: usize) -> [usize; 4] {
         let order = [[0, 1, 2, 3], [1, 0, 2, 3], [2, 3, 0, 1], [3, 2, 0, 1]][slot];
         order.map(|k| self.sites[k] as usize)
     }
@@ -185,7 +185,7 @@ impl FourSpin {
 
     /// For each pair of slots of a product: the sites, and ∂²E by the first (rows) and the second (columns).
     fn curvatures(&self, p: &Product, m: Components) -> impl Iterator<Item = ([usize; 2], Block)> {
-        let [i, j, k, l] = p.from_slot(0);
+        let [i, j, k, l] = p.seen_from(0);
         let [a, b, c, d] = [i, j, k, l].map(|i| m.get(i));
         let isotropic = |s: f64| [0, 1, 2].map(|r| [0, 1, 2].map(|c| if r == c { s } else { 0.0 }));
         let outer = |u: Vector, v: Vector| u.map(|x| vector::scale(-p.mev * x, v));
@@ -214,7 +214,7 @@ impl EnergyTerm for FourSpin {
         for i in range.clone() {
             for (k, slot) in &self.touching[self.starts[i]..self.starts[i + 1]] {
                 let p = &self.products[*k as usize];
-                let [a, b, c, d] = p.from_slot(*slot as usize).map(|i| m.get(i));
+                let [a, b, c, d] = p.seen_from(*slot as usize).map(|i| m.get(i));
                 g.add(i - range.start, vector::scale(-p.mev * vector::dot(c, d), b));
                 if *slot == 0 {
                     let apart = |u: Vector, v: Vector| 0.5 * vector::dot(vector::sub(u, v), vector::sub(u, v));

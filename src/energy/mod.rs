@@ -24,6 +24,7 @@ mod four_spin;
 mod hamiltonian;
 pub mod magnetostatics;
 mod pairs;
+mod pairs_table;
 mod recorded;
 mod spec;
 mod symmetry;

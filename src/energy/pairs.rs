@@ -23,7 +23,7 @@ use crate::profile::Profile;
 use crate::registry::Described;
 use crate::units::Energy;
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// `{"bonds": [{"from": 0, "to": 0, "cell": [1, 0, 0], "J": "10 meV"}]}`.
@@ -31,14 +31,35 @@ use std::ops::Range;
 #[serde(deny_unknown_fields)]
 pub struct PairsSpec {
     /// The bonds of a cell; each stands once in every cell.
-    pub bonds: Vec<PairSpec>,
-    /// What the numbers mean; each pair once, E = −J m_i·m_j + D·(m_i × m_j) − m_iᵀ T m_j, if not given.
     #[serde(default)]
-    pub convention: Convention,
+    pub bonds: Vec<PairSpec>,
+    /// A table of bonds in place of them, beside the config: columns from, to, cell_1 … cell_3, J_meV, D_x_meV … T_zz_meV, in any
+    /// unit of energy.
+    #[serde(default)]
+    pub file: Option<String>,
+    /// What the numbers mean; each pair once, E = −J m_i·m_j + D·(m_i × m_j) − m_iᵀ T m_j, if not given. A file has to have it.
+    #[serde(default)]
+    pub convention: Option<Convention>,
+}
+
+impl PairsSpec {
+    /// The bonds of a table in place of its name.
+    pub fn fill(&mut self, text: &str) -> Result<()> {
+        if self.convention.is_none() {
+            let message = "a table needs the convention of its numbers: {\"counting\": \"once\" or \"both directions\", \"energy\": \"-J\"}";
+            return Err(Error::invalid("convention", message));
+        }
+        if !self.bonds.is_empty() {
+            return Err(Error::invalid("file", "\"bonds\" and \"file\" are two ways to say the same: keep one"));
+        }
+        self.bonds = super::pairs_table::parse(text).map_err(|e| e.within("file"))?;
+        self.file = None;
+        Ok(())
+    }
 }
 
 /// A bond.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[allow(non_snake_case)]
 pub struct PairSpec {
@@ -50,13 +71,13 @@ pub struct PairSpec {
     #[serde(default)]
     pub cell: Shift,
     /// J.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub J: Option<Energy>,
     /// D, along x, y and z.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub D: Option<[Energy; 3]>,
     /// T, row by row: in place of J or beside it.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tensor: Option<[[Energy; 3]; 3]>,
 }
 
@@ -208,15 +229,22 @@ impl PairSpec {
 impl PairsSpec {
     /// M of each hop that leads up (meV).
     fn matrices(&self, lattice: &Lattice) -> Result<Vec<(Hop, Block)>> {
-        if self.bonds.is_empty() {
-            return Err(Error::invalid("bonds", "the list is empty: give the bonds of a cell"));
+        if self.bonds.is_empty() && self.file.is_none() {
+            return Err(Error::invalid("bonds", "the list is empty: give the bonds of a cell, or a \"file\" of them"));
         }
+        if self.file.is_some() {
+            return Err(Error::invalid(
+                "file",
+                "a table is read with the config that names it: give the \"bonds\" here",
+            ));
+        }
+        let convention = self.convention.unwrap_or_default();
         let mut found: Vec<(Hop, Block)> = Vec::new();
         for (k, pair) in self.bonds.iter().enumerate() {
             pair.check(lattice).map_err(|e| e.within(&format!("bonds[{k}]")))?;
             let counted = |hop: Hop| self.bonds.iter().filter(|other| other.hop() == hop).count();
             let (own, back) = (counted(pair.hop()), counted(pair.hop().back()));
-            let message = match self.convention.counting {
+            let message = match convention.counting {
                 _ if own > 1 => "this bond is in the list more than once",
                 Counting::Once if back > 0 => {
                     "this bond is in the list the other way too, but the convention counts each pair \"once\""
@@ -225,7 +253,7 @@ impl PairsSpec {
                     "this bond is not in the list the other way, but the convention counts \"both directions\""
                 }
                 _ => {
-                    let matrix = pair.matrix(self.convention);
+                    let matrix = pair.matrix(convention);
                     let up = lattice.leads_up(pair.hop());
                     let (hop, matrix) =
                         if up { (pair.hop(), matrix) } else { (pair.hop().back(), transposed(&matrix)) };

@@ -38,6 +38,9 @@ impl Described for Crystal {
     const EXAMPLE: &'static str = r#"{"crystal": {"vectors": [[1, 0, 0], [0, 1, 0], [0, 0, 0.9]], "basis": [{"at": [0, 0, 0], "species": "Fe"}, {"at": [0.5, 0.5, 0.5], "species": "Pt"}], "cells": [4, 4, 2]}}"#;
 }
 
+/// An atom may be written as one of a cell so many further on.
+const FURTHEST: f64 = 10.0;
+
 impl Crystal {
     fn unit_cell(&self) -> Result<UnitCell> {
         if self.basis.is_empty() {
@@ -53,6 +56,11 @@ impl Crystal {
                 |other: &UnitAtom| (0..3).any(|d| ((at[d] - other.at[d]) - (at[d] - other.at[d]).round()).abs() > 1e-9);
             if let Some(first) = atoms.iter().position(|other| !apart(other)) {
                 let message = format!("found an atom where basis[{first}] is already, in this cell or another one");
+                return Err(Error::invalid(place("at"), message));
+            }
+            if at.iter().any(|f| f.abs() > FURTHEST) {
+                let message =
+                    format!("found {at:?}, but an atom stands in its cell, from 0 to 1 (at most {FURTHEST} away)");
                 return Err(Error::invalid(place("at"), message));
             }
             if moment.is_some_and(|m| m.0 < 0.0) {

@@ -6,6 +6,8 @@ use crate::error::{Error, Result};
 use crate::geometry::matrix::determinant;
 use crate::geometry::{Direction, Vector, vector};
 
+/// Vectors that span less than this part of a box of their lengths are refused.
+const FLAT: f64 = 1e-3;
 /// sin 60°.
 pub const SIXTY: f64 = 0.866_025_403_784_438_6;
 
@@ -60,8 +62,8 @@ impl UnitCell {
     pub fn resolve(&self, kind: &'static str, cells: &[usize], periodic: &Periodic, scale: f64) -> Result<Lattice> {
         self.sites(cells)?;
         let [a, b, c] = self.vectors;
-        if determinant(&[a, b, c]).abs() <= 1e-9 * vector::norm(a) * vector::norm(b) * vector::norm(c) {
-            return Err(Error::invalid("vectors", "the three vectors lie in a plane: they span no cell"));
+        if determinant(&[a, b, c]).abs() <= FLAT * vector::norm(a) * vector::norm(b) * vector::norm(c) {
+            return Err(Error::invalid("vectors", "the three vectors lie in a plane, or nearly so: they span no cell"));
         }
         let size = [0, 1, 2].map(|d| cells.get(d).copied().unwrap_or(1));
         let grid = Grid { size, periodic: periodic.flags(cells.len())? };

@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::units::Extent;
 use crate::words::{nearest, quoted};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::de::{Error as _, MapAccess, SeqAccess, Visitor};
+use serde::de::{MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use serde_json::json;
 use std::borrow::Cow;
@@ -146,6 +146,47 @@ impl JsonSchema for Selection {
     }
 }
 
+/// All that may be in an object that chooses sites.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Keys {
+    from: Option<usize>,
+    to: Option<usize>,
+    step: Option<usize>,
+    r#box: Option<Corners>,
+    disc: Option<Disc>,
+    ellipse: Option<Ellipse>,
+    polygon: Option<Vec<[Extent; 2]>>,
+    ring: Option<Ring>,
+    all: Option<Vec<Shape>>,
+    any: Option<Vec<Shape>>,
+    not: Option<Box<Shape>>,
+}
+
+impl Keys {
+    /// A range with both ends, or one shape.
+    fn selection<E: serde::de::Error>(self) -> std::result::Result<Selection, E> {
+        let shapes = [
+            self.r#box.map(Shape::Box),
+            self.disc.map(Shape::Disc),
+            self.ellipse.map(Shape::Ellipse),
+            self.polygon.map(Shape::Polygon),
+            self.ring.map(Shape::Ring),
+            self.all.map(Shape::All),
+            self.any.map(Shape::Any),
+            self.not.map(Shape::Not),
+        ];
+        let mut shapes = shapes.into_iter().flatten();
+        match (shapes.next(), shapes.next(), (self.from, self.to, self.step)) {
+            (Some(shape), None, (None, None, None)) => Ok(Selection::Shape(shape)),
+            (None, _, (Some(from), Some(to), step)) => Ok(Selection::Range { from, to, step: step.unwrap_or(1) }),
+            (None, _, (None, ..)) => Err(E::missing_field("from")),
+            (None, ..) => Err(E::missing_field("to")),
+            _ => Err(E::custom("found more than one choice: take one shape, or join several with \"all\" or \"any\"")),
+        }
+    }
+}
+
 impl<'de> Deserialize<'de> for Selection {
     fn deserialize<D: Deserializer<'de>>(d: D) -> std::result::Result<Self, D::Error> {
         struct Seen;
@@ -167,44 +208,7 @@ impl<'de> Deserialize<'de> for Selection {
                 Ok(Selection::List(list))
             }
             fn visit_map<A: MapAccess<'de>>(self, m: A) -> std::result::Result<Selection, A::Error> {
-                #[derive(Deserialize)]
-                #[serde(deny_unknown_fields)]
-                struct Keys {
-                    from: Option<usize>,
-                    to: Option<usize>,
-                    step: Option<usize>,
-                    r#box: Option<Corners>,
-                    disc: Option<Disc>,
-                    ellipse: Option<Ellipse>,
-                    polygon: Option<Vec<[Extent; 2]>>,
-                    ring: Option<Ring>,
-                    all: Option<Vec<Shape>>,
-                    any: Option<Vec<Shape>>,
-                    not: Option<Box<Shape>>,
-                }
-                let keys = Keys::deserialize(serde::de::value::MapAccessDeserializer::new(m))?;
-                let shapes = [
-                    keys.r#box.map(Shape::Box),
-                    keys.disc.map(Shape::Disc),
-                    keys.ellipse.map(Shape::Ellipse),
-                    keys.polygon.map(Shape::Polygon),
-                    keys.ring.map(Shape::Ring),
-                    keys.all.map(Shape::All),
-                    keys.any.map(Shape::Any),
-                    keys.not.map(Shape::Not),
-                ];
-                let mut shapes = shapes.into_iter().flatten();
-                match (shapes.next(), shapes.next(), (keys.from, keys.to, keys.step)) {
-                    (Some(shape), None, (None, None, None)) => Ok(Selection::Shape(shape)),
-                    (None, _, (Some(from), Some(to), step)) => {
-                        Ok(Selection::Range { from, to, step: step.unwrap_or(1) })
-                    }
-                    (None, _, (None, ..)) => Err(A::Error::missing_field("from")),
-                    (None, ..) => Err(A::Error::missing_field("to")),
-                    _ => Err(A::Error::custom(
-                        "found more than one choice: take one shape, or join several with \"all\" or \"any\"",
-                    )),
-                }
+                Keys::deserialize(serde::de::value::MapAccessDeserializer::new(m))?.selection()
             }
         }
         d.deserialize_any(Seen)

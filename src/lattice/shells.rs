@@ -74,12 +74,12 @@ impl Lattice {
         if self.is_row() {
             return (1..=shells).map(|n| (n, Hop::ahead(n))).collect();
         }
-        let mut radius = self.longest_step();
+        let (bounded, mut radius) = (self.shortest_step() == 0.0, self.shortest_step().max(self.cell_width()));
         loop {
             let (within, known) = (self.hops(radius), self.pairs());
             let ranked = self.ranked(&within);
             let all = |pair: &usize| ranked.iter().any(|(shell, hop)| *shell > shells && self.pair(*hop) == *pair);
-            if radius == 0.0 || shells == 0 || known.iter().all(all) {
+            if bounded || shells == 0 || known.iter().all(all) {
                 return ranked.into_iter().filter(|(shell, _)| *shell <= shells).collect();
             }
             radius *= FURTHER;
@@ -92,10 +92,9 @@ impl Lattice {
             let [a, b] = ends;
             family.bonds().any(|[i, j]| (a[i] && b[j]) || (b[i] && a[j]))
         };
-        let (mut radius, mut found, mut done) = (0.0, 0, 0.0);
+        let (mut radius, mut found, mut done) = (self.shortest_step().max(self.cell_width()), 0, 0.0);
         let diagonal: f64 = (0..3).map(|d| self.steps[d].0 * (self.grid.size[d] + 1) as f64).sum();
-        while radius <= FURTHER * diagonal {
-            radius = if radius == 0.0 { self.longest_step() } else { FURTHER * radius };
+        while radius > 0.0 && done < diagonal {
             let hops = self.hops(radius);
             for alike in hops.chunk_by(|a, b| b.0 - a.0 <= SAME * b.0).filter(|alike| alike[0].0 > done * (1.0 + SAME))
             {
@@ -108,7 +107,7 @@ impl Lattice {
                     return Ok(families);
                 }
             }
-            done = radius;
+            (done, radius) = (radius, FURTHER * radius);
         }
         let message = format!("there are only {found} shells of bonds between these two");
         Err(Error::invalid("", message))
@@ -122,9 +121,17 @@ impl Lattice {
         }
     }
 
-    /// The longest step along a direction that extends.
-    fn longest_step(&self) -> f64 {
-        (0..3).filter(|d| self.grid.extends(*d)).map(|d| self.steps[d].0).fold(0.0, f64::max)
+    /// The shortest step along a direction that extends; 0 where none does.
+    fn shortest_step(&self) -> f64 {
+        let steps = (0..3).filter(|d| self.grid.extends(*d)).map(|d| self.steps[d].0);
+        steps.min_by(f64::total_cmp).unwrap_or(0.0)
+    }
+
+    /// A length within which all atoms of a cell are of each other.
+    fn cell_width(&self) -> f64 {
+        let apart = |a: usize, b: usize| vector::norm(self.along(Hop { atoms: [a, b], shift: [0; 3] }));
+        let atoms = 0..self.atoms.len();
+        atoms.clone().flat_map(|a| atoms.clone().map(move |b| [a, b])).map(|[a, b]| apart(a, b)).fold(0.0, f64::max)
     }
 
     /// All hops that lead up and are no longer than that, with their lengths, the shortest first.

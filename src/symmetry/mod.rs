@@ -11,7 +11,8 @@
 //! R: the 48 matrices that take the axes of a frame to each other, for x, y, z, for the principal axes of the on-site energy, and for
 //! the frames that the axes of the terms and the frozen spins span (the first eight frames). m ↦ −m, reversal of time, is among
 //! them. About an axis of symmetry, operations that differ by a rotation count as one; where the energy has no axis at all, m ↦ −m
-//! alone is tried. p: mirror images, shifts along periodic directions, and their products; those that take sites to unlike ones are
+//! alone is tried. Where the lattice is no chain, also the matrix that turns its sites, that with the normal of a film reversed, and
+//! their opposites. p: turns and mirror images of the lattice, shifts along periodic directions, and their products; those that take sites to unlike ones are
 //! left out: of other moments, frozen or not, or with other gradients Σ |∂E/∂m_i|² over the uniform states along ±x, ±y, ±z. An R
 //! must take the Σ_i ∂E/∂m_i of uniform states to each other. If p goes with one R, it goes with R R' for every R' that goes with no
 //! motion at all, and with no others; if a shift is an operation, so are its multiples. So the group is held as a few generators.

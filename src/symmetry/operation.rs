@@ -1,7 +1,7 @@
 //! One operation: spins moved to other sites and turned or reflected, all alike.
 
 use crate::field::{Components, ComponentsMut};
-use crate::geometry::matrix::{UNIT, apart, determinant, opposite, product, times};
+use crate::geometry::matrix::{UNIT, apart, determinant, opposite, product, times, transposed};
 use crate::geometry::{Direction, Matrix, Vector, vector};
 use crate::lattice::{Lattice, Motion};
 use std::fmt;
@@ -84,7 +84,8 @@ impl fmt::Display for Operation {
 }
 
 fn of_sites(motion: &Motion, lattice: &Lattice) -> String {
-    let turn = motion.turn(lattice);
+    // spins go the other way than the sites that they are taken from
+    let turn = transposed(&motion.turn(lattice));
     let turned = match (apart(&turn, &UNIT) < SAME, lattice.is_row()) {
         (true, _) => None,
         (_, true) => Some("mirrored chain".to_string()),

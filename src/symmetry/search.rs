@@ -6,7 +6,7 @@ use super::operation::{Operation, SAME};
 use super::shift::Shift;
 use crate::energy::Hamiltonian;
 use crate::field::{Components, ComponentsMut};
-use crate::geometry::matrix::{UNIT, apart, opposite, product, times};
+use crate::geometry::matrix::{UNIT, apart, opposite, product, times, transposed};
 use crate::geometry::{Matrix, Vector, vector};
 use crate::lattice::{Lattice, Motion};
 use crate::linalg::slab;
@@ -164,7 +164,8 @@ impl<'a> Search<'a> {
         if !self.marks.allow(motion, self.lattice()) {
             return None;
         }
-        let turns: Vec<Matrix> = self.turned_alike(motion).into_iter().chain(self.turns.iter().copied()).collect();
+        let (first, others) = self.turns.split_at(self.turns.len().min(1));
+        let turns: Vec<Matrix> = [first, &self.turned_alike(motion), others].concat();
         let tried = self.trials.min(turns.len());
         let found = turns[..tried].iter().map(|r| self.operation(motion, *r)).position(|o| self.is_symmetry(&o));
         self.trials -= found.map_or(tried, |k| k + 1);
@@ -175,7 +176,8 @@ impl<'a> Search<'a> {
     /// opposite; none in a row, whose own are all among those of the frames.
     fn turned_alike(&self, motion: &Motion) -> Vec<Matrix> {
         let lattice = self.lattice();
-        let turn = motion.turn(lattice);
+        // a site takes the spin from where the motion leads: the spins go the other way
+        let turn = transposed(&motion.turn(lattice));
         if lattice.is_row() || apart(&turn, &UNIT) < SAME {
             return Vec::new();
         }
