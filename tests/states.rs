@@ -204,7 +204,6 @@ fn a_vortex_winds_once_around_and_leaves_the_plane_in_its_core_alone() {
                 // around the border of the film
                 let last = 15;
                 let around = (0..last)
-                    .map(|k| k)
                     .chain((0..last).map(|k| last + 16 * k))
                     .chain((0..last).map(|k| 16 * last + last - k))
                     .chain((0..last).map(|k| 16 * (last - k)));
