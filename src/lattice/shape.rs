@@ -35,7 +35,7 @@ pub enum Shape {
     Not(Box<Shape>),
 }
 
-/// Two opposite corners, [x], [x, y] or [x, y, z] each.
+/// Two opposite corners, `[x]`, `[x, y]` or `[x, y, z]` each.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Corners {

@@ -91,6 +91,11 @@ pub trait StateBuilder {
     fn senses(&self, _: &StateContext) -> Vec<Sense> {
         Vec::new()
     }
+
+    /// Whether there may be senses in which it does not exist, as a skyrmion of the wrong helicity, so that the others are left.
+    fn may_miss_senses(&self) -> bool {
+        false
+    }
 }
 
 impl StateSpec {
@@ -106,7 +111,7 @@ impl StateSpec {
             (_, Some(taken)) if open.contains(&taken) => Ok(Some(taken)),
             (Some(h), _) if !open.is_empty() => {
                 let state = |k: usize| self.spins(&StateContext { sense: Some(open[k]), ..*context });
-                Ok(Some(open[sense::cheapest(h, open.len(), state)?]))
+                Ok(Some(open[sense::cheapest(h, open.len(), self.member().may_miss_senses(), state)?]))
             }
             _ => Ok(open.first().copied()),
         }

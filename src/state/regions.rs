@@ -94,4 +94,8 @@ impl StateBuilder for Regions {
         }
         open
     }
+
+    fn may_miss_senses(&self) -> bool {
+        self.states.values().any(|spec| spec.member().may_miss_senses())
+    }
 }

@@ -45,19 +45,25 @@ impl Sense {
     }
 }
 
-/// Which of these states, each made when it is asked for, has the lowest energy; the first of those equal to rounding. One that
-/// cannot be made is none of them, unless none can.
-pub(super) fn cheapest(h: &Hamiltonian, count: usize, state: impl Fn(usize) -> Result<Spins>) -> Result<usize> {
+/// Which of these states, each made when it is asked for, has the lowest energy; the first of those equal to rounding. Where some may
+/// be missing, one that cannot be made is none of them, unless none can.
+pub(super) fn cheapest(
+    h: &Hamiltonian,
+    count: usize,
+    may_miss: bool,
+    state: impl Fn(usize) -> Result<Spins>,
+) -> Result<usize> {
     let mut first = Vec::new();
     let mut above: Vec<(usize, f64)> = Vec::new();
     let mut wrong = None;
     for k in 0..count {
         let density = match state(k) {
             Ok(state) => h.density(state.as_slice()),
-            Err(e) => {
+            Err(e) if may_miss => {
                 wrong = wrong.or(Some(e));
                 continue;
             }
+            Err(e) => return Err(e),
         };
         if above.is_empty() {
             first.clone_from(&density);

@@ -171,4 +171,8 @@ impl StateBuilder for Skyrmion {
     fn senses(&self, _: &StateContext) -> Vec<Sense> {
         self.texture().senses()
     }
+
+    fn may_miss_senses(&self) -> bool {
+        true
+    }
 }
