@@ -9,7 +9,8 @@ use spinneb::files::disk::File;
 use spinneb::output::canvas::{Look, Style, description};
 use spinneb::output::folder;
 use spinneb::output::{
-    EnergyPath, PLOTS, Picture, Places, PlotData, PlotFile, PlotTable, StoredRun, describe, draw_energy_paths,
+    EnergyPath, PLOTS, Picture, Places, PlotData, PlotFile, PlotTable, SitePlaces, StoredRun, describe,
+    draw_energy_paths,
 };
 use spinneb::units::Length;
 use std::path::{Path, PathBuf};
@@ -145,6 +146,7 @@ fn look_of(arguments: &Plot, dir: &Path, stored: &mut StoredRun) -> Result<Look>
         return Err(Error::invalid(shown, message).into());
     }
     stored.places = Places::of(lattice);
+    stored.sites = SitePlaces::of(lattice);
     stored.vacant = lattice.vacant.clone();
     let output = &config.config.output;
     let width = arguments.width.or_else(|| output.look().ok().filter(|_| output.width.is_some()).map(|l| l.width_mm()));

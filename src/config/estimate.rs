@@ -1,10 +1,10 @@
 //! What a run will take, before it runs.
 //!
 //! ```text
-//! gradients = (1 + d)(15 images + 280 saddles) + 480        time = gradients × 2.5 (one gradient with its factorised Hessian) + figures
+//! gradients = (1 + d)(15 images + 220 + 60 saddles) + 480        time = gradients × 2.5 (one gradient with its factorised Hessian) + figures
 //! ```
 //! A band converges in about 15 gradients of each image, whatever its length (8 to 26 in the shipped configs), and finding the seat of
-//! a saddle, its proof and the descents to its two minima take about 280. An automatic path is refined once. One saddle is taken for
+//! a saddle, its proof and the descents to its two minima take about 280, of one beside another 60. An automatic path is refined once. One saddle is taken for
 //! granted, but a wall narrower than `PINNED` sites rests on every site that it passes: there are as many saddles, and four images
 //! to each. The search for lower passes takes some
 //! 480, and as much as the path for each of the d domains that its ends consist of, through which it may lead; 0 for both where there
@@ -22,8 +22,9 @@ use std::time::Instant;
 
 /// Gradients of each image until the band has converged.
 const A_IMAGE: usize = 15;
-/// Gradients for a saddle.
+/// Gradients for a saddle, and for one beside another: images by symmetry and short stretches cost little.
 const A_SADDLE: usize = 280;
+const ANOTHER: usize = 60;
 /// Gradients for the search below a path: some 24 climbs.
 const A_SEARCH: usize = 480;
 /// A wall of less than this many sites has a saddle between any two sites: its energy varies as exp(−π²δ) from one to the next.
@@ -61,8 +62,8 @@ impl Estimate {
             Images::Count(n) => n,
             Images::Auto => (2 * start - 1).max(IMAGES_A_SADDLE * saddles),
         };
-        let saddles = saddles.min(images / 2);
-        let path = A_IMAGE * images + A_SADDLE * saddles;
+        let saddles = saddles.min(images / 2).max(1);
+        let path = A_IMAGE * images + A_SADDLE + ANOTHER * (saddles - 1);
         let evaluations = match problem.search {
             Effort::None => path,
             _ => {

@@ -2,6 +2,7 @@
 
 use super::csv::column_name;
 use super::rates_summary::{PassageEntry, TransitionEntry, transitions};
+use super::spin_maps::SitePlaces;
 use super::{EnergyPath, RunReport};
 use crate::drive::HistoryRow;
 use crate::lattice::Lattice;
@@ -25,6 +26,8 @@ pub struct PlotData<'a> {
     pub vacant: Vec<bool>,
     /// Where the sites are, if that is known.
     pub places: Option<Places>,
+    /// Places of the sites of a lattice that is no row.
+    pub sites: Option<SitePlaces>,
     /// One row a band iteration.
     pub history: Vec<HistoryRow>,
     /// Mean times from both ends to the other, where rates were asked for.
@@ -85,6 +88,7 @@ impl<'a> PlotData<'a> {
             path: Some(&outcome.path),
             vacant: run.lattice.vacant.clone(),
             places: Places::of(run.lattice),
+            sites: SitePlaces::of(run.lattice),
             history: outcome.history.clone(),
             lifetimes: transitions.iter().map(Lifetimes::of).collect(),
         }

@@ -5,6 +5,8 @@
 //! cyclic order: m_x and atan2(m_z, m_y), or m_y and atan2(m_x, m_z). Where the staggered mean changes more along the path than the
 //! mean, as in an antiferromagnet, the map is that of (−1)^i m_i.
 //!
+//! A lattice that is no row has maps of its own instead ([`draw_spin_maps`]).
+//!
 //! Above stand the positions of the sites in nm, where they are known; on the right the reaction coordinates of the images, with the
 //! saddles as diamonds. Their numbers are those of `path.npz` (or `path.ovf`, or `spins.csv`) and `path.csv`.
 
@@ -14,7 +16,7 @@ use super::canvas::{
 };
 use super::energy_path_plot::saddle_marker;
 use super::staggered::{is_staggered, sign};
-use super::{Places, Plot, PlotData};
+use super::{Places, Plot, PlotData, draw_spin_maps};
 use crate::error::{Error, Result};
 use crate::geometry::vector::Vector;
 use crate::path::Path;
@@ -34,7 +36,10 @@ impl Plot for SpinsPlot {
     }
 
     fn draw(&self, data: &PlotData, look: &Look) -> Result<Canvas> {
-        draw_spins(data, look)
+        match &data.sites {
+            Some(places) => draw_spin_maps(data, places, look),
+            None => draw_spins(data, look),
+        }
     }
 }
 

@@ -8,6 +8,7 @@ use super::disk::{self, MARK};
 use super::folder::stored_result;
 use super::plot_data::above_first;
 use super::read::{bytes, shown, text};
+use super::spin_maps::SitePlaces;
 use super::summary::{Saddle, Summary};
 use super::{EnergyPath, Lifetimes, Places, PlotData};
 use crate::drive::{Barrier, HistoryRow};
@@ -32,6 +33,8 @@ pub struct StoredRun {
     pub vacant: Vec<bool>,
     /// Where the sites are, as the config says.
     pub places: Option<Places>,
+    /// Places of the sites of a lattice that is no row.
+    pub sites: Option<SitePlaces>,
     summary: Summary,
     images: Vec<(f64, f64)>,
     terms_mev: Vec<(String, Vec<f64>)>,
@@ -86,6 +89,7 @@ impl StoredRun {
             notes,
             vacant: Vec::new(),
             places: None,
+            sites: None,
             summary,
             images: points,
             terms_mev,
@@ -124,6 +128,7 @@ impl StoredRun {
             path: self.path.as_ref(),
             vacant: self.vacant.clone(),
             places: self.places,
+            sites: self.sites.clone(),
             history: self.history.clone(),
             lifetimes: self.summary.transition_rates.iter().flatten().map(Lifetimes::of).collect(),
         }

@@ -217,7 +217,7 @@ impl Canvas {
     }
 
     /// Coloured cells that fill a rectangle, beneath everything else; `rgb` row by row from the top.
-    pub(super) fn raster(&mut self, rect: Rect, columns: usize, rows: usize, rgb: Vec<u8>) {
+    pub fn raster(&mut self, rect: Rect, columns: usize, rows: usize, rgb: Vec<u8>) {
         self.rasters.push(Raster { rect, columns, rows, rgb });
     }
 

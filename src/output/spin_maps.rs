@@ -1,0 +1,265 @@
+//! The spins of a lattice that is no row, at their true places: maps of the first image, the one halfway up, the highest, the one
+//! halfway down and the last.
+//!
+//! Hue is the angle atan2(m_y, m_x) in the plane, lightness is m_z: white along +z, black along −z; a wheel tells the colours. Where
+//! no site is, it is grey. Of a lattice with several layers along z the middle one is shown.
+
+use super::PlotData;
+use super::canvas::{
+    Align, BLACK, Canvas, Colour, LABEL_PT, LIGHT_GREY, Look, MM, Rect, SMALL_PT, THIN_PT, Text, WHITE, cyclic, mix,
+};
+use crate::error::{Error, Result};
+use crate::field::Components;
+use crate::geometry::Vector;
+use crate::lattice::Lattice;
+use std::collections::BTreeMap;
+
+/// Where the sites are.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SitePlaces {
+    /// Positions, one a site.
+    pub at: Vec<Vector>,
+    /// Their unit.
+    pub unit: &'static str,
+}
+
+impl SitePlaces {
+    /// Of a lattice that is no row.
+    pub fn of(lattice: &Lattice) -> Option<SitePlaces> {
+        let at = || (0..lattice.sites).map(|i| lattice.position(i)).collect();
+        (!lattice.is_row()).then(|| SitePlaces { at: at(), unit: lattice.unit() })
+    }
+}
+
+/// Maps in a row of the figure.
+const COLUMNS: usize = 3;
+/// Between maps, and above each for its title.
+const GAP: f64 = 6.0;
+const TITLE: f64 = SMALL_PT + 5.0;
+/// The room around all.
+const MARGIN: f64 = 4.0;
+/// Pixels across a map.
+const PIXELS: f64 = 260.0;
+/// A map is at most so many times as high as wide.
+const HIGHEST: f64 = 1.6;
+/// A site colours what is within this part of the distance of neighbours, if no other is nearer.
+const REACH: f64 = 0.75;
+
+/// The figure. An error where the spins are not known.
+pub fn draw_spin_maps(data: &PlotData, places: &SitePlaces, look: &Look) -> Result<Canvas> {
+    let path = data.path.ok_or_else(|| Error::Numerical("spins: the spins are not known".into()))?;
+    let layer = Layer::of(places, &data.vacant);
+    let maps = maps(&data.energy.images, path.images());
+    let width = Canvas::styled(look, 10.0).width();
+    let wide = (width - 2.0 * MARGIN - (COLUMNS - 1) as f64 * GAP) / COLUMNS as f64;
+    let scale = (wide / layer.size[0]).min(HIGHEST * wide / layer.size[1]);
+    // the wheel takes the place of the sixth map, and needs room of its own
+    let high = (scale * layer.size[1]).max(0.8 * wide);
+    let rows = (maps.len() + 1).div_ceil(COLUMNS);
+    let height = 2.0 * MARGIN + rows as f64 * (high + TITLE) + (rows - 1) as f64 * GAP + TITLE;
+    let mut canvas = Canvas::styled(look, height / MM);
+    let corner = |k: usize| {
+        let (column, row) = ((k % COLUMNS) as f64, (k / COLUMNS) as f64);
+        (MARGIN + column * (wide + GAP), MARGIN + TITLE + row * (high + TITLE + GAP))
+    };
+    for (k, (image, role)) in maps.iter().enumerate() {
+        let (x, y) = corner(k);
+        let (w, h) = (scale * layer.size[0], scale * layer.size[1]);
+        let (x0, y0) = (x + (wide - w) / 2.0, y + (high - h) / 2.0);
+        let rect = Rect { x0, y0, x1: x0 + w, y1: y0 + h };
+        let title = Text::new(format!("{role} (image {image})"), SMALL_PT).align(Align::Centre);
+        canvas.text((x + wide / 2.0, rect.y0 - 3.0), title)?;
+        layer.draw(&mut canvas, rect, Components::new(path.image(*image)));
+        canvas.outline(rect, THIN_PT, BLACK);
+    }
+    let (x, y) = corner(maps.len());
+    wheel(&mut canvas, Rect { x0: x, y0: y, x1: x + wide, y1: y + high })?;
+    canvas.text((MARGIN, height - MARGIN), Text::new(layer.words(places.unit), SMALL_PT))?;
+    Ok(canvas)
+}
+
+/// The images that are shown, each with what it is; points of the path are (reaction coordinate, energy).
+fn maps(points: &[(f64, f64)], images: usize) -> Vec<(usize, &'static str)> {
+    let last = images.saturating_sub(1);
+    if points.len() != images || images < 3 {
+        return [(0, "Initial"), (last, "Final")].into_iter().take(images.min(2)).collect();
+    }
+    let top = (0..images).max_by(|i, j| points[*i].1.total_cmp(&points[*j].1)).unwrap_or(0);
+    let half = |a: usize, b: usize| {
+        let middle = 0.5 * (points[a].0 + points[b].0);
+        (a..=b).min_by(|i, j| (points[*i].0 - middle).abs().total_cmp(&(points[*j].0 - middle).abs())).unwrap_or(a)
+    };
+    let mut all =
+        vec![(0, "Initial"), (half(0, top), "Before"), (top, "Highest"), (half(top, last), "After"), (last, "Final")];
+    all.dedup_by_key(|(image, _)| *image);
+    all
+}
+
+/// The sites that are shown: of one layer along z.
+struct Layer {
+    /// Places in the plane, and which sites.
+    sites: Vec<(usize, [f64; 2])>,
+    /// The corner of least coordinates, and the width and height.
+    low: [f64; 2],
+    size: [f64; 2],
+    /// Its height, where there are others.
+    z: Option<f64>,
+    /// Distance of neighbours.
+    apart: f64,
+    /// Sites by squares of that size.
+    squares: BTreeMap<[i64; 2], Vec<usize>>,
+}
+
+impl Layer {
+    fn of(places: &SitePlaces, vacant: &[bool]) -> Layer {
+        let bounds = |c: usize| {
+            let all = places.at.iter().map(|p| p[c]);
+            all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
+        };
+        let (bottom, top) = bounds(2);
+        let middle = 0.5 * (bottom + top);
+        let near = |p: &Vector| (p[2] - middle).abs();
+        let least = places.at.iter().map(near).fold(f64::INFINITY, f64::min);
+        let z = places.at.iter().find(|p| near(p) <= least * (1.0 + 1e-9)).map_or(middle, |p| p[2]);
+        let is_shown = |i: usize| (places.at[i][2] - z).abs() < 1e-6 && !vacant.get(i).is_some_and(|v| *v);
+        let chosen = (0..places.at.len()).filter(|i| is_shown(*i));
+        let sites: Vec<(usize, [f64; 2])> = chosen.map(|i| (i, [places.at[i][0], places.at[i][1]])).collect();
+        let far = |k: usize| {
+            let others = sites.iter().filter(|(i, _)| *i != sites[k].0);
+            others.map(|(_, p)| libm::hypot(p[0] - sites[k].1[0], p[1] - sites[k].1[1])).fold(f64::INFINITY, f64::min)
+        };
+        let apart = if sites.len() > 1 { far(0).min(far(sites.len() / 2)) } else { 1.0 };
+        let mut squares: BTreeMap<[i64; 2], Vec<usize>> = BTreeMap::new();
+        for (k, (_, p)) in sites.iter().enumerate() {
+            squares.entry(p.map(|x| (x / apart).floor() as i64)).or_default().push(k);
+        }
+        let extent = |c: usize| {
+            let all = sites.iter().map(|(_, p)| p[c]);
+            let (low, high) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+            (low - 0.5 * apart, high - low + apart)
+        };
+        let ((x, width), (y, height)) = (extent(0), extent(1));
+        let z = (top - bottom > 1e-6).then_some(z);
+        Layer { sites, low: [x, y], size: [width, height], z, apart, squares }
+    }
+
+    /// The site that colours a place, if one is near.
+    fn site_at(&self, at: [f64; 2]) -> Option<usize> {
+        let [x, y] = at.map(|x| (x / self.apart).floor() as i64);
+        let around = (-1..=1).flat_map(|b| (-1..=1).map(move |a| [x + a, y + b]));
+        let near = around.filter_map(|square| self.squares.get(&square)).flatten();
+        let far = |k: usize| libm::hypot(self.sites[k].1[0] - at[0], self.sites[k].1[1] - at[1]);
+        let nearest = near.map(|k| (far(*k), *k)).min_by(|p, q| p.0.total_cmp(&q.0))?;
+        (nearest.0 < REACH * self.apart).then_some(self.sites[nearest.1].0)
+    }
+
+    fn draw(&self, canvas: &mut Canvas, rect: Rect, m: Components) {
+        let scale = PIXELS / self.size[0].max(self.size[1]);
+        let [columns, rows] = self.size.map(|x| (scale * x).ceil().max(1.0) as usize);
+        let mut rgb = Vec::with_capacity(3 * columns * rows);
+        for row in (0..rows).rev() {
+            for column in 0..columns {
+                let fraction = [(column as f64 + 0.5) / columns as f64, (row as f64 + 0.5) / rows as f64];
+                let at = [0, 1].map(|c| self.low[c] + fraction[c] * self.size[c]);
+                let Colour(r, g, b) = self.site_at(at).map_or(LIGHT_GREY, |i| colour(m.get(i)));
+                rgb.extend([r, g, b]);
+            }
+        }
+        canvas.raster(rect, columns, rows, rgb);
+    }
+
+    /// What the maps are of.
+    fn words(&self, unit: &str) -> String {
+        let [width, height] =
+            self.size.map(|x| format!("{:.4}", x).trim_end_matches('0').trim_end_matches('.').to_string());
+        let layer = self.z.map(|z| format!(", the layer at z = {z:.4} {unit}")).unwrap_or_default();
+        format!("Maps of {width} × {height} {unit}, x to the right, y upwards{layer}")
+    }
+}
+
+/// The colour of a spin.
+fn colour(m: Vector) -> Colour {
+    let hue = cyclic(libm::atan2(m[1], m[0]));
+    if m[2] >= 0.0 { mix(hue, WHITE, m[2]) } else { mix(hue, BLACK, -m[2]) }
+}
+
+/// All colours: the direction in the plane around the middle, where m_z is 1; at the rim it is −1.
+fn wheel(canvas: &mut Canvas, room: Rect) -> Result<()> {
+    const SIDE: usize = 200;
+    let radius = 0.5 * (room.width() - 26.0).min(room.height() - 2.0 * TITLE);
+    let (x, y) = ((room.x0 + room.x1) / 2.0, room.y0 + radius + TITLE / 2.0);
+    let mut rgb = Vec::with_capacity(3 * SIDE * SIDE);
+    for row in 0..SIDE {
+        for column in 0..SIDE {
+            let place = |k: usize| 2.0 * (k as f64 + 0.5) / SIDE as f64 - 1.0;
+            let (a, b) = (place(column), -place(row));
+            let out = libm::hypot(a, b);
+            let z = 1.0 - 2.0 * out;
+            let across = (1.0 - z * z).max(0.0).sqrt() / out.max(1e-9);
+            let Colour(r, g, b) = if out > 1.0 { WHITE } else { colour([across * a, across * b, z]) };
+            rgb.extend([r, g, b]);
+        }
+    }
+    canvas.raster(Rect { x0: x - radius, y0: y - radius, x1: x + radius, y1: y + radius }, SIDE, SIDE, rgb);
+    canvas.text((x + radius + 2.5, y + 0.36 * SMALL_PT), Text::new("+x", SMALL_PT))?;
+    canvas.text((x, y - radius - 2.5), Text::new("+y", SMALL_PT).align(Align::Centre))?;
+    let below = |line: f64| (x, y + radius + line * (LABEL_PT + 1.0));
+    canvas.text(below(1.0), Text::new("centre m_{z} = 1,", SMALL_PT).align(Align::Centre))?;
+    canvas.text(below(2.0), Text::new("rim m_{z} = −1", SMALL_PT).align(Align::Centre))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::output::EnergyPath;
+    use crate::path::Path;
+    use crate::spins::Spins;
+
+    /// Two by three sites, 2 nm apart, the first vacant.
+    fn film() -> SitePlaces {
+        let at = (0..6).map(|i| [2.0 * (i % 2) as f64, 2.0 * (i / 2) as f64, 0.0]).collect();
+        SitePlaces { at, unit: "nm" }
+    }
+
+    #[test]
+    fn a_place_has_the_colour_of_the_nearest_site_and_none_far_from_all() {
+        let layer = Layer::of(&film(), &[true]);
+        assert_eq!((layer.sites.len(), layer.apart, layer.size), (5, 2.0, [4.0, 6.0]));
+        assert_eq!(layer.site_at([2.3, 0.4]), Some(1));
+        assert_eq!(layer.site_at([0.1, 3.9]), Some(4));
+        assert_eq!(layer.site_at([0.0, 0.0]), None);
+        let layers = SitePlaces { at: (0..3).map(|k| [0.0, 0.0, k as f64]).collect(), unit: "a" };
+        assert_eq!(Layer::of(&layers, &[]).z, Some(1.0));
+    }
+
+    #[test]
+    fn spins_along_the_axis_are_white_and_black_and_the_others_have_a_hue() {
+        assert_eq!([colour([0.0, 0.0, 1.0]), colour([0.0, 0.0, -1.0])], [WHITE, BLACK]);
+        assert_eq!(colour([1.0, 0.0, 0.0]), cyclic(0.0));
+        assert_ne!(colour([1.0, 0.0, 0.0]), colour([0.0, 1.0, 0.0]));
+    }
+
+    #[test]
+    fn the_maps_are_the_ends_the_top_and_what_is_halfway() {
+        let points: Vec<(f64, f64)> =
+            [0.0, 1.0, 3.0, 9.0, 4.0, 1.0, 0.5].into_iter().enumerate().map(|(k, e)| (k as f64, e)).collect();
+        let shown = maps(&points, 7);
+        assert_eq!(shown.iter().map(|m| m.0).collect::<Vec<_>>(), [0, 1, 3, 4, 6]);
+        assert_eq!(shown[2].1, "Highest");
+        assert_eq!(maps(&points[..2], 2).len(), 2);
+    }
+
+    #[test]
+    fn a_film_is_drawn_with_its_size_and_a_wheel() {
+        let [up, x, down] =
+            [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]].map(|m| Spins::from_vectors(&[m; 6]).unwrap());
+        let path = Path::new(&[up, x, down]);
+        let energy = EnergyPath { images: vec![(0.0, 0.0), (1.0, 2.0), (2.0, 0.0)], ..Default::default() };
+        let data = PlotData { energy, path: Some(&path), ..Default::default() };
+        let canvas = draw_spin_maps(&data, &film(), &Look::default()).unwrap();
+        let svg = String::from_utf8(canvas.svg().unwrap()).unwrap();
+        for words in ["Initial", "Highest", "Final", "4 × 6 nm", "+x"] {
+            assert!(svg.contains(words), "{words}");
+        }
+    }
+}
