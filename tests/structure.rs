@@ -34,7 +34,6 @@ fn heights(outcome: &Outcome) -> Vec<f64> {
 }
 
 #[test]
-#[ignore = "a plateau of hundreds of hops below 1e-9 meV takes minutes to connect"]
 fn a_wall_three_sites_wide_crosses_five_hundred_sites() {
     let outcome = certified("N = 500", &Build::open(500).easy(0.05).reversal());
     // the barrier of a chain of any length: a wall, 2√(2JK), less a little for the lattice

@@ -100,7 +100,7 @@ impl<'a> Run<'a, '_> {
 
     /// The path's top. One inside the first or last interval is not resolved: the part of the path around it becomes finer.
     fn zoom(&mut self, c: &mut FirstPath<'a>) -> Result<Option<Peak>> {
-        let mut top = highest(&c.band);
+        let mut top = highest(&c.band, self.scales.stiffness_mev);
         for _ in 0..ZOOMS {
             let images = match self.problem.images {
                 Images::Count(n) => n,
@@ -109,7 +109,7 @@ impl<'a> Run<'a, '_> {
             let Some(path) = zoomed(&c.band, top.as_ref(), images) else { break };
             c.band = Band::continued(self.problem.evaluator(), path, c.band.evaluations());
             self.relax(c, Goal::Loose, c.band.evaluations() + 24)?;
-            top = highest(&c.band);
+            top = highest(&c.band, self.scales.stiffness_mev);
         }
         Ok(top)
     }

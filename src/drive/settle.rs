@@ -186,9 +186,12 @@ impl<'a> Run<'a, '_> {
         if self.land.height_mev(highest.spins()) >= below_mev {
             return Ok(Proof { ends, links: Vec::new(), doubts: vec![Doubt::NoRoute(0)] });
         }
-        let (mut own, mut doubts) = (Vec::new(), Vec::new());
+        let (mut own, mut doubts): (Vec<Pass>, Vec<Doubt>) = (Vec::new(), Vec::new());
         let others = found.iter().filter(|f| !std::ptr::eq(*f, highest));
         for saddle in std::iter::once(highest).chain(others) {
+            if own.iter().any(|pass| pass.is_on_a_level_with(h, saddle)) {
+                continue;
+            }
             let pass = Pass::recorded(h, saddle.clone(), scale)?;
             doubts.extend(pass.doubt(h));
             if pass.doubt(h).is_none() {
@@ -238,7 +241,7 @@ impl<'a> Run<'a, '_> {
         }
         let h = self.problem.evaluator();
         let mut found: Vec<Saddle> = Vec::new();
-        for top in peaks(&c.band, WINDOW * height(&c.band)) {
+        for top in peaks(&c.band, WINDOW * height(&c.band), scale) {
             let f = match c.found.as_ref().filter(|f| is_seated(&c.band, top.image, f)) {
                 Some(f) => Saddle { top, refined: f.refined.clone() },
                 None => Saddle::recorded(h, top, scale, self.scales.half_site_rad())?,

@@ -25,9 +25,9 @@ const EVALUATIONS: usize = 30;
 const PEAKS: usize = 5;
 /// A saddle higher than a way's highest peak by more than this part of the way's height is not the way's.
 const ABOVE: f64 = 0.2;
-/// Energies that differ by less than this part of the largest stiffness along a whole way make it flat, and how many evaluations
-/// may pass until it shows.
-const FLAT: f64 = 1e-11;
+/// Energies that differ by less than this part of the largest stiffness along a whole way make it flat.
+pub const FLAT: f64 = 1e-11;
+/// How many evaluations may pass until it shows.
 const FLAT_EVALUATIONS: usize = 60;
 /// A way that is lower than this part of c after a little relaxation may be flat.
 const LOW: f64 = 1e-3;
@@ -124,11 +124,11 @@ impl Connector<'_> {
             return Ok(());
         }
         for _ in 0..ZOOMS {
-            let Some(path) = zoomed(&band, highest(&band).as_ref(), band.images() + 4) else { break };
+            let Some(path) = zoomed(&band, highest(&band, self.c).as_ref(), band.images() + 4) else { break };
             band = Band::new(h, path);
             self.bands.loosely(&mut band, EVALUATIONS)?;
         }
-        let tops = peaks(&band, f64::INFINITY);
+        let tops = peaks(&band, f64::INFINITY, self.c);
         let e = band.energies_mev();
         let (first, last) = (e[0], e[band.images() - 1]);
         let highest = tops.first().map_or(first.max(last), |top| top.energy_mev);

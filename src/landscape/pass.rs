@@ -1,5 +1,6 @@
 //! Saddles with the minima on their two sides.
 
+use super::connect::FLAT;
 use super::{Doubt, Minimum, Saddle};
 use crate::energy::{Evaluator, recorded};
 use crate::error::Result;
@@ -112,6 +113,12 @@ impl Pass {
         std::mem::swap(&mut self.before, &mut self.after);
         self.fallen_mev.reverse();
         self.ways.reverse();
+    }
+
+    /// Whether both it and a saddle are hops along one valley that is flat to rounding: a wall on a plateau of hundreds of sites.
+    pub fn is_on_a_level_with(&self, h: Evaluator, saddle: &Saddle) -> bool {
+        let flat = FLAT * h.stiffness_mev();
+        self.fallen_mev.iter().all(|f| *f < flat) && h.difference_mev(self.saddle.spins(), saddle.spins()).abs() < flat
     }
 
     /// Why this is not a proven saddle of index one between two proven minima; nothing if it is.

@@ -29,21 +29,21 @@ pub struct Peak {
 /// A saddle is lower than its peak by no more than this part of what the peak rises above the higher end.
 const NEAR: f64 = 0.2;
 
-/// Every maximum whose energy is within `window` (meV) of the highest, highest first.
-pub fn peaks(band: &Band, window: f64) -> Vec<Peak> {
+/// Every maximum whose energy is within `window` (meV) of the highest, highest first; c: stiffness scale (meV).
+pub fn peaks(band: &Band, window: f64, c: f64) -> Vec<Peak> {
     let profile = band.profile();
     let e = band.energies_mev();
     let last = e.len() - 1;
     let mut found: Vec<Peak> = Vec::new();
     for k in 1..last {
         if e[k] >= e[k - 1] && e[k] >= e[k + 1] {
-            found.push(beside(band, &profile, k));
+            found.push(beside(band, &profile, k, c));
         }
     }
     for x in profile.extrema().into_iter().filter(|x| x.is_maximum) {
         let at_an_image = |k: usize| k > 0 && k < last && e[k] >= e[k - 1] && e[k] >= e[k + 1];
         if !at_an_image(x.interval) && !at_an_image(x.interval + 1) {
-            found.push(between(band, &profile, &x));
+            found.push(between(band, &profile, &x, c));
         }
     }
     let highest = found.iter().map(|t| t.energy_mev).fold(f64::NEG_INFINITY, f64::max);
@@ -53,24 +53,24 @@ pub fn peaks(band: &Band, window: f64) -> Vec<Peak> {
 }
 
 /// The highest maximum, if the band rises anywhere above its ends.
-pub fn highest(band: &Band) -> Option<Peak> {
-    peaks(band, 0.0).into_iter().next()
+pub fn highest(band: &Band, c: f64) -> Option<Peak> {
+    peaks(band, 0.0, c).into_iter().next()
 }
 
 /// A maximal image, or the interpolated maximum beside it where that can be trusted: its force is below twice the image's, or
 /// its energy is within 2 % of what the interpolation said (on coarse plateaus the interpolation overshoots).
-fn beside(band: &Band, profile: &Profile, k: usize) -> Peak {
+fn beside(band: &Band, profile: &Profile, k: usize, c: f64) -> Peak {
     let image = Peak {
         m: band.path().image(k).to_vec(),
         tau: through(band, k),
         energy_mev: band.energies_mev()[k],
         s: profile.s[k],
         image: k,
-        floor_mev: floor(band, band.energies_mev()[k]),
+        floor_mev: floor(band, band.energies_mev()[k], k, c),
     };
     let near = profile.extrema().into_iter().filter(|x| x.is_maximum && (x.interval == k || x.interval + 1 == k));
     let Some(x) = near.max_by(|p, q| p.energy.total_cmp(&q.energy)) else { return image };
-    let top = between(band, profile, &x);
+    let top = between(band, profile, &x, c);
     let h = band.evaluator();
     let (mut g, mut f) = (vec![0.0; top.m.len()], vec![0.0; top.m.len()]);
     let energy = h.energy_gradient(&top.m, &mut g);
@@ -80,18 +80,22 @@ fn beside(band: &Band, profile: &Profile, k: usize) -> Peak {
     let image_force = slab::max_abs(band.perpendicular(k)) + band.along(k).abs() * slab::max_abs(band.tangent(k));
     let height = band.energies_mev()[k] - band.energies_mev()[0].min(band.energies_mev()[band.images() - 1]);
     let trusted = slab::max_abs(&f) < 2.0 * image_force || (energy - top.energy_mev).abs() < 0.02 * height;
-    let floor_mev = image.floor_mev.min(floor(band, energy));
+    let floor_mev = image.floor_mev.min(floor(band, energy, k, c));
     if trusted { Peak { energy_mev: energy.max(image.energy_mev), floor_mev, ..top } } else { image }
 }
 
-/// What a peak of this height is told from what lies below it by (meV above the reference).
-fn floor(band: &Band, peak_mev: f64) -> f64 {
+/// What a peak of this height beside an image is told from what lies below it by (meV above the reference).
+fn floor(band: &Band, peak_mev: f64, image: usize, c: f64) -> f64 {
     let e = band.energies_mev();
-    peak_mev - NEAR * (peak_mev - e[0].max(e[e.len() - 1])).max(0.0)
+    let rises = (peak_mev - e[0].max(e[e.len() - 1])).max(0.0);
+    let f = band.perpendicular(image);
+    // a band that is not relaxed yet is higher than its valley by about |F⊥|²/2c
+    let falls = slab::dot(f, f) / c;
+    peak_mev - (NEAR * rises).max(falls)
 }
 
 /// The interpolated maximum of an interval: its spins on the great circles between the two images.
-fn between(band: &Band, profile: &Profile, x: &Extremum) -> Peak {
+fn between(band: &Band, profile: &Profile, x: &Extremum, c: f64) -> Peak {
     let (a, b) = (band.path().image(x.interval), band.path().image(x.interval + 1));
     let mut m = vec![0.0; a.len()];
     blend(a, b, x.fraction, &mut m);
@@ -99,7 +103,8 @@ fn between(band: &Band, profile: &Profile, x: &Extremum) -> Peak {
     let image = if x.fraction < 0.5 { x.interval } else { x.interval + 1 };
     let energy_mev = x.energy + band.energies_mev()[0];
     // of the energy that is there: the interpolation may overshoot
-    let floor_mev = floor(band, band.evaluator().difference_mev(&m, band.path().image(0)) + band.energies_mev()[0]);
+    let floor_mev =
+        floor(band, band.evaluator().difference_mev(&m, band.path().image(0)) + band.energies_mev()[0], image, c);
     Peak {
         m,
         tau,
