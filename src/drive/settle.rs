@@ -137,7 +137,7 @@ impl<'a> Run<'a, '_> {
             Images::Auto => None,
             Images::Count(n) => Some(n),
         };
-        let assembled = assemble(h, &proof.links, ends, images, 0.9 * RESOLVED, &self.tools())?;
+        let assembled = assemble(&self.land, &proof.links, ends, images, 0.9 * RESOLVED, &self.tools())?;
         let Some(Assembled { path, stops }) = assembled else { return Ok(false) };
         let mut band = Band::continued(h, path, c.band.evaluations());
         for k in stops {

@@ -5,7 +5,7 @@
 //! and a minimum has neither on the way: it starts as the descent itself and is monotone.
 
 use super::connect::Bands;
-use super::{Pass, turned, turns};
+use super::{Landscape, Pass, turned, turns};
 use crate::band::Band;
 use crate::energy::{Evaluator, recorded};
 use crate::error::Result;
@@ -32,14 +32,15 @@ pub struct Assembled {
 /// The path from `a` to `b` over passes, with so many images, or as many as bring neighbours within `apart` (rad, any spin). None
 /// where there are no passes or fewer images than stretches.
 pub fn assemble(
-    h: Evaluator,
+    land: &Landscape,
     passes: &[Pass],
     [a, b]: [&Spins; 2],
     images: Option<usize>,
     apart: f64,
     bands: &dyn Bands,
 ) -> Result<Option<Assembled>> {
-    let Some(raw) = stretches(h, passes, a, b) else { return Ok(None) };
+    let h = land.evaluator();
+    let Some(raw) = stretches(land, passes, a, b) else { return Ok(None) };
     let Some(counts) = counts(&raw, images, apart) else { return Ok(None) };
     let input: Vec<&[f64]> = raw.iter().map(Path::as_slice).collect();
     let pieces: Vec<Path> = recorded(h, "stretches", &input, || {
@@ -57,7 +58,8 @@ pub fn assemble(
 
 /// The descents from the saddles, end to end from `a` to `b`: minimum to saddle, saddle to minimum, …; and flat ways where a pass does
 /// not begin where the one before it ends.
-fn stretches(h: Evaluator, passes: &[Pass], a: &Spins, b: &Spins) -> Option<Vec<Path>> {
+fn stretches(land: &Landscape, passes: &[Pass], a: &Spins, b: &Spins) -> Option<Vec<Path>> {
+    let h = land.evaluator();
     let mut pieces = Vec::new();
     let mut here = a.clone();
     let apart = |a: &Spins, b: &Spins| largest_angle(a.as_slice(), b.as_slice()) > SAME;
@@ -66,7 +68,7 @@ fn stretches(h: Evaluator, passes: &[Pass], a: &Spins, b: &Spins) -> Option<Vec<
         let turned = |s: &Spins| turned(s, &turn);
         let before = turned(&pass.before.spins);
         if apart(&before, &here) {
-            pieces.push(flat(h, &here, &before));
+            pieces.push(flat(land, &here, &before));
             here = before;
         }
         let saddle = turned(&Spins::from_unit_components(pass.saddle.spins()));
@@ -83,15 +85,18 @@ fn stretches(h: Evaluator, passes: &[Pass], a: &Spins, b: &Spins) -> Option<Vec<
         pieces.extend([Path::new(&up), Path::new(&down)]);
     }
     if apart(&here, b) {
-        pieces.push(flat(h, &here, b));
+        pieces.push(flat(land, &here, b));
     }
     (!passes.is_empty()).then_some(pieces)
 }
 
-/// The way between two minima that a flat valley joins, to be relaxed: the turn about the axis of symmetry, if that makes the one of
-/// the other, as of states of one cone; or the geodesic.
-fn flat(h: Evaluator, from: &Spins, to: &Spins) -> Path {
-    let turns = turns(h, from, to);
+/// The way between two minima that a flat valley joins, to be relaxed: the valley as it was found; or the turn about the axis of
+/// symmetry, if that makes the one of the other, as of states of one cone; or the geodesic.
+fn flat(land: &Landscape, from: &Spins, to: &Spins) -> Path {
+    if let Some(valley) = land.valley(from, to) {
+        return valley;
+    }
+    let turns = turns(land.evaluator(), from, to);
     let row = match turns[..] {
         [(axis, angle)] if largest_angle(turned(from, &turns).as_slice(), to.as_slice()) < SAME => {
             let part = |k: usize| turned(from, &[(axis, angle * k as f64 / TURN as f64)]);

@@ -120,7 +120,7 @@ impl Connector<'_> {
         let mut band = Band::new(h, way);
         self.bands.loosely(&mut band, EVALUATIONS)?;
         if self.is_flat(&mut band)? {
-            land.merge(pair);
+            land.merge(pair, band.into_path());
             return Ok(());
         }
         for _ in 0..ZOOMS {

@@ -5,9 +5,11 @@
 //! pass with the same minimum on both sides is an edge that no route takes.
 
 use super::pairs::Pairs;
-use super::{Minimum, Pass, Saddle, is_same_state};
+use super::{Minimum, Pass, Saddle, is_same_state, turned, turns};
 use crate::energy::Evaluator;
-use crate::path::largest_angle;
+use crate::path::{Path, largest_angle};
+use crate::sphere::SAME;
+use crate::spins::Spins;
 use crate::symmetry::{Group, Operation};
 
 /// Minima and saddles with energies that differ by more than this part of the stiffness are not compared.
@@ -60,6 +62,8 @@ pub struct Landscape<'a> {
     heights_mev: Vec<f64>,
     /// The minimum that stands for each: itself, or another one along a flat valley.
     stands_for: Vec<usize>,
+    /// Ways along flat valleys, each from minimum to minimum.
+    valleys: Vec<Path>,
     /// The minimum that each is an image of by symmetry.
     orbits: Vec<usize>,
     pub(super) pairs: Pairs,
@@ -78,6 +82,7 @@ impl<'a> Landscape<'a> {
             minima: Vec::new(),
             heights_mev: Vec::new(),
             stands_for: Vec::new(),
+            valleys: Vec::new(),
             orbits: Vec::new(),
             pairs: Pairs::default(),
             passes: Vec::new(),
@@ -175,13 +180,28 @@ impl<'a> Landscape<'a> {
         new
     }
 
-    /// Lets two minima be one: the valley between them is flat.
-    pub fn merge(&mut self, [a, b]: [usize; 2]) {
+    /// Lets two minima be one: they are joined by this flat valley.
+    pub fn merge(&mut self, [a, b]: [usize; 2], valley: Path) {
+        self.valleys.push(valley);
         let ([a, b], all) = ([a.min(b), a.max(b)], &mut self.stands_for);
         all.iter_mut().filter(|k| **k == b).for_each(|k| *k = a);
         for end in self.edges.iter_mut().flat_map(|edge| &mut edge.ends) {
             *end = all[*end];
         }
+    }
+
+    /// The flat way from one minimum to another, if it is known, turned about the symmetry axes.
+    pub fn valley(&self, from: &Spins, to: &Spins) -> Option<Path> {
+        let near = |a: &Spins, b: &Spins| largest_angle(a.as_slice(), b.as_slice()) < SAME;
+        let along = |valley: &Path, back: bool| {
+            let last = valley.images() - 1;
+            let image = |k: usize| valley.spins(if back { last - k } else { k });
+            let turns = turns(self.h, &image(0), from);
+            let fits = near(&turned(&image(0), &turns), from) && near(&turned(&image(last), &turns), to);
+            let inner = (1..last).map(|k| turned(&image(k), &turns));
+            fits.then(|| Path::new(&std::iter::once(from.clone()).chain(inner).chain([to.clone()]).collect::<Vec<_>>()))
+        };
+        self.valleys.iter().find_map(|valley| along(valley, false).or_else(|| along(valley, true)))
     }
 
     /// The minimum that one is an image of by symmetry: itself if it was there first.
@@ -370,7 +390,6 @@ mod tests {
     use crate::energy::{Anisotropy, EnergyTerm, Hamiltonian};
     use crate::geometry::Direction;
     use crate::lattice::Chain;
-    use crate::spins::Spins;
     use crate::stationary::Limits;
 
     /// One spin with an easy axis z and a hard axis x: minima ±z, saddles ±y.
