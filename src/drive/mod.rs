@@ -17,6 +17,7 @@ mod run;
 mod scales;
 mod search;
 mod settle;
+mod settled;
 mod stop;
 mod stored;
 mod verdict;

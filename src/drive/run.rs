@@ -6,7 +6,7 @@ use super::first_path::{FirstPath, rejection};
 use super::outcome::*;
 use super::relaxation::{Goal, Relaxation, height, needs_laplacian};
 use super::report::{self, Prepared, Proof};
-use super::settle::Settled;
+use super::settled::Settled;
 use super::{Images, Observer, Problem, Scales, Stop};
 use crate::band::{Band, Laplacian};
 use crate::energy::{Evaluator, recorded};

@@ -6,7 +6,7 @@ use super::outcome::{RejectedPath, SearchReport};
 use super::relaxation::height;
 use super::report::Proof;
 use super::run::Run;
-use super::settle::Settled;
+use super::settled::Settled;
 use crate::energy::Hamiltonian;
 use crate::error::Result;
 use crate::geometry::Vector;

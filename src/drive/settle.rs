@@ -5,6 +5,7 @@ use super::first_path::FirstPath;
 use super::relaxation::{Goal, Tools, height, image_levels, refined};
 use super::report::Proof;
 use super::run::{FEWEST_IMAGES, Run};
+use super::settled::Settled;
 use crate::band::Band;
 use crate::error::Result;
 use crate::landscape::{Assembled, Connector, Doubt, Pass, PathEnd, Saddle, assemble, peaks, same};
@@ -18,22 +19,6 @@ const MOST_IMAGES: usize = 2001;
 const FIRST: usize = 60;
 /// Maxima within this part of the path's height of the highest are refined.
 const WINDOW: f64 = 0.1;
-
-/// A path with what is known of it.
-pub(super) struct Settled<'a> {
-    pub(super) first: FirstPath<'a>,
-    pub(super) found: Vec<Saddle>,
-    pub(super) proof: Proof,
-}
-
-impl Settled<'_> {
-    /// The highest that the path is known to pass above its first image (meV): an image or a saddle.
-    pub(super) fn seen_mev(&self) -> f64 {
-        let reference = self.first.band.energies_mev()[0];
-        let saddles = self.proof.links.iter().map(|l| l.saddle.refined.state.energy_mev - reference);
-        saddles.fold(self.first.top_mev(), f64::max)
-    }
-}
 
 /// What no image of a path over these saddles exceeds (meV above the first image): the highest of them or an end, and rounding.
 fn over(c: &FirstPath, links: &[Pass]) -> f64 {

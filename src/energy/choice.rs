@@ -1,8 +1,10 @@
 //! Which bonds a term is for.
 
-use super::spec::Medium;
+use super::couplings::Couplings;
+use super::spec::{FamilyBond, Medium};
 use crate::error::{Error, Result};
 use crate::lattice::{BondFamily, Selection};
+use crate::profile::Profile;
 
 /// As written in a config; all bonds if nothing is said.
 #[derive(Clone, Copy, Debug, Default)]
@@ -40,7 +42,7 @@ impl Medium<'_> {
     }
 
     /// The chosen bonds of some families, family after family.
-    pub(super) fn choose(&self, families: &[BondFamily], choice: &Choice) -> Result<Vec<Chosen>> {
+    fn choose(&self, families: &[BondFamily], choice: &Choice) -> Result<Vec<Chosen>> {
         let of = |(family, bonds): (usize, &BondFamily)| -> Vec<Chosen> {
             bonds.bonds().map(|sites| Chosen { family, sites, reversed: false }).collect()
         };
@@ -70,6 +72,33 @@ impl Medium<'_> {
             chosen.retain(|bond| bond.sites.iter().any(|i| part.inside[*i]));
         }
         Ok(chosen)
+    }
+
+    /// The values of a profile on the chosen bonds of some families, made numbers by `convert`, which is told the bond; 0 on all
+    /// others and where a site of the bond is vacant. `key` is the profile's place.
+    pub fn on_bonds<T: Copy>(
+        &self,
+        profile: &Profile<T>,
+        families: Vec<BondFamily>,
+        choice: &Choice,
+        key: &str,
+        convert: impl Fn(T, FamilyBond) -> Result<f64>,
+    ) -> Result<Vec<Couplings>> {
+        let chosen = self.choose(&families, choice)?;
+        let value = |value, k: usize| {
+            let Chosen { family, sites, reversed } = chosen[k];
+            convert(value, FamilyBond { family: &families[family], sites, reversed })
+        };
+        let firsts: Vec<usize> = chosen.iter().map(|bond| bond.sites[0]).collect();
+        let values = profile.values(self.lattice.places_of(&firsts), "bond", value).map_err(|e| e.within(key))?;
+        let mut couplings = Couplings::none(families, self.lattice.sites);
+        for (Chosen { family, sites: [i, j], .. }, value) in chosen.into_iter().zip(values) {
+            if !self.lattice.vacant[i] && !self.lattice.vacant[j] {
+                let share = self.part.as_ref().map_or(1.0, |part| part.share(couplings[family].family.hop, [i, j]));
+                couplings[family].mev[i] = value * share;
+            }
+        }
+        Ok(couplings)
     }
 
     fn ends(&self, between: &[Selection; 2]) -> Result<[Vec<bool>; 2]> {

@@ -42,22 +42,6 @@ pub struct PairsSpec {
     pub convention: Option<Convention>,
 }
 
-impl PairsSpec {
-    /// The bonds of a table in place of its name.
-    pub fn fill(&mut self, text: &str) -> Result<()> {
-        if self.convention.is_none() {
-            let message = "a table needs the convention of its numbers: {\"counting\": \"once\" or \"both directions\", \"energy\": \"-J\"}";
-            return Err(Error::invalid("convention", message));
-        }
-        if !self.bonds.is_empty() {
-            return Err(Error::invalid("file", "\"bonds\" and \"file\" are two ways to say the same: keep one"));
-        }
-        self.bonds = super::pairs_table::parse(text).map_err(|e| e.within("file"))?;
-        self.file = None;
-        Ok(())
-    }
-}
-
 /// A bond.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -7,7 +7,7 @@
 //! J, D_x … D_z and T_xx … T_zz carry their unit of energy behind the last underscore; which of them there are is up to the table.
 //! Columns are parted by commas, semicolons or white space, and `#` begins a comment.
 
-use super::pairs::PairSpec;
+use super::pairs::{PairSpec, PairsSpec};
 use crate::error::{Error, Result};
 use crate::units::Energy;
 use crate::words::quoted;
@@ -16,8 +16,24 @@ const PLACES: [&str; 5] = ["from", "to", "cell_1", "cell_2", "cell_3"];
 const STRENGTHS: [&str; 13] =
     ["J", "D_x", "D_y", "D_z", "T_xx", "T_xy", "T_xz", "T_yx", "T_yy", "T_yz", "T_zx", "T_zy", "T_zz"];
 
+impl PairsSpec {
+    /// The bonds of a table in place of its name.
+    pub fn fill(&mut self, text: &str) -> Result<()> {
+        if self.convention.is_none() {
+            let message = "a table needs the convention of its numbers: {\"counting\": \"once\" or \"both directions\", \"energy\": \"-J\"}";
+            return Err(Error::invalid("convention", message));
+        }
+        if !self.bonds.is_empty() {
+            return Err(Error::invalid("file", "\"bonds\" and \"file\" are two ways to say the same: keep one"));
+        }
+        self.bonds = parse(text).map_err(|e| e.within("file"))?;
+        self.file = None;
+        Ok(())
+    }
+}
+
 /// The bonds of a table; an error says in which line something is wrong.
-pub fn parse(text: &str) -> Result<Vec<PairSpec>> {
+fn parse(text: &str) -> Result<Vec<PairSpec>> {
     let lines = text.lines().enumerate().map(|(k, line)| (k + 1, words(line)));
     let mut lines = lines.filter(|(_, words)| !words.is_empty());
     let Some((number, head)) = lines.next() else { return Err(Error::invalid("", "the table is empty")) };

@@ -1,9 +1,8 @@
 //! From a term as written in a config to a term with numbers a site: units, cell sizes and selections.
 
-use super::choice::{Choice, Chosen};
 use super::{
-    AnisotropySpec, BiquadraticSpec, Couplings, CubicAnisotropySpec, DemagSpec, DipolarSpec, DmiSpec, EnergyTerm,
-    ExchangeSpec, FourSpinSpec, PairsSpec, ZeemanSpec,
+    AnisotropySpec, BiquadraticSpec, CubicAnisotropySpec, DemagSpec, DipolarSpec, DmiSpec, EnergyTerm, ExchangeSpec,
+    FourSpinSpec, PairsSpec, ZeemanSpec,
 };
 use crate::error::{Error, Result};
 use crate::lattice::{BondFamily, Hop, Lattice, Selection};
@@ -59,7 +58,7 @@ pub struct Part {
 
 impl Part {
     /// Of a bond, the share of its own value that the part gives.
-    fn share(&self, hop: Hop, [i, j]: [usize; 2]) -> f64 {
+    pub(super) fn share(&self, hop: Hop, [i, j]: [usize; 2]) -> f64 {
         match self.shares.iter().find(|(own, _)| *own == hop) {
             _ if self.inside[i] && self.inside[j] => 1.0,
             Some((_, shares)) => shares[i],
@@ -176,33 +175,6 @@ impl<'a> Medium<'a> {
             list[i] = value;
         }
         Ok(list)
-    }
-
-    /// The values of a profile on the chosen bonds of some families, made numbers by `convert`, which is told the bond; 0 on all
-    /// others and where a site of the bond is vacant. `key` is the profile's place.
-    pub fn on_bonds<T: Copy>(
-        &self,
-        profile: &Profile<T>,
-        families: Vec<BondFamily>,
-        choice: &Choice,
-        key: &str,
-        convert: impl Fn(T, FamilyBond) -> Result<f64>,
-    ) -> Result<Vec<Couplings>> {
-        let chosen = self.choose(&families, choice)?;
-        let value = |value, k: usize| {
-            let Chosen { family, sites, reversed } = chosen[k];
-            convert(value, FamilyBond { family: &families[family], sites, reversed })
-        };
-        let firsts: Vec<usize> = chosen.iter().map(|bond| bond.sites[0]).collect();
-        let values = profile.values(self.lattice.places_of(&firsts), "bond", value).map_err(|e| e.within(key))?;
-        let mut couplings = Couplings::none(families, self.lattice.sites);
-        for (Chosen { family, sites: [i, j], .. }, value) in chosen.into_iter().zip(values) {
-            if !self.lattice.vacant[i] && !self.lattice.vacant[j] {
-                let share = self.part.as_ref().map_or(1.0, |part| part.share(couplings[family].family.hop, [i, j]));
-                couplings[family].mev[i] = value * share;
-            }
-        }
-        Ok(couplings)
     }
 
     /// The share of a part in what joins so many sites: that of its sites among them.

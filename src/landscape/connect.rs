@@ -1,7 +1,7 @@
 //! Connecting two minima by a band's saddles: the graph names the next pair, a way between the two is relaxed a little, and its
 //! peaks are refined to saddles, whose passes go into the graph; until a route leads from end to end.
 
-use super::pass::Pass;
+use super::pass::{FLAT, Pass};
 use super::ways::{WAYS, way};
 use super::zoom::{ZOOMS, zoomed};
 use super::{Doubt, Landscape, Saddle, highest, peaks, turned, turns};
@@ -25,9 +25,7 @@ const EVALUATIONS: usize = 30;
 const PEAKS: usize = 5;
 /// A saddle higher than a way's highest peak by more than this part of the way's height is not the way's.
 const ABOVE: f64 = 0.2;
-/// Energies that differ by less than this part of the largest stiffness along a whole way make it flat.
-pub const FLAT: f64 = 1e-11;
-/// How many evaluations may pass until it shows.
+/// How many evaluations may pass until a flat way shows.
 const FLAT_EVALUATIONS: usize = 60;
 /// A way that is lower than this part of c after a little relaxation may be flat.
 const LOW: f64 = 1e-3;

@@ -1,6 +1,5 @@
 //! Saddles with the minima on their two sides.
 
-use super::connect::FLAT;
 use super::{Doubt, Minimum, Saddle};
 use crate::energy::{Evaluator, recorded};
 use crate::error::Result;
@@ -10,6 +9,8 @@ use crate::stationary::{Spectrum, descend, relax_to_minimum};
 use crate::symmetry::Operation;
 use serde::{Deserialize, Serialize};
 
+/// Energies that differ by less than this part of the largest stiffness along a whole way make it flat.
+pub const FLAT: f64 = 1e-11;
 /// How many eigenvalues of a saddle are reported.
 const REPORTED: usize = 6;
 /// Of more sites the modes and the descents are not followed at the same time.

@@ -1,0 +1,21 @@
+//! A first path that was followed to its end.
+
+use super::first_path::FirstPath;
+use super::report::Proof;
+use crate::landscape::Saddle;
+
+/// A path with what is known of it.
+pub(super) struct Settled<'a> {
+    pub(super) first: FirstPath<'a>,
+    pub(super) found: Vec<Saddle>,
+    pub(super) proof: Proof,
+}
+
+impl Settled<'_> {
+    /// The highest that the path is known to pass above its first image (meV): an image or a saddle.
+    pub(super) fn seen_mev(&self) -> f64 {
+        let reference = self.first.band.energies_mev()[0];
+        let saddles = self.proof.links.iter().map(|l| l.saddle.refined.state.energy_mev - reference);
+        saddles.fold(self.first.top_mev(), f64::max)
+    }
+}
