@@ -19,6 +19,13 @@ const SHIPPED: &[(&str, f64, f64, f64)] = &[
     // N K for a chain that is too short for a wall.
     ("coherent_reversal", 4.5, 4.5, 1e-9),
     ("dmi_chain", 3.5050521158925413, 3.5050521158925413, 1e-6),
+    // 259 atoms: N K/4 twice, one climb after the other.
+    ("cubic_nanoparticle", 259.0 * 5.65e-3 / 1.602176634 / 4.0, 259.0 * 5.65e-3 / 1.602176634 / 4.0, 1e-9),
+    ("perpendicular_disc", 1569.8217044098747, 1569.8217044098747, 1e-8),
+    // of an independent computation: sparse Newton iterations on the saddle and both minima
+    ("skyrmion_collapse", 38.792191458280286, 49.36624297574053, 1e-9),
+    ("skyrmion_tube", 15.020395413461605, 11.209751185080979, 1e-8),
+    ("strip_depinning", 1.6470898086858778, 1.6470898086858778, 1e-8),
     ("wall_depinning", 0.170008526447, 0.170008526447, 1e-6),
     ("wall_nucleation", 6.297777507200488, 6.297777507200488, 1e-6),
 ];
@@ -109,6 +116,46 @@ fn a_wall_in_a_permalloy_wire_is_moved_past_a_shallow_notch_from_one_deep_one_to
 }
 
 #[test]
+fn a_skyrmion_leaves_over_an_edge_and_its_collapse_in_the_same_film_is_told_too() {
+    let out = tempfile::tempdir().unwrap();
+    let config = "configs/skyrmion_escape.json";
+    let done = spinneb(&root(), &["run", config, "--out", out.path().to_str().unwrap(), "--json", "--quiet"]);
+    assert_eq!(done.status.code(), Some(0), "{}", String::from_utf8_lossy(&done.stderr));
+    let (forward, backward) = barriers(&serde_json::from_slice(&done.stdout).unwrap());
+    assert!((forward - 35.35091176887428).abs() < 1e-8 && (backward - 33.57829023058889).abs() < 1e-8, "{forward}");
+    let summary: Value = serde_json::from_slice(&fs::read(out.path().join("summary.json")).unwrap()).unwrap();
+    let others = summary["rejected_paths"].as_array().unwrap();
+    let collapse = others.iter().find(|p| p["guess"].as_str().unwrap().starts_with("shrink")).unwrap();
+    assert!((collapse["barrier_meV"].as_f64().unwrap() - 50.06544395590881).abs() < 1e-8, "{collapse}");
+    assert_eq!(collapse["negative_modes"], 1);
+}
+
+#[test]
+fn a_skyrmion_of_nine_shells_vanishes_over_a_barrier_of_a_hundred_and_forty_mev() {
+    // 138.107 meV in a film of 32 × 32, where its images by the boundaries are further away
+    let (forward, backward) = barriers(&shipped("pd_fe_ir111_skyrmion"));
+    assert!((forward - 140.24947101955644).abs() < 1e-7, "{forward}");
+    assert!((backward - 175.4810149227455).abs() < 1e-7, "{backward}");
+}
+
+#[test]
+fn an_island_of_atoms_is_reversed_by_a_wall_with_rates_of_harmonic_modes() {
+    let out = tempfile::tempdir().unwrap();
+    let config = "configs/island_reversal.json";
+    let done = spinneb(&root(), &["run", config, "--out", out.path().to_str().unwrap(), "--json"]);
+    assert_eq!(done.status.code(), Some(0), "{}", String::from_utf8_lossy(&done.stderr));
+    let (forward, backward) = barriers(&serde_json::from_slice(&done.stdout).unwrap());
+    assert!((forward - 39.78602507820903).abs() < 1e-8 && (forward - backward).abs() < 1e-9, "{forward}");
+    // all 124 atoms together: 124 K
+    assert!(forward < 0.6 * 124.0 * 0.6);
+    let summary: Value = serde_json::from_slice(&fs::read(out.path().join("summary.json")).unwrap()).unwrap();
+    let rate = &summary["rates"][0];
+    assert!(rate["saddle_zero_modes"].as_array().unwrap().is_empty() && rate["refused"].as_object().unwrap().is_empty());
+    let prefactor = rate["htst_prefactor_Hz"].as_f64().unwrap();
+    assert!((prefactor / 16218654745579.803 - 1.0).abs() < 1e-6, "{prefactor}");
+}
+
+#[test]
 fn a_cobalt_chain_holds_its_magnetisation_for_minutes_at_4_kelvin_and_not_at_20() {
     let out = tempfile::tempdir().unwrap();
     let done = spinneb(&root(), &["run", "configs/cobalt_chain.json", "--out", out.path().to_str().unwrap(), "--json"]);
@@ -148,6 +195,7 @@ fn every_shipped_config_is_tested_and_checks() {
     tested.extend(
         ["ring_nucleus", "nanowire_pinning", "permalloy_wire", "permalloy_notch", "cobalt_chain"].map(String::from),
     );
+    tested.extend(["skyrmion_escape", "pd_fe_ir111_skyrmion", "island_reversal"].map(String::from));
     assert_eq!(names(&configs, ".json"), tested);
     for name in tested {
         let done = spinneb(&configs, &["check", &format!("{name}.json")]);
@@ -236,7 +284,7 @@ fn what_a_check_warns_of_a_run_warns_of_too_in_the_terminal_in_json_and_in_the_s
 #[test]
 fn templates_check_without_a_warning() {
     let folder = tempfile::tempdir().unwrap();
-    for template in ["chain", "lifetime", "nanowire"] {
+    for template in ["chain", "lifetime", "nanowire", "film", "crystal"] {
         assert_eq!(spinneb(folder.path(), &["init", template]).status.code(), Some(0));
         let done = spinneb(folder.path(), &["check", &format!("{template}.json")]);
         let said = String::from_utf8(done.stdout).unwrap();

@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Too slow to be run once more: their barriers are compared with those of the README, which another test compares with a run.
-const SLOW: [&str; 2] = ["cobalt_chain", "permalloy_notch"];
+const SLOW: [&str; 3] = ["cobalt_chain", "permalloy_notch", "pd_fe_ir111_skyrmion"];
 /// The results whose `report.html` is committed.
 const REPORTS: [&str; 2] = ["ring_nucleus", "wall_nucleation"];
 const ANEW: &str = "make the gallery anew: cargo run --release --example gallery";
@@ -118,5 +118,5 @@ fn the_gallery_is_small() {
         let entries = fs::read_dir(folder).unwrap().map(|e| e.unwrap()).filter(|e| committed(&e.path()));
         entries.map(|e| if e.path().is_dir() { size(&e.path()) } else { e.metadata().unwrap().len() }).sum()
     }
-    assert!(size(&gallery("")) < 3_000_000, "{} bytes", size(&gallery("")));
+    assert!(size(&gallery("")) < 4_500_000, "{} bytes", size(&gallery("")));
 }

@@ -124,7 +124,7 @@ fn the_schema_takes_every_example_of_the_lists_and_refuses_misspelt_ones() {
 fn starter_configs_are_valid_and_find_certified_paths() {
     let folder = tempfile::tempdir().unwrap();
     let schema = schema();
-    for template in ["chain", "nanowire", "lifetime"] {
+    for template in ["chain", "nanowire", "lifetime", "film", "crystal"] {
         let written = spinneb(folder.path(), &["init", template]);
         assert_eq!(written.status.code(), Some(0), "{}", said(&written));
         let file = format!("{template}.json");

@@ -18,6 +18,10 @@ pub enum Template {
     Nanowire,
     /// Rates and lifetimes of a short chain
     Lifetime,
+    /// A skyrmion in a film of atoms, and how it leaves
+    Film,
+    /// A particle cut from a crystal of two kinds of atoms
+    Crystal,
 }
 
 impl Template {
@@ -26,6 +30,8 @@ impl Template {
             Template::Chain => include_str!("templates/chain.json"),
             Template::Nanowire => include_str!("templates/nanowire.json"),
             Template::Lifetime => include_str!("templates/lifetime.json"),
+            Template::Film => include_str!("templates/film.json"),
+            Template::Crystal => include_str!("templates/crystal.json"),
         }
     }
 

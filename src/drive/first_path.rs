@@ -35,6 +35,11 @@ impl<'a> FirstPath<'a> {
         FirstPath { name, band, stop, history: Vec::new(), found: None, escapes: Vec::new(), followed_mev: None }
     }
 
+    /// The kind of guess that it started from, the first word of its name.
+    pub fn kind(&self) -> &str {
+        self.name.split(' ').next().unwrap_or_default()
+    }
+
     /// Highest image above the first (meV).
     pub fn top_mev(&self) -> f64 {
         self.band.energies_mev()[self.band.highest()] - self.band.energies_mev()[0]

@@ -18,6 +18,8 @@ const TRIAL: usize = 8;
 const COARSEST: f64 = 2.0;
 /// Rounds of leaving a saddle of higher index.
 const ESCAPES: usize = 3;
+/// On a film the best path of another kind is followed to its saddle too, unless its top is higher than the lowest saddle times this.
+const OF_OTHER_KINDS: f64 = 1.5;
 
 impl<'a> Run<'a, '_> {
     /// The first paths, the most promising first: the one that was asked for, or the natural ones.
@@ -45,13 +47,18 @@ impl<'a> Run<'a, '_> {
         tried.sort_by(|p, q| p.top_mev().total_cmp(&q.top_mev()));
         let scale = self.scales.stiffness_mev;
         let (mut finished, mut lowest_barrier) = (0, f64::INFINITY);
+        let mut kinds: Vec<String> = vec!["geodesic".into()];
         for c in &mut tried {
             let lowest = c.top_mev();
-            let worth = finished < 2 && self.problem.seeks_saddles();
-            if worth && !(finished == 1 && lowest > 1.2 * lowest_barrier) {
+            let worth = finished < 2 && !(finished == 1 && lowest > 1.2 * lowest_barrier);
+            // a collapse and an escape over an edge are two answers, and both are told
+            let is_row = self.problem.hamiltonian.lattice().is_row();
+            let other = !is_row && !kinds.iter().any(|k| k == c.kind()) && lowest < OF_OTHER_KINDS * lowest_barrier;
+            if self.problem.seeks_saddles() && (worth || other) {
                 self.conclude(c)?;
                 finished += 1;
                 lowest_barrier = lowest_barrier.min(c.barrier_mev(scale));
+                kinds.push(c.kind().into());
             }
         }
         tried.sort_by(|p, q| {
