@@ -5,6 +5,7 @@ mod common;
 use common::{Build, cases, number, solve};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use spinneb::config::load_text;
 use spinneb::drive::{Outcome, Problem};
 use spinneb::energy::{Anisotropy, Exchange, Hamiltonian};
 use spinneb::geometry::{Direction, tangent_basis, vector};
@@ -279,6 +280,66 @@ fn check_against_dense(h: &Hamiltonian, outcome: &Outcome, settings: &RateSettin
     } else {
         let (own, htst) = (found.htst.expect("HTST").hz_at(t), expected(top.htst_frequency(0, &gyration)));
         assert!((own / htst - 1.0).abs() < 1e-9, "HTST {own} {htst}");
+    }
+}
+
+/// A film or an island of moments of 2 μ_B, with rates at a temperature.
+fn film(lattice: &str, energy: &str, ends: [&str; 2], kelvin: f64) -> Problem {
+    let text = format!(
+        r#"{{"material": {{"name": "test", "moment": "2 mu_B", "energy": [{energy}]}}, "lattice": {lattice},
+            "initial": {}, "final": {}, "rates": {{"temperatures": ["{kelvin} K"], "damping": 0.2, "theory": ["htst", "langer"]}}}}"#,
+        ends[0], ends[1]
+    );
+    load_text(std::path::Path::new("film.json"), text).unwrap().problem().unwrap()
+}
+
+const UP: &str = r#"{"uniform": {"direction": [0, 0, 1]}}"#;
+const DOWN: &str = r#"{"uniform": {"direction": [0, 0, -1]}}"#;
+
+#[test]
+fn islands_pinned_walls_and_discs_with_an_axis_in_the_plane_agree_with_dense_eigenvalues() {
+    let axes = |easy: &str, hard: &str| {
+        format!(
+            r#"{{"exchange": {{"J": ["1 meV"]}}}}, {{"anisotropy": {{"K": "0.3 meV", "axis": {easy}}}}},
+               {{"anisotropy": {{"K": "-0.2 meV", "axis": {hard}}}}}"#
+        )
+    };
+    let normal = axes("[0, 0, 1]", "[1, 0, 0]");
+    let island = film(r#"{"square": {"cells": [9, 3]}}"#, &normal, [UP, DOWN], 1.0);
+    let weak = r#"{"anisotropy": {"K": "-0.2 meV", "axis": [0, 0, 1], "sites": {"any": [
+        {"box": {"from": [3, 0], "to": [3, 2]}}, {"box": {"from": [8, 0], "to": [8, 2]}}]}}}"#;
+    let walls = [3, 8].map(|center| format!(r#"{{"domain_wall": {{"center": {center}}}}}"#));
+    let ends = [walls[0].as_str(), walls[1].as_str()];
+    let pinned = film(r#"{"square": {"cells": [12, 3]}}"#, &format!("{normal}, {weak}"), ends, 1.0);
+    let disc = r#"{"triangular": {"cells": [7, 7], "shape": {"disc": {"radius": 2.6}}}}"#;
+    let along = [1, -1].map(|x| format!(r#"{{"uniform": {{"direction": [{x}, 0, 0]}}}}"#));
+    let disc = film(disc, &axes("[1, 0, 0]", "[0, 0, 1]"), [&along[0], &along[1]], 1.0);
+    // by either end of the island, and in either sense; the disc's spins turn as one
+    for (problem, alike) in [(island, Some(4)), (pinned, None), (disc, Some(2))] {
+        let outcome = solve(&problem);
+        assert!(outcome.certified, "{:?}", outcome.warnings);
+        check_against_dense(&problem.hamiltonian, &outcome, problem.rates.as_ref().unwrap(), false);
+        if let Some(alike) = alike {
+            assert_eq!(rate(&outcome, Way::Forward).equivalents.count, alike);
+        }
+    }
+}
+
+#[test]
+fn a_skyrmion_that_slides_over_its_film_has_no_rate_yet_and_says_so() {
+    let energy = r#"{"exchange": {"J": ["1 meV"]}}, {"dmi": {"D": "0.6 meV", "kind": "interfacial"}},
+        {"anisotropy": {"K": "0.1 meV", "axis": [0, 0, 1]}}, {"zeeman": {"B": ["0 T", "0 T", "1.7 T"]}}"#;
+    let skyrmion = r#"{"skyrmion": {"radius": 3, "center": [8, 8]}}"#;
+    for (kelvin, slides) in [(5.0, true), (1e-4, false)] {
+        let problem = film(r#"{"square": {"cells": [16, 16], "periodic": true}}"#, energy, [skyrmion, UP], kelvin);
+        let outcome = solve(&problem);
+        let forward = rate(&outcome, Way::Forward);
+        assert!(outcome.certified && (forward.htst.is_none() && forward.langer.is_none()) == slides);
+        assert_eq!(outcome.warnings.iter().any(|w| w.contains("a translation that is all but free")), slides);
+        if slides {
+            let why = refusal(&outcome, Theory::Htst);
+            assert!(why.contains("the minimum before it") && why.contains("comes with a later version"), "{why}");
+        }
     }
 }
 

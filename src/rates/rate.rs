@@ -262,8 +262,9 @@ impl Well {
         valley: Option<&[f64]>,
         name: &'static str,
     ) -> Result<Well, Refusal> {
-        let thermal_mev = K_B * settings.temperatures_k.iter().copied().fold(f64::INFINITY, f64::min);
-        let zeros = zero_modes(&h, &state, group, spectrum.flat, spectrum.floor_mev, thermal_mev)
+        let kelvin = || settings.temperatures_k.iter().copied();
+        let of_interest = [K_B * kelvin().fold(f64::INFINITY, f64::min), kelvin().fold(0.0, f64::max)];
+        let zeros = zero_modes(&h, &state, group, spectrum.flat, spectrum.floor_mev, of_interest)
             .map_err(|unknown| Refusal::Volume(name, unknown))?;
         let directions: Vec<Vec<f64>> = zeros.iter().flat_map(|z| z.modes.clone()).collect();
         let unstable = match valley {

@@ -6,7 +6,8 @@
 //! translation along a ring             N √(Σ |dm_i/dx|²)                  x in sites, N the number after which the state repeats
 //! ```
 //! Rotations are exact zero modes. A translation is one where the lattice is so fine that the energy changes by less than
-//! [`PINNING`] k_BT while the state moves by a site; its eigenvalue ε gives that energy, ε Σ|dm/dx|²/2π² (a cosine).
+//! [`PINNING`] k_BT while the state moves by a site; its eigenvalue ε gives that energy, ε Σ|dm/dx|²/2π² (a cosine). On a film or a
+//! crystal a state with such a translation has no rate yet.
 
 use super::UnknownModes;
 use super::symmetry::period;
@@ -19,13 +20,18 @@ use crate::linalg::remove;
 use crate::linalg::{eigen_symmetric, slab};
 use crate::stationary::State;
 use crate::symmetry::Group;
+use crate::units::K_B;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// A state that moves freely feels its lattice with less than this part of k_BT.
-const PINNING: f64 = 0.05;
+pub(super) const PINNING: f64 = 0.05;
 /// Overlap with the translation's own direction above which a mode is the translation.
 const IS_TRANSLATION: f64 = 0.99;
+/// The same on films and crystals, where edges and a few sites across blur the direction.
+const SLIDES: f64 = 0.9;
+/// Fewer sites along a direction leave nothing room to slide.
+const FEWEST: usize = 7;
 
 /// What kind of zero mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -50,16 +56,19 @@ pub struct ZeroMode {
 
 /// All zero modes of a stationary state. `group`: that of the energy and the moments. `flat` is how many more eigenvalues than the rotations' are below the rounding error
 /// `floor_mev`; an error, in words, where one of them is no translation, so that nobody knows its volume. `thermal_mev` is the
-/// smallest k_BT of interest.
+/// smallest k_BT of interest, `hottest_k` the highest temperature (K).
 pub fn zero_modes(
     h: &Hamiltonian,
     state: &State,
     group: &Group,
     flat: usize,
     floor_mev: f64,
-    thermal_mev: f64,
+    [thermal_mev, hottest_k]: [f64; 2],
 ) -> Result<Vec<ZeroMode>, UnknownModes> {
     let mut found = Vec::new();
+    if let Some(pinning_mev) = sliding_mev(h, state).filter(|mev| *mev < PINNING * K_B * hottest_k) {
+        return Err(UnknownModes::Slides { pinning_mev, kelvin: hottest_k });
+    }
     if !state.zeros.is_empty() {
         let volume = rotation_volume(h, state);
         found.push(ZeroMode { kind: ZeroKind::Rotation, modes: state.zeros.clone(), volume });
@@ -71,7 +80,7 @@ pub fn zero_modes(
     }
     match flat.saturating_sub(explained) {
         0 => Ok(found),
-        modes => Err(UnknownModes { modes, floor_mev }),
+        modes => Err(UnknownModes::Flat { modes, floor_mev }),
     }
 }
 
@@ -100,11 +109,41 @@ fn overlap(h: &Hamiltonian, m: &[f64], a: Vector, b: Vector) -> f64 {
 
 /// The translation of a ring's state as a zero mode, with its eigenvalue (meV), if it is nearly free.
 fn translation(h: &Hamiltonian, state: &State, group: &Group, thermal_mev: f64) -> Option<(ZeroMode, f64)> {
-    if !h.lattice().is_ring() || h.sites() < 7 {
+    if !h.lattice().is_ring() || h.sites() < FEWEST {
         return None;
     }
     let period = period(group, &state.m)?;
-    let mut along = state.basis.coordinates(&derivative(h.lattice(), &state.m));
+    let (along, size) = sliding_direction(h.lattice(), state, 0)?;
+    let (eigenvalue_mev, mode) = nearest_mode(state, along.clone(), &state.zeros)?;
+    let pinning_mev = pinning_mev(eigenvalue_mev, size);
+    let free = slab::dot(&mode, &along).abs() > IS_TRANSLATION && pinning_mev < PINNING * thermal_mev;
+    let volume = period as f64 * size;
+    free.then_some((ZeroMode { kind: ZeroKind::Translation, modes: vec![mode], volume }, eigenvalue_mev))
+}
+
+/// By how much the energy changes (meV) as a state of a film or a crystal slides from one site to the next, along the direction in which
+/// it is freest; nothing if no stable mode slides it.
+fn sliding_mev(h: &Hamiltonian, state: &State) -> Option<f64> {
+    let lattice = h.lattice();
+    let along = |d: usize| -> Option<f64> {
+        let (along, size) = sliding_direction(lattice, state, d)?;
+        let (eigenvalue_mev, mode) = nearest_mode(state, along.clone(), &state.zeros)?;
+        let slides = eigenvalue_mev > 0.0 && slab::dot(&mode, &along).abs() > SLIDES;
+        slides.then(|| pinning_mev(eigenvalue_mev, size))
+    };
+    let long = (0..3).filter(|d| !lattice.is_row() && lattice.grid.size[*d] >= FEWEST);
+    long.filter_map(along).min_by(f64::total_cmp)
+}
+
+/// ε Σ|dm/dx|²/2π² (meV).
+fn pinning_mev(eigenvalue_mev: f64, size: f64) -> f64 {
+    eigenvalue_mev.abs() * size * size / (2.0 * PI * PI)
+}
+
+/// dm/dx along a direction of the lattice but for the rotations, of unit length in tangent coordinates (2N), and √Σ|dm/dx|²; nothing
+/// where that is no motion.
+fn sliding_direction(lattice: &Lattice, state: &State, direction: usize) -> Option<(Vec<f64>, f64)> {
+    let mut along = state.basis.coordinates(&derivative(lattice, &state.m, direction));
     let whole = slab::norm(&along);
     remove(&mut along, &state.zeros);
     let size = slab::norm(&along);
@@ -112,24 +151,26 @@ fn translation(h: &Hamiltonian, state: &State, group: &Group, thermal_mev: f64) 
         return None;
     }
     slab::scale(&mut along, 1.0 / size);
-    let (eigenvalue_mev, mode) = nearest_mode(state, along.clone(), &state.zeros)?;
-    let pinning_mev = eigenvalue_mev.abs() * size * size / (2.0 * PI * PI);
-    let free = slab::dot(&mode, &along).abs() > IS_TRANSLATION && pinning_mev < PINNING * thermal_mev;
-    let volume = period as f64 * size;
-    free.then_some((ZeroMode { kind: ZeroKind::Translation, modes: vec![mode], volume }, eigenvalue_mev))
+    Some((along, size))
 }
 
-/// dm/dx on a ring (3N numbers a site), to sixth order in the distance of two sites.
-fn derivative(ring: &Lattice, m: &[f64]) -> Vec<f64> {
+/// dm/dx (3N numbers a site) along a direction, to sixth order in the distance of two sites, to second order near an edge; 0 at it.
+fn derivative(lattice: &Lattice, m: &[f64], direction: usize) -> Vec<f64> {
+    const SIXTH: [f64; 3] = [45.0, -9.0, 1.0];
     let m = Components::new(m);
-    let n = m.sites();
-    let mut d = vec![0.0; 3 * n];
-    for i in 0..n {
-        let mut sum = [0.0; 3];
-        for (k, weight) in [(1, 45.0), (2, -9.0), (3, 1.0)] {
-            let [ahead, behind] = [k, -k].map(|by| m.get(ring.along_ring(i, by)));
-            sum = vector::add(sum, vector::scale(weight / 60.0, vector::sub(ahead, behind)));
-        }
+    let mut d = vec![0.0; 3 * m.sites()];
+    for i in 0..m.sites() {
+        let beside = |k: isize| {
+            let [ahead, behind] = [k, -k].map(|by| lattice.step_from(i, direction, by));
+            Some(vector::sub(m.get(ahead?), m.get(behind?)))
+        };
+        let sum = match (beside(1), beside(2), beside(3)) {
+            (Some(one), Some(two), Some(three)) => [one, two, three].iter().zip(SIXTH).fold([0.0; 3], |sum, (v, w)| {
+                vector::add(sum, vector::scale(w / 60.0, *v))
+            }),
+            (Some(one), ..) => vector::scale(0.5, one),
+            _ => continue,
+        };
         ComponentsMut::new(&mut d).set(i, sum);
     }
     d
@@ -153,7 +194,7 @@ mod tests {
                 _ => 0.0,
             })
             .collect();
-        assert!((slab::norm(&derivative(&Chain::ring(n).resolve().unwrap(), &m)) - k * (n as f64).sqrt()).abs() < 1e-8);
+        assert!((slab::norm(&derivative(&Chain::ring(n).resolve().unwrap(), &m, 0)) - k * (n as f64).sqrt()).abs() < 1e-8);
     }
 
     #[test]
