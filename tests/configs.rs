@@ -150,7 +150,9 @@ fn an_island_of_atoms_is_reversed_by_a_wall_with_rates_of_harmonic_modes() {
     assert!(forward < 0.6 * 124.0 * 0.6);
     let summary: Value = serde_json::from_slice(&fs::read(out.path().join("summary.json")).unwrap()).unwrap();
     let rate = &summary["rates"][0];
-    assert!(rate["saddle_zero_modes"].as_array().unwrap().is_empty() && rate["refused"].as_object().unwrap().is_empty());
+    assert!(
+        rate["saddle_zero_modes"].as_array().unwrap().is_empty() && rate["refused"].as_object().unwrap().is_empty()
+    );
     let prefactor = rate["htst_prefactor_Hz"].as_f64().unwrap();
     assert!((prefactor / 16218654745579.803 - 1.0).abs() < 1e-6, "{prefactor}");
 }

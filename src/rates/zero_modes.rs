@@ -165,9 +165,10 @@ fn derivative(lattice: &Lattice, m: &[f64], direction: usize) -> Vec<f64> {
             Some(vector::sub(m.get(ahead?), m.get(behind?)))
         };
         let sum = match (beside(1), beside(2), beside(3)) {
-            (Some(one), Some(two), Some(three)) => [one, two, three].iter().zip(SIXTH).fold([0.0; 3], |sum, (v, w)| {
-                vector::add(sum, vector::scale(w / 60.0, *v))
-            }),
+            (Some(one), Some(two), Some(three)) => [one, two, three]
+                .iter()
+                .zip(SIXTH)
+                .fold([0.0; 3], |sum, (v, w)| vector::add(sum, vector::scale(w / 60.0, *v))),
             (Some(one), ..) => vector::scale(0.5, one),
             _ => continue,
         };
@@ -194,7 +195,9 @@ mod tests {
                 _ => 0.0,
             })
             .collect();
-        assert!((slab::norm(&derivative(&Chain::ring(n).resolve().unwrap(), &m, 0)) - k * (n as f64).sqrt()).abs() < 1e-8);
+        assert!(
+            (slab::norm(&derivative(&Chain::ring(n).resolve().unwrap(), &m, 0)) - k * (n as f64).sqrt()).abs() < 1e-8
+        );
     }
 
     #[test]
