@@ -2,6 +2,7 @@
 
 pub mod check;
 pub mod collect;
+mod drawing;
 mod jobs;
 pub mod list;
 pub mod plot;

@@ -18,6 +18,7 @@
 //! | [`lattice`], [`profile`], [`geometry`], [`units`], [`field`], [`linalg`], [`registry`], [`words`], [`error`] | the ground |
 
 pub mod band;
+mod base64;
 pub mod config;
 pub mod control;
 pub mod drive;

@@ -138,3 +138,82 @@ fn what_is_wrong_with_a_file_is_said_at_its_place_in_the_config_and_warnings_rea
     assert!(said.contains("warning: m.csv: all vectors are 800000 long"), "{said}");
     assert!(summary(folder, "wall")["warnings"][0].as_str().unwrap().contains("m.csv"));
 }
+
+/// A PNG of so many grey pixels a row, 0 black.
+fn png(columns: u32, grey: &[u8]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, columns, grey.len() as u32 / columns);
+    encoder.set_color(png::ColorType::Grayscale);
+    encoder.write_header().unwrap().write_image_data(grey).unwrap();
+    bytes
+}
+
+#[test]
+fn an_image_is_a_shape_and_a_region_and_the_config_as_run_needs_it_no_more() {
+    let temporary = tempfile::tempdir().unwrap();
+    let folder = temporary.path();
+    // the left half of a film, and of that the upper row
+    fs::write(folder.join("left.png"), png(2, &[0, 255])).unwrap();
+    fs::write(folder.join("top.png"), png(1, &[0, 255, 255])).unwrap();
+    let mut config = wall_from_the_left();
+    config["lattice"] = json!({"square": {"cells": [6, 3], "shape": {"image": {"path": "left.png"}},
+        "regions": {"top": {"image": {"path": "top.png"}}}}});
+    config["energy"] = json!([{"anisotropy": {"K": "0.1 meV", "axis": [0, 0, 1], "sites": "top"}}]);
+    config["path"] = json!({"images": 5, "guess": {"sweep": {"from": "left"}}});
+    write(folder, "film.json", &config);
+    let checked = spinneb(folder, &["check", "film.json"]);
+    let said = String::from_utf8_lossy(&checked.stdout).into_owned();
+    for words in ["square, 6 × 3 cells, open, 9 sites (9 left out)", "a a a", "o o o", "a 3 of region top"] {
+        assert!(said.contains(words), "{words}: {said}");
+    }
+    run(folder, &["film.json", "--quiet"]);
+    fs::create_dir(folder.join("elsewhere")).unwrap();
+    fs::copy(folder.join("results/film/config.json"), folder.join("elsewhere/film.json")).unwrap();
+    run(&folder.join("elsewhere"), &["film.json", "--quiet"]);
+    let [first, again] = [folder.to_path_buf(), folder.join("elsewhere")].map(|f| summary(&f, "film"));
+    assert_eq!((&first["config_sha256"], barrier(&first)), (&again["config_sha256"], barrier(&again)));
+    for (path, bytes, said) in [
+        ("none.png", None, "lattice.square.shape.image.path: the image none.png cannot be read"),
+        ("text.png", Some(b"no image".to_vec()), "lattice.square.shape.image.path: text.png is no PNG image"),
+        ("white.png", Some(png(1, &[255])), "lattice.square.shape: no site of the lattice is inside"),
+    ] {
+        bytes.map(|bytes| fs::write(folder.join(path), bytes).unwrap());
+        config["lattice"]["square"]["shape"]["image"]["path"] = json!(path);
+        write(folder, "bad.json", &config);
+        let refused = spinneb(folder, &["run", "bad.json"]);
+        let message = String::from_utf8_lossy(&refused.stderr).into_owned();
+        assert_eq!(refused.status.code(), Some(2), "{message}");
+        assert!(message.contains(said), "{message}");
+    }
+}
+
+#[test]
+fn a_film_is_read_back_from_its_own_files_and_drawn_anew_from_them() {
+    let temporary = tempfile::tempdir().unwrap();
+    let folder = temporary.path();
+    let mut config = wall_from_the_left();
+    config["lattice"] =
+        json!({"square": {"cells": [5, 4], "spacing": "0.3 nm", "vacant": [7], "shape": {"disc": {"radius": 2.2}}}});
+    config["path"] = json!({"images": 5, "guess": {"sweep": {"from": "left"}}});
+    write(folder, "film.json", &config);
+    run(folder, &["film.json", "--quiet"]);
+    let of_film = summary(folder, "film");
+    for (k, file) in ["path.npz", "path.ovf", "path_text.ovf"].into_iter().enumerate() {
+        let path = format!("results/film/{file}");
+        config["initial"] = json!({"file": {"path": path, "segment": 0}});
+        config["path"]["guess"] = json!({"file": {"path": path}});
+        let name = format!("again_{k}.json");
+        write(folder, &name, &config);
+        run(folder, &[&name, "--quiet"]);
+        let again = barrier(&summary(folder, &format!("again_{k}")));
+        assert!((again - barrier(&of_film)).abs() < 1e-9, "{file}: {again}");
+    }
+    // on another lattice
+    config["lattice"]["square"]["cells"] = json!([4, 4]);
+    write(folder, "other.json", &config);
+    let message = String::from_utf8_lossy(&spinneb(folder, &["run", "other.json"]).stderr).into_owned();
+    assert!(message.contains("path_text.ovf has 5 × 4 × 1 nodes, but the lattice has 4 × 4 × 1 cells"), "{message}");
+    // figures from the mesh alone, rates from the meshes of saddles and minima
+    let rate = spinneb(folder, &["rate", "results/film", "-T", "300K"]);
+    assert!(!String::from_utf8_lossy(&rate.stderr).contains("anew"), "{}", String::from_utf8_lossy(&rate.stderr));
+}

@@ -12,8 +12,6 @@ use spinneb::state::{StateBuilder, StateContext, StateSpec};
 use std::fmt::Write;
 use std::fs;
 
-const MESH: Mesh = Mesh { base: [1.25e-10, 0.0, 0.0], step: [2.5e-10, 1e-9, 1e-9], unit: "m" };
-
 /// Unit vectors in all directions, image after image.
 fn images(count: usize, sites: usize, seed: u64) -> Vec<Vec<Vector>> {
     let mut r = ChaCha8Rng::seed_from_u64(seed);
@@ -23,7 +21,9 @@ fn images(count: usize, sites: usize, seed: u64) -> Vec<Vec<Vector>> {
 
 fn ovf(data: OvfData, images: &[Vec<Vector>]) -> Vec<u8> {
     let segments: Vec<Segment> = images.iter().map(|spins| Segment { description: "m: test", spins }).collect();
-    write_ovf(data, &MESH, &segments)
+    let nodes = [images[0].len(), 1, 1];
+    let mesh = Mesh::Cells { base: [1.25e-10, 0.0, 0.0], step: [2.5e-10, 1e-9, 1e-9], nodes, unit: "m" };
+    write_ovf(data, &mesh, &segments)
 }
 
 fn array(images: &[Vec<Vector>]) -> Array {
@@ -62,7 +62,7 @@ fn what_is_written_is_read_back_exactly_or_to_the_precision_of_the_format() {
     for (count, sites) in [(1, 1), (1, 50), (20, 7), (3, 1000)] {
         let given = images(count, sites, 1);
         for (file, bytes, exact) in written(&given) {
-            let Images { images: found, warnings } = read(file, &bytes).unwrap();
+            let Images { images: found, warnings, .. } = read(file, &bytes).unwrap();
             assert_eq!((found.len(), found[0].len(), warnings.len()), (count, sites, 0), "{file}");
             if exact {
                 assert_eq!(found, given, "{file}");
@@ -158,7 +158,9 @@ fn absurd_sizes_are_refused_before_anything_is_allocated() {
              # ynodes: {y}\n# znodes: 1\n# valuedim: 3\n# End: Header\n# Begin: Data Binary 8\n"
         )
     };
-    for (x, y) in [("1000000000000000000", "1"), ("99999999999999999999999", "1"), ("100000001", "1"), ("4", "4")] {
+    for (x, y) in
+        [("1000000000000000000", "1"), ("99999999999999999999999", "1"), ("100000001", "1"), ("10000", "100000")]
+    {
         assert!(refused("m.ovf", header(x, y).as_bytes()).contains("m.ovf: line "), "{x}");
     }
     assert!(refused("m.ovf", header("100000000", "1").as_bytes()).contains("2400000008 bytes"));
@@ -270,8 +272,8 @@ fn an_image_is_chosen_by_its_number_from_either_end() {
     let state = |json: &str| {
         let mut spec: StateSpec = serde_json::from_str(json).unwrap();
         let StateSpec::File(file) = &mut spec else { panic!("{json}") };
-        file.load(folder.path())?;
         let chain = Chain::open(6).resolve().unwrap();
+        file.load(folder.path(), Some(&chain))?;
         file.vectors(&StateContext::new(&chain, 1.0))
     };
     assert_eq!(state(r#"{"file": {"path": "m.ovf", "segment": 2}}"#).unwrap(), given[2]);
@@ -303,6 +305,8 @@ fn a_path_from_a_file_is_taken_as_it_is_or_spaced_evenly_along_it() {
         let nearest = (0..401).map(|k| spinneb::path::distance(fine.image(k), image.as_slice())).fold(9.0, f64::min);
         assert!(nearest < 0.6 * fine.length() / 400.0, "{nearest}");
     }
-    let other = Spins::uniform(7, Direction::Z);
-    assert!(guess.path(&other, &other, 5, &context).unwrap_err().to_string().contains("has 6 spins an image"));
+    let chain = Chain::open(7).resolve().unwrap();
+    let (other, states) = (Spins::uniform(7, Direction::Z), StateContext::new(&chain, 1.0));
+    let said = guess.path(&other, &other, 5, &GuessContext { states, ..context }).unwrap_err().to_string();
+    assert!(said.contains("p.npz has 6 spins, but the chain has 7 sites"), "{said}");
 }

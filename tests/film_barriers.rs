@@ -103,7 +103,7 @@ fn from_path(mut problem: Problem, kind: &str, wall: f64, center: Vector) -> Out
         [&problem.initial, &problem.final_state].map(|end| relax_to_minimum(h.into(), end, tolerance).unwrap().spins);
     let path = first_path(h, &a, &b, kind, wall, center);
     let images = (0..IMAGES).map(|k| path.spins(k).vectors()).collect();
-    let stored = Stored { file: "path".into(), content: Images { images, warnings: Vec::new() } };
+    let stored = Stored { file: "path".into(), content: Images { images, ..Images::default() } };
     let file = PathFile { path: "path".into(), sha256: None, stored: Some(Arc::new(stored)) };
     (problem.initial, problem.final_state) = (a, b);
     problem.guess = Some(GuessSpec::File(file));

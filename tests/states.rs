@@ -1,8 +1,9 @@
 //! States on films and crystals: closed forms, symmetry, and what is refused.
 
 use spinneb::energy::{Anisotropy, Dmi, EnergyTerm, Exchange, Hamiltonian, Zeeman};
-use spinneb::geometry::{Direction, Vector, angle, vector};
-use spinneb::lattice::{Grid, Lattice};
+use spinneb::field::Components;
+use spinneb::geometry::{Direction, Quaternion, Vector, angle, vector};
+use spinneb::lattice::{Grid, Lattice, LatticeSpec};
 use spinneb::spins::Spins;
 use spinneb::state::{StateContext, StateSpec};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -88,6 +89,45 @@ fn a_skyrmion_has_the_charge_of_its_vorticity_and_core_on_any_film() {
     let tilted = state(r#"{"skyrmion": {"radius": 4.5, "width": 1.2, "core": [0.3, 0.4, -0.6]}}"#, &film);
     assert!((charge(&tilted, &film) + 1.0).abs() < 2e-2);
 }
+
+#[test]
+fn the_charge_on_any_lattice_is_that_of_the_texture_and_a_turn_of_all_spins_leaves_it() {
+    for lattice in [
+        r#"{"square": {"cells": [26, 24]}}"#,
+        r#"{"triangular": {"cells": [26, 26], "periodic": true}}"#,
+        r#"{"honeycomb": {"cells": [20, 20]}}"#,
+        r#"{"kagome": {"cells": [16, 16], "periodic": true}}"#,
+        r#"{"triangular": {"cells": [40, 40], "shape": {"disc": {"radius": 14}}}}"#,
+        r#"{"cubic": {"cells": [22, 22, 3]}}"#,
+        r#"{"fcc": {"cells": [16, 16, 2], "periodic": [true, true, false]}}"#,
+        r#"{"hcp": {"cells": [22, 22, 2], "periodic": [true, true, false]}}"#,
+    ] {
+        let film = serde_json::from_str::<LatticeSpec>(lattice).unwrap().resolve().unwrap();
+        let triangles = film.triangles();
+        let charge =
+            |vectors: &[Vector]| triangles.charge(Components::new(Spins::from_vectors(vectors).unwrap().as_slice()));
+        assert_eq!(charge(&vec![[0.6, 0.0, -0.8]; film.sites]), 0.0);
+        for (core, vorticity) in [(-1.0, 1), (-1.0, -1), (1.0, 1), (-1.0, 2)] {
+            let text = format!(
+                r#"{{"skyrmion": {{"radius": 4, "width": 1, "core": [0, 0, {core}], "vorticity": {vorticity}, "helicity": "40 deg"}}}}"#
+            );
+            let m = state(&text, &film).vectors();
+            let found = charge(&m);
+            assert!((found - core * f64::from(vorticity)).abs() < 1e-2, "{text} on {lattice}: {found}");
+            let turn = Quaternion::from_axis_angle(Direction::new([1.0, 2.0, -0.5]).unwrap(), 1.3);
+            let turned: Vec<Vector> = m.iter().map(|m| turn.rotate(*m)).collect();
+            let reversed: Vec<Vector> = m.iter().map(|m| vector::scale(-1.0, *m)).collect();
+            assert!((charge(&turned) - found).abs() < 1e-12, "{text} on {lattice}");
+            assert!((charge(&reversed) + found).abs() < 1e-12, "{text} on {lattice}");
+        }
+    }
+    // by the sum over squares of one diagonal
+    let film = square(24);
+    let m = state(SMALL, &film);
+    assert!((film.triangles().charge(Components::new(m.as_slice())) - charge(&m, &film)).abs() < 1e-12);
+}
+
+const SMALL: &str = r#"{"skyrmion": {"radius": 2.1, "width": 0.8, "helicity": "0 deg"}}"#;
 
 #[test]
 fn a_skyrmion_has_its_radius_its_core_and_its_helicity_and_is_a_tube_in_three_dimensions() {

@@ -10,7 +10,9 @@ pub type Vectors = Vec<Vec<[f64; 3]>>;
 /// The vectors of a file, if it is one.
 pub fn read(name: &str, bytes: &[u8]) -> Option<Vectors> {
     let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending);
-    let images = if is_ovf(bytes) || (ending == "ovf" && !is_packed(bytes)) {
+    // an OVF file knows by itself where a zero vector may stand
+    let by_ovf = is_ovf(bytes) || (ending == "ovf" && !is_packed(bytes));
+    let images = if by_ovf {
         ovf(bytes)
     } else if bytes.starts_with(b"PK\x03\x04") || (ending == "npz" && !is_packed(bytes)) {
         npz(bytes)
@@ -20,8 +22,12 @@ pub fn read(name: &str, bytes: &[u8]) -> Option<Vectors> {
         csv(bytes)
     }?;
     let same = images.iter().all(|i| !i.is_empty() && i.len() == images[0].len());
-    let sound = |v: &[f64; 3]| v.iter().all(|x| x.is_finite()) && v.iter().any(|x| *x != 0.0);
+    let sound = |v: &[f64; 3]| v.iter().all(|x| x.is_finite()) && (by_ovf || !is_zero(v));
     (same && !images.is_empty() && images.iter().flatten().all(sound)).then_some(images)
+}
+
+fn is_zero(v: &[f64; 3]) -> bool {
+    v.iter().all(|x| *x == 0.0)
 }
 
 fn is_packed(bytes: &[u8]) -> bool {
@@ -206,22 +212,30 @@ fn ovf(bytes: &[u8]) -> Option<Vectors> {
     let mut at = Cursor { rest: bytes };
     let title = small(at.line()?.0.trim_start_matches('\u{feff}').trim_start().trim_start_matches('#'));
     (title.replace(':', "") == "oommfovf2.0").then_some(())?;
-    let (mut images, mut promised) = (Vec::new(), None);
+    let (mut images, mut promised, mut first) = (Vec::new(), None, None);
     while let Some((line, _)) = at.line() {
         match entry(&line) {
             Some((key, value)) if key == "segmentcount" => promised = Some(value.parse::<usize>().ok()?),
-            Some((key, value)) if key == "begin" && small(&value) == "segment" => images.push(segment(&mut at)?),
+            Some((key, value)) if key == "begin" && small(&value) == "segment" => {
+                let (vectors, mesh) = segment(&mut at)?;
+                (*first.get_or_insert(mesh) == mesh).then_some(())?;
+                images.push(vectors);
+            }
             Some((key, _)) if key == "begin" || key == "end" => return None,
             Some(_) => {}
             None => (blank(&line) || line.trim_start().starts_with('#')).then_some(())?,
         }
     }
-    promised.is_none_or(|p| p == images.len()).then_some(images)
+    let some = images.iter().flatten().any(|v| !is_zero(v));
+    (some && promised.is_none_or(|p| p == images.len())).then_some(images)
 }
 
-/// One segment: nodes, and where the numbers of each begin.
-fn segment(at: &mut Cursor) -> Option<Vec<[f64; 3]>> {
-    let mut nodes: Option<(usize, bool)> = None;
+/// Nodes along x, y and z, where that is more than a row.
+type Box3 = Option<[usize; 3]>;
+
+/// One segment, and its mesh. A node of a mesh, and one with a position, may have no spin: its vector is zero.
+fn segment(at: &mut Cursor) -> Option<(Vec<[f64; 3]>, Box3)> {
+    let mut nodes: Option<(usize, bool, Box3)> = None;
     let mut found = None;
     while let Some((line, ended)) = at.line() {
         if blank(&line) {
@@ -230,15 +244,17 @@ fn segment(at: &mut Cursor) -> Option<Vec<[f64; 3]>> {
         let (key, value) = entry(&line)?;
         match (key.as_str(), small(&value).as_str(), nodes) {
             ("begin", "header", None) => nodes = Some(header(at)?),
-            ("begin", kind, Some((n, irregular))) if kind.starts_with("data") && found.is_none() => {
+            ("begin", kind, Some((n, irregular, mesh))) if kind.starts_with("data") && found.is_none() => {
                 ended.then_some(())?;
                 let widths: &[usize] = if irregular { &[6, 3] } else { &[3] };
-                found = Some(match kind {
+                let (vectors, width) = match kind {
                     "datatext" | "datacsv" => text(at, n, widths)?,
                     "databinary4" => binary(at, n, widths, 4)?,
                     "databinary8" => binary(at, n, widths, 8)?,
                     _ => return None,
-                });
+                };
+                (mesh.is_some() || width == 6 || !vectors.iter().any(is_zero)).then_some(())?;
+                found = Some((vectors, mesh));
             }
             ("end", "segment", _) => return found,
             ("begin" | "end", ..) => return None,
@@ -248,8 +264,8 @@ fn segment(at: &mut Cursor) -> Option<Vec<[f64; 3]>> {
     None
 }
 
-/// How many nodes, and whether each has its position before it.
-fn header(at: &mut Cursor) -> Option<(usize, bool)> {
+/// How many nodes, whether each has its position before it, and the mesh.
+fn header(at: &mut Cursor) -> Option<(usize, bool, Box3)> {
     let mut keys: std::collections::BTreeMap<String, String> = Default::default();
     loop {
         let line = at.line()?.0;
@@ -279,20 +295,21 @@ fn header(at: &mut Cursor) -> Option<(usize, bool)> {
     whole("valuedim").is_none_or(|n| n == 3).then_some(())?;
     let irregular = keys.get("meshtype").is_some_and(|kind| kind == "irregular");
     let mesh = ["xnodes", "ynodes", "znodes"].map(whole);
-    let sites = match mesh {
+    let (nodes, mesh) = match mesh {
         [Some(x), Some(y), Some(z)] if !irregular => {
-            ([x, y, z].iter().filter(|n| **n > 1).count() <= 1).then_some(x.max(y).max(z))?
+            let rows = [x, y, z].iter().filter(|n| **n > 1).count();
+            (x.checked_mul(y)?.checked_mul(z)?, (rows > 1).then_some([x, y, z]))
         }
-        _ => whole("pointcount")?,
+        _ => (whole("pointcount")?, None),
     };
-    (sites <= 100_000_000).then_some((sites, irregular))
+    (nodes <= 100_000_000).then_some((nodes, irregular, mesh))
 }
 
 fn is_end_of_data(line: &str) -> bool {
     entry(line).is_some_and(|(key, value)| key == "end" && small(&value).starts_with("data"))
 }
 
-fn text(at: &mut Cursor, nodes: usize, widths: &[usize]) -> Option<Vec<[f64; 3]>> {
+fn text(at: &mut Cursor, nodes: usize, widths: &[usize]) -> Option<(Vec<[f64; 3]>, usize)> {
     let mut numbers = Vec::new();
     loop {
         let line = at.line()?.0;
@@ -308,10 +325,14 @@ fn text(at: &mut Cursor, nodes: usize, widths: &[usize]) -> Option<Vec<[f64; 3]>
         }
     }
     let width = widths.iter().find(|w| nodes * **w == numbers.len())?;
-    Some(numbers.chunks(*width).map(|n| [n[width - 3], n[width - 2], n[width - 1]]).collect())
+    Some((last_three(&numbers, *width), *width))
 }
 
-fn binary(at: &mut Cursor, nodes: usize, widths: &[usize], size: usize) -> Option<Vec<[f64; 3]>> {
+fn last_three(numbers: &[f64], width: usize) -> Vec<[f64; 3]> {
+    numbers.chunks(width).map(|n| [n[width - 3], n[width - 2], n[width - 1]]).collect()
+}
+
+fn binary(at: &mut Cursor, nodes: usize, widths: &[usize], size: usize) -> Option<(Vec<[f64; 3]>, usize)> {
     let decoded = |bytes: &[u8], swap: bool| {
         let mut bytes = bytes.to_vec();
         if swap {
@@ -340,7 +361,7 @@ fn binary(at: &mut Cursor, nodes: usize, widths: &[usize], size: usize) -> Optio
         let swap = [false, true].into_iter().find(|swap| decoded(&data[..size], *swap) == check)?;
         let numbers: Vec<f64> = data[size..].chunks(size).map(|bytes| decoded(bytes, swap)).collect();
         at.rest = behind.rest;
-        return Some(numbers.chunks(*width).map(|n| [n[width - 3], n[width - 2], n[width - 1]]).collect());
+        return Some((last_three(&numbers, *width), *width));
     }
     None
 }

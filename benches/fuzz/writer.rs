@@ -234,19 +234,30 @@ fn ovf(vectors: &Vectors, data: &str, r: &mut ChaCha8Rng) -> Vec<u8> {
         line(&mut out, "Segment count", &vectors.len().to_string());
     }
     let (irregular, positions, big) = (r.random_range(0..4) == 0, r.random::<bool>(), r.random::<bool>());
+    let (along, many) = (r.random_range(0..3), r.random::<bool>());
     for image in vectors {
         for (key, value) in [("Begin", "Segment"), ("Begin", "Header"), ("Title", "m"), ("valuedim", "3")] {
             line(&mut out, key, value);
         }
-        let n = image.len().to_string();
+        let rows = if many && image.len().is_multiple_of(2) { 2 } else { 1 };
+        let [n, rows] = [image.len() / if irregular { 1 } else { rows }, rows].map(|n| n.to_string());
         if irregular {
             line(&mut out, "meshtype", "irregular");
             line(&mut out, "pointcount", &n);
         } else {
-            let along = r.random_range(0..3);
             line(&mut out, "meshtype", "rectangular");
             for (c, key) in ["xnodes", "ynodes", "znodes"].into_iter().enumerate() {
-                line(&mut out, key, if c == along { &n } else { "1" });
+                line(
+                    &mut out,
+                    key,
+                    if c == along {
+                        &n
+                    } else if c == (along + 1) % 3 {
+                        &rows
+                    } else {
+                        "1"
+                    },
+                );
             }
         }
         line(&mut out, "End", "Header");

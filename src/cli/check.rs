@@ -1,5 +1,6 @@
 //! `check`: whether configs are right, and what they would run.
 
+use super::drawing::drawing;
 use super::{Check, USAGE, report, worse};
 use anyhow::Result;
 use spinneb::config::estimate::Estimate;
@@ -33,6 +34,9 @@ fn print(out: &mut impl Write, loaded: &Loaded, problem: &Problem) -> io::Result
     row("name", loaded.name.clone())?;
     row("material", material(loaded))?;
     row("lattice", lattice(loaded))?;
+    for (k, line) in drawing(&loaded.lattice).into_iter().enumerate() {
+        row(if k == 0 { "geometry" } else { "" }, line)?;
+    }
     for (k, shell) in shells(h).iter().enumerate() {
         row(if k == 0 { "shells" } else { "" }, neighbours(h.lattice(), shell))?;
     }
@@ -50,7 +54,7 @@ fn print(out: &mut impl Write, loaded: &Loaded, problem: &Problem) -> io::Result
     if let Some(length) = physics.exchange_length_nm {
         row("l_ex", format!("{length:.4} nm (exchange length √(2A/μ₀Ms²))"))?;
     }
-    row("wall width", wall_width(&physics))?;
+    row("wall width", wall_width(&physics, h.lattice()))?;
     row("wall energy", wall_energy(&physics))?;
     row("site barrier", site_barrier(&physics))?;
     row("dominant", dominant(&physics))?;
@@ -100,7 +104,7 @@ fn lattice(loaded: &Loaded) -> String {
     match (lattice.kind, lattice.is_ring()) {
         ("chain", true) => format!("ring of {sites} sites{spacing}{frozen}"),
         ("chain", false) => format!("open chain of {sites} sites{spacing}{frozen}"),
-        (kind, _) => format!("{kind}, {}, {sites} sites{}{frozen}", cells(lattice), extent(lattice)),
+        _ => lattice.words() + &frozen,
     }
 }
 
@@ -123,41 +127,15 @@ fn neighbours(lattice: &Lattice, shell: &Shell) -> String {
     )
 }
 
-/// How large it is, and what is left out.
-fn extent(lattice: &Lattice) -> String {
-    let whole = lattice.grid.cells() * lattice.atoms.len();
-    let left = if whole > lattice.sites { format!(" ({} left out)", whole - lattice.sites) } else { String::new() };
-    let [low, high] = lattice.bounds();
-    let scale = lattice.spacing_nm.unwrap_or(1.0);
-    let size = [0, 1, 2]
-        .map(|c| format!("{:.4}", scale * (high[c] - low[c])).trim_end_matches('0').trim_end_matches('.').to_string());
-    let unit = if lattice.spacing_nm.is_some() { "nm" } else { "a" };
-    format!("{left}, {} {unit} from the first to the last", size.join(" × "))
-}
-
-/// "20 × 20 cells, periodic along the first".
-fn cells(lattice: &Lattice) -> String {
-    let size = lattice.grid.size.map(|n| n.to_string()).join(" × ");
-    let along = ["first", "second", "third"].into_iter().zip(lattice.grid.periodic).filter(|(_, periodic)| *periodic);
-    let periodic: Vec<&str> = along.map(|(name, _)| name).collect();
-    let border =
-        if periodic.is_empty() { "open".into() } else { format!("periodic along the {}", periodic.join(" and ")) };
-    let atoms = match lattice.atoms.len() {
-        1 => String::new(),
-        n => format!(" of {n} atoms"),
-    };
-    format!("{size} cells{atoms}, {border}")
-}
-
 /// Of what the exchange is.
 fn stiffness_of(lattice: &Lattice) -> &'static str {
     if lattice.is_row() { "a bond" } else { "(½ Σ J r²/a² of a site, along one direction)" }
 }
 
-fn wall_width(physics: &Physics) -> String {
+fn wall_width(physics: &Physics, lattice: &Lattice) -> String {
     let nm = physics.wall_width_nm.map_or(String::new(), |nm| format!(", {nm:.4} nm"));
     match physics.wall_width_sites {
-        Some(sites) => format!("{sites:.4} sites{nm} (√(exchange/stiffness))"),
+        Some(width) => format!("{width:.4} {}{nm} (√(exchange/stiffness))", lattice.counted()),
         None => "none: there is no easy axis, or no exchange".into(),
     }
 }

@@ -3,14 +3,13 @@
 use super::{Plot, USAGE, note, report, worse};
 use anyhow::Result;
 use rayon::prelude::*;
-use spinneb::config::load;
+use spinneb::config::{Config, Loaded, load};
 use spinneb::error::Error;
 use spinneb::files::disk::File;
 use spinneb::output::canvas::{Look, Style, description};
 use spinneb::output::folder;
 use spinneb::output::{
-    EnergyPath, PLOTS, Picture, Places, PlotData, PlotFile, PlotTable, SitePlaces, StoredRun, describe,
-    draw_energy_paths,
+    EnergyPath, PLOTS, Picture, PlotData, PlotFile, PlotTable, StoredRun, describe, draw_energy_paths,
 };
 use spinneb::units::Length;
 use std::path::{Path, PathBuf};
@@ -33,8 +32,10 @@ fn single(arguments: &Plot, dir: &Path) -> Result<u8> {
         note(&format!("error: --out {shown}: one result has several figures; give a folder for them"));
         return Ok(USAGE);
     }
-    let mut stored = StoredRun::read(dir, true)?;
-    let look = look_of(arguments, dir, &mut stored)?;
+    let stored = StoredRun::read(dir)?;
+    let config = config_of(dir)?;
+    let look = look_of(arguments, &config.config)?;
+    let stored = stored.with_spins(dir, &config.lattice)?;
     let data = stored.data();
     let files = figures(arguments, &data, &look)?;
     let out = arguments.out.as_deref().unwrap_or(dir);
@@ -64,7 +65,7 @@ fn figures(arguments: &Plot, data: &PlotData, look: &Look) -> Result<Vec<File>> 
 fn several(arguments: &Plot) -> Result<u8> {
     let (mut code, mut stored) = (0, Vec::new());
     for dir in &arguments.results {
-        match StoredRun::read(dir, false) {
+        match StoredRun::read(dir) {
             Ok(one) => stored.push(one),
             Err(error) => code = worse(code, report(&error.into())),
         }
@@ -130,25 +131,19 @@ fn labels(arguments: &Plot, stored: &[StoredRun]) -> Option<Vec<String>> {
     Some((0..names.len()).map(label).collect())
 }
 
-/// What the result's config says of its figures, unless the command line says otherwise; and of its vacant sites.
-fn look_of(arguments: &Plot, dir: &Path, stored: &mut StoredRun) -> Result<Look> {
+/// The config of a result.
+fn config_of(dir: &Path) -> Result<Loaded> {
     let path = dir.join("config.json");
-    let shown = path.display().to_string();
     if !path.exists() {
         let message = "there is no such file: the directory holds no whole result; run its config again";
-        return Err(Error::invalid(shown, message).into());
+        return Err(Error::invalid(path.display().to_string(), message).into());
     }
-    let config = load(&path, &[])?;
-    let lattice = &config.lattice;
-    if let Some(sites) = stored.sites().filter(|sites| *sites != lattice.sites) {
-        let message =
-            format!("has {} sites, but the stored spins {sites}: the files are not of one result", lattice.sites);
-        return Err(Error::invalid(shown, message).into());
-    }
-    stored.places = Places::of(lattice);
-    stored.sites = SitePlaces::of(lattice);
-    stored.vacant = lattice.vacant.clone();
-    let output = &config.config.output;
+    Ok(load(&path, &[])?)
+}
+
+/// What the result's config says of its figures, unless the command line says otherwise.
+fn look_of(arguments: &Plot, config: &Config) -> Result<Look> {
+    let output = &config.output;
     let width = arguments.width.or_else(|| output.look().ok().filter(|_| output.width.is_some()).map(|l| l.width_mm()));
     Ok(Look::new(arguments.style.unwrap_or(output.style), width).map_err(flagged)?)
 }

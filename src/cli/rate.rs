@@ -67,7 +67,7 @@ fn rate_one(arguments: &Rate, directory: &Path) -> Result<u8> {
 
 /// The outcome as stored, with the rates over its own saddles and minima; why it cannot be had that way, if so.
 fn from_files(loaded: &Loaded, problem: &Problem, directory: &Path) -> Result<std::result::Result<Outcome, String>> {
-    let StoredOutcome { outcome, minima } = match StoredOutcome::read(directory)? {
+    let StoredOutcome { outcome, minima } = match StoredOutcome::read(directory, problem.hamiltonian.lattice())? {
         Ok(stored) => stored,
         Err(why) => return Ok(Err(why)),
     };

@@ -8,11 +8,15 @@ use crate::energy::TermSpec;
 use crate::error::{Error, Result};
 use crate::files::disk::File;
 use crate::files::{Stored, open_file};
+use crate::lattice::Lattice;
 use crate::output::INPUTS;
 use crate::path::guess::GuessSpec;
 use crate::state::StateSpec;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
+
+/// The folder where files are looked for, and the lattice whose spins they hold, where that is known.
+type From<'a> = (&'a Path, Option<&'a Lattice>);
 
 /// What was read.
 #[derive(Clone, Debug, Default)]
@@ -30,23 +34,24 @@ pub(super) struct Inputs {
 }
 
 impl Inputs {
-    /// Reads all files of a config, looked for in `folder`.
-    pub(super) fn read(config: &mut Config, folder: &Path) -> Result<Inputs> {
+    /// Reads all files of a config, looked for in `folder`, spins for the sites of its lattice.
+    pub(super) fn read(config: &mut Config, folder: &Path, lattice: Option<&Lattice>) -> Result<Inputs> {
         let mut inputs = Inputs::default();
         inputs.pairs(&mut config.energy, "/energy", folder)?;
-        inputs.state(&mut config.initial, "initial", "/initial", "initial", folder)?;
-        inputs.state(&mut config.final_state, "final", "/final", "final", folder)?;
+        let from = (folder, lattice);
+        inputs.state(&mut config.initial, "initial", "/initial", "initial", from)?;
+        inputs.state(&mut config.final_state, "final", "/final", "final", from)?;
         match &mut config.path.guess {
             Some(GuessSpec::File(file)) => {
                 let here = |e: Error| e.within("path.guess.file");
-                let stored = file.load(folder).map_err(here)?.clone();
+                let stored = file.load(folder, lattice).map_err(here)?.clone();
                 inputs.keep(&stored, &stored.content.images, false, "guess", "/path/guess/file".into());
             }
             Some(GuessSpec::Waypoints(waypoints)) => {
                 for (k, state) in waypoints.states.iter_mut().enumerate() {
                     let place = format!("path.guess.waypoints.states[{k}]");
                     let pointer = format!("/path/guess/waypoints/states/{k}");
-                    inputs.state(state, &place, &pointer, &format!("waypoint_{k}"), folder)?;
+                    inputs.state(state, &place, &pointer, &format!("waypoint_{k}"), from)?;
                 }
             }
             _ => {}
@@ -71,20 +76,20 @@ impl Inputs {
         Ok(())
     }
 
-    fn state(&mut self, state: &mut StateSpec, place: &str, pointer: &str, name: &str, folder: &Path) -> Result<()> {
+    fn state(&mut self, state: &mut StateSpec, place: &str, pointer: &str, name: &str, from: From) -> Result<()> {
         if let StateSpec::Regions(regions) = state {
             for (k, (region, state)) in regions.states.iter_mut().enumerate() {
                 let key = region.replace('~', "~0").replace('/', "~1");
                 let (place, pointer) = (format!("{place}.regions.{region}"), format!("{pointer}/regions/{key}"));
-                self.state(state, &place, &pointer, &format!("{name}_{k}"), folder)?;
+                self.state(state, &place, &pointer, &format!("{name}_{k}"), from)?;
             }
         }
         let StateSpec::File(file) = state else { return Ok(()) };
         let here = |e: Error| e.within(&format!("{place}.file"));
-        let segment = file.segment;
-        let stored = file.load(folder).map_err(here)?.clone();
-        let image = stored.image(segment).map_err(here)?.to_vec();
-        self.keep(&stored, &[image], true, name, format!("{pointer}/file"));
+        let image = file.load(from.0, from.1).map_err(here)?;
+        if let Some(stored) = file.stored.clone() {
+            self.keep(&stored, &[image], true, name, format!("{pointer}/file"));
+        }
         Ok(())
     }
 

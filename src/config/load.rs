@@ -4,6 +4,7 @@ use super::inputs::Inputs;
 use super::library;
 use super::material::{DEFAULT, MaterialChoice};
 use super::parts::PartMaterial;
+use super::pictures::with_images;
 use super::text::{Text, apply_set, decode, nearest};
 use super::{Config, Name, memory};
 use crate::error::{Error, Result, both};
@@ -87,24 +88,27 @@ pub fn load_text(path: &Path, text: String) -> Result<Loaded> {
 }
 
 fn load_from(path: &Path, text: Text, source: Option<PathBuf>) -> Result<Loaded> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let (text, images) = with_images(text, folder)?;
     let mut config: Config = text.parse().map_err(|e| not_a(&text, "config", e))?;
     let name = name(path, &config).map_err(|e| text.locate(e));
     let parts = materials(path, &config, &text);
-    let inputs = Inputs::read(&mut config, path.parent().unwrap_or(Path::new(""))).map_err(|e| text.locate(e));
+    let lattice = lattice(&config).map_err(|e| text.locate(e));
+    let inputs = Inputs::read(&mut config, folder, lattice.as_ref().ok()).map_err(|e| text.locate(e));
     let ((name, mut parts), mut inputs) = both(both(name, parts), inputs)?;
     for part in &mut parts {
         let pointer = format!("/{}/energy", part.key.replace('.', "/"));
-        let read = inputs.pairs(&mut part.material.energy, &pointer, path.parent().unwrap_or(Path::new("")));
+        let read = inputs.pairs(&mut part.material.energy, &pointer, folder);
         read.map_err(|e| part.locate(&text, e))?;
     }
-    let lattice = lattice(&config).map_err(|e| text.locate(e))?;
+    let lattice = lattice?;
     let as_run = as_run(&text, &parts, &name, &inputs)?;
     let sha256 = Sha256::digest(as_run.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect();
     let own = parts
         .iter()
         .filter_map(|part| part.text.as_ref())
         .map(|text| Path::new(&text.file))
-        .chain(inputs.read.iter().map(PathBuf::as_path));
+        .chain(inputs.read.iter().chain(&images).map(PathBuf::as_path));
     let made_from = source.iter().cloned().chain(own.filter_map(known_file)).collect();
     let Inputs { files: inputs, warnings, .. } = inputs;
     Ok(Loaded { text, config, name, parts, lattice, as_run, sha256, inputs, warnings, source, made_from })

@@ -19,6 +19,7 @@ mod output;
 mod parts;
 mod path;
 pub mod physics;
+mod pictures;
 pub mod rates;
 mod refusals;
 mod schema;

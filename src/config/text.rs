@@ -9,6 +9,7 @@ use super::refusals::{self, Refusal, inline, missing, unknown};
 use crate::error::{Error, Result};
 use crate::words::quoted;
 use serde::de::DeserializeOwned;
+use std::ops::Range;
 
 pub use super::set::apply_set;
 pub use crate::words::nearest;
@@ -37,6 +38,16 @@ impl Text {
         let text = apply_set(&self.file, &self.text, assignments)?;
         let path = |assignment: &String| json::steps(assignment.split('=').next()?.trim());
         Ok(Text { text, before: Some(self.text), sets: assignments.iter().filter_map(path).collect(), ..self })
+    }
+
+    /// The text with these pieces, in order, replaced; errors go on speaking of the text as it was.
+    pub(super) fn replaced(self, pieces: Vec<(Range<usize>, String)>) -> Text {
+        if pieces.is_empty() {
+            return self;
+        }
+        let mut text = self.text.clone();
+        pieces.into_iter().rev().for_each(|(range, piece)| text.replace_range(range, &piece));
+        Text { text, before: Some(self.before.unwrap_or(self.text)), ..self }
     }
 
     /// The value that it is, or all that is wrong with it.

@@ -15,8 +15,11 @@ const EQUAL: f64 = 1e-5;
 /// The images of a file, every vector of unit length.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Images {
-    /// One vector a site, image after image; all images have the same number of sites.
+    /// One vector a node, image after image; all images have the same number of nodes. On a [`mesh`](Self::mesh), and where nodes
+    /// have positions, a node without a spin has a zero vector; all other files list the sites.
     pub images: Vec<Vec<Vector>>,
+    /// Nodes along x, y and z, x fastest, where the file has them in more than a row.
+    pub mesh: Option<[usize; 3]>,
     /// What the user should know of the file.
     pub warnings: Vec<String>,
 }
@@ -31,6 +34,8 @@ struct OffUnit {
 pub struct Collector<'a> {
     file: &'a str,
     images: Vec<Vec<Vector>>,
+    mesh: Option<[usize; 3]>,
+    may_be_empty: bool,
     vectors: usize,
     off: usize,
     worst: Option<OffUnit>,
@@ -42,7 +47,8 @@ impl<'a> Collector<'a> {
     /// Nothing read of this file yet.
     pub fn new(file: &'a str) -> Collector<'a> {
         let (shortest, longest) = (f64::INFINITY, 0.0);
-        Collector { file, images: Vec::new(), vectors: 0, off: 0, worst: None, shortest, longest }
+        let (images, mesh, may_be_empty) = (Vec::new(), None, false);
+        Collector { file, images, mesh, may_be_empty, vectors: 0, off: 0, worst: None, shortest, longest }
     }
 
     /// An error at a place of the file.
@@ -58,6 +64,17 @@ impl<'a> Collector<'a> {
     /// The next image begins; `sites` are known to be in the file.
     pub fn begin(&mut self, sites: usize) {
         self.images.push(Vec::with_capacity(sites));
+    }
+
+    /// The next image begins, on a mesh if one is given; whether there may be nodes without a spin.
+    pub fn begin_on(&mut self, nodes: usize, mesh: Option<[usize; 3]>, may_be_empty: bool) -> Result<()> {
+        let image = self.images.len();
+        if image > 0 && mesh != self.mesh {
+            return Err(self.error(format!("image {image}"), "its mesh is not that of image 0"));
+        }
+        (self.mesh, self.may_be_empty) = (mesh, may_be_empty);
+        self.begin(nodes);
+        Ok(())
     }
 
     /// Images begun so far.
@@ -76,6 +93,10 @@ impl<'a> Collector<'a> {
             let message = format!("the {} component is {}, which is no direction", ["x", "y", "z"][c], v[c]);
             return Err(self.error(place(), message));
         }
+        if self.may_be_empty && v == [0.0; 3] {
+            self.keep(v);
+            return Ok(());
+        }
         let square = dot(v, v);
         let kept = if (square - 1.0).abs() <= ROUNDING { Some(v) } else { unit(v) };
         let Some(m) = kept else {
@@ -93,23 +114,27 @@ impl<'a> Collector<'a> {
             }
         }
         self.vectors += 1;
-        if let Some(image) = self.images.last_mut() {
-            image.push(m);
-        }
+        self.keep(m);
         Ok(())
+    }
+
+    fn keep(&mut self, v: Vector) {
+        if let Some(image) = self.images.last_mut() {
+            image.push(v);
+        }
     }
 
     /// All images; an error where there is none, or where they differ in their number of sites.
     pub fn finish(self) -> Result<Images> {
         let sites = self.images.first().map_or(0, Vec::len);
-        if sites == 0 {
+        if sites == 0 || self.vectors == 0 {
             return Err(self.wrong("there are no spins in this file"));
         }
         if let Some(k) = self.images.iter().position(|image| image.len() != sites) {
             let found = self.images[k].len();
             return Err(self.wrong(format!("image {k} has {found} sites, but image 0 has {sites}")));
         }
-        Ok(Images { warnings: self.warning().into_iter().collect(), images: self.images })
+        Ok(Images { warnings: self.warning().into_iter().collect(), images: self.images, mesh: self.mesh })
     }
 
     fn warning(&self) -> Option<String> {

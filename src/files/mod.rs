@@ -11,6 +11,7 @@ mod npy;
 mod npz;
 mod numbers;
 mod ovf;
+mod placed;
 mod stored;
 mod vtk;
 
@@ -20,7 +21,7 @@ pub use npy::{Array, write_npy};
 pub use npz::{read_npz_columns, write_npz};
 pub use ovf::{Mesh, OvfData, Segment, write_ovf};
 pub use stored::{LARGEST_FILE, Stored, open, open_file};
-pub use vtk::{write_pvd, write_vtp};
+pub use vtk::{VtkPoints, write_pvd};
 
 use crate::error::Result;
 

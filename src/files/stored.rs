@@ -3,6 +3,7 @@
 use super::{Images, npy, read};
 use crate::error::{Error, Result};
 use crate::geometry::Vector;
+use crate::lattice::Lattice;
 use crate::words::quoted;
 use sha2::{Digest, Sha256};
 use std::fs::{self, File};
@@ -94,6 +95,22 @@ impl Stored {
             let which = if count == 1 { "one image, 0".into() } else { format!("images 0 to {}", count - 1) };
             Error::invalid("segment", format!("found {segment}, but {} holds {which}", quoted(&self.file)))
         })
+    }
+
+    /// One of its images for the sites of a lattice.
+    pub fn placed(&self, image: &[Vector], lattice: &Lattice) -> Result<Vec<Vector>> {
+        let named = |e: Error| match e {
+            Error::Invalid { message, .. } => Error::invalid("path", format!("{} {message}", self.file)),
+            other => other,
+        };
+        self.content.placed(image, lattice).map_err(named)
+    }
+
+    /// The same with all its images for the sites of a lattice.
+    pub fn on(&self, lattice: &Lattice) -> Result<Arc<Stored>> {
+        let placed = self.content.images.iter().map(|image| self.placed(image, lattice));
+        let content = Images { images: placed.collect::<Result<_>>()?, mesh: None, ..self.content.clone() };
+        Ok(Arc::new(Stored { file: self.file.clone(), content }))
     }
 
     /// These images as the bytes of an npy file, and its hash: what a config is stored with.

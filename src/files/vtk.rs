@@ -1,43 +1,59 @@
-//! VTK's XML files for ParaView and its like: a `.vtp` of points with vectors for each image, and a `.pvd` that lists them.
+//! VTK's XML files for ParaView and its like: a `.vtp` of points with vectors and cells for each image, and a `.pvd` that lists them.
 //!
 //! Text, so that any XML reader can look into them, with all digits. File formats: VTK User's Guide, <https://docs.vtk.org>.
 
 use crate::geometry::Vector;
 use std::fmt::Write;
 
-/// Points with a unit vector on each, and lines that join them: an image of a chain. Positions are in units of `unit`.
-pub fn write_vtp(positions: &[Vector], closed: bool, spins: &[Vector], unit: &str) -> Vec<u8> {
-    let n = positions.len();
-    let mut text = String::from("<?xml version=\"1.0\"?>\n");
-    let mut put = |line: &str| {
-        text.push_str(line);
-        text.push('\n');
-    };
-    put("<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">");
-    put(&format!("<!-- positions in {unit} -->"));
-    put("<PolyData>");
-    let lines = usize::from(n > 1);
-    put(&format!(
-        "<Piece NumberOfPoints=\"{n}\" NumberOfVerts=\"{n}\" NumberOfLines=\"{lines}\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">"
-    ));
-    put("<PointData Vectors=\"m\">");
-    put(&vectors("m", spins));
-    put("</PointData>");
-    put("<Points>");
-    put(&vectors("positions", positions));
-    put("</Points>");
-    put("<Verts>");
-    put(&indices("connectivity", 0..n));
-    put(&indices("offsets", 1..n + 1));
-    put("</Verts>");
-    put("<Lines>");
-    let ends = if closed && n > 1 { 1 } else { 0 };
-    let along = || (0..n).chain(std::iter::repeat_n(0, ends));
-    put(&indices("connectivity", along().filter(|_| n > 1)));
-    put(&indices("offsets", (0..lines).map(|_| n + ends)));
-    put("</Lines>");
-    put("</Piece>\n</PolyData>\n</VTKFile>");
-    text.into_bytes()
+/// Where the spins of all images are, and what joins them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VtkPoints {
+    /// One position a site, each a vertex.
+    pub positions: Vec<Vector>,
+    /// Their unit.
+    pub unit: &'static str,
+    /// Sites joined by a line, in its order; none if empty.
+    pub line: Vec<usize>,
+    /// Triangles of sites.
+    pub triangles: Vec<[usize; 3]>,
+}
+
+impl VtkPoints {
+    /// An image: the points with a unit vector on each.
+    pub fn file(&self, spins: &[Vector]) -> Vec<u8> {
+        let VtkPoints { positions, unit, line, triangles } = self;
+        let (n, lines, polys) = (positions.len(), usize::from(!line.is_empty()), triangles.len());
+        let mut text = String::from("<?xml version=\"1.0\"?>\n");
+        let mut put = |line: &str| {
+            text.push_str(line);
+            text.push('\n');
+        };
+        put("<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">");
+        put(&format!("<!-- positions in {unit} -->"));
+        put("<PolyData>");
+        put(&format!(
+            "<Piece NumberOfPoints=\"{n}\" NumberOfVerts=\"{n}\" NumberOfLines=\"{lines}\" NumberOfStrips=\"0\" NumberOfPolys=\"{polys}\">"
+        ));
+        put("<PointData Vectors=\"m\">");
+        put(&vectors("m", spins));
+        put("</PointData>");
+        put("<Points>");
+        put(&vectors("positions", positions));
+        put("</Points>");
+        let cells: [(&str, Vec<usize>, Vec<usize>); 3] = [
+            ("Verts", (0..n).collect(), (1..n + 1).collect()),
+            ("Lines", line.clone(), (0..lines).map(|_| line.len()).collect()),
+            ("Polys", triangles.iter().flatten().copied().collect(), (1..polys + 1).map(|k| 3 * k).collect()),
+        ];
+        for (name, corners, ends) in cells.iter().filter(|(name, corners, _)| *name != "Polys" || !corners.is_empty()) {
+            put(&format!("<{name}>"));
+            put(&indices("connectivity", corners.iter().copied()));
+            put(&indices("offsets", ends.iter().copied()));
+            put(&format!("</{name}>"));
+        }
+        put("</Piece>\n</PolyData>\n</VTKFile>");
+        text.into_bytes()
+    }
 }
 
 /// The list of a series: files with the value, usually a time, at which each stands.

@@ -1,7 +1,7 @@
 //! Which sites or bonds something is for.
 
 use super::shape::{Corners, Disc, Ellipse, Ring};
-use super::{Lattice, Shape};
+use super::{Lattice, Picture, Shape};
 use crate::error::{Error, Result};
 use crate::units::Extent;
 use crate::words::{nearest, quoted};
@@ -158,6 +158,7 @@ struct Keys {
     ellipse: Option<Ellipse>,
     polygon: Option<Vec<[Extent; 2]>>,
     ring: Option<Ring>,
+    image: Option<Picture>,
     all: Option<Vec<Shape>>,
     any: Option<Vec<Shape>>,
     not: Option<Box<Shape>>,
@@ -172,6 +173,7 @@ impl Keys {
             self.ellipse.map(Shape::Ellipse),
             self.polygon.map(Shape::Polygon),
             self.ring.map(Shape::Ring),
+            self.image.map(Shape::Image),
             self.all.map(Shape::All),
             self.any.map(Shape::Any),
             self.not.map(Shape::Not),

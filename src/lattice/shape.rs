@@ -3,7 +3,7 @@
 //! Numbers count lattice constants (cells of a grid by their own edges), strings carry a unit. In a chain x is the number of the
 //! site.
 
-use super::Lattice;
+use super::{Lattice, Picture};
 use crate::error::{Error, Result};
 use crate::geometry::{Vector, vector};
 use crate::units::{Extent, Place};
@@ -27,6 +27,8 @@ pub enum Shape {
     Polygon(Vec<[Extent; 2]>),
     /// Between two distances, of any z.
     Ring(Ring),
+    /// The dark pixels of an image laid over all sites, of any z.
+    Image(Picture),
     /// In all of these.
     All(Vec<Shape>),
     /// In any of these.
@@ -90,6 +92,10 @@ impl Shape {
             Shape::Ellipse(ellipse) => ellipse.inside(lattice).map_err(|e| within(e, "ellipse")),
             Shape::Polygon(corners) => polygon(corners, lattice).map_err(|e| within(e, "polygon")),
             Shape::Ring(ring) => ring.inside(lattice).map_err(|e| within(e, "ring")),
+            Shape::Image(picture) => {
+                let places = (0..lattice.sites).map(|i| lattice.shape_place(i));
+                picture.inside(lattice, places).map_err(|e| within(e, "image"))
+            }
             Shape::All(shapes) => folded(shapes, lattice, true, |a, b| a && b).map_err(|e| within(e, "all")),
             Shape::Any(shapes) => folded(shapes, lattice, false, |a, b| a || b).map_err(|e| within(e, "any")),
             Shape::Not(shape) => {
@@ -265,6 +271,36 @@ mod tests {
             (r#"{"any": [{"box": {"from": [0, 0], "to": [0, 0]}}, {"box": {"from": [8], "to": [8]}}]}"#, 8),
         ] {
             assert_eq!(cut(shape).unwrap().sites, sites, "{shape}");
+        }
+    }
+
+    /// A data URL of an image of so many columns; 0 is black.
+    fn image(columns: u32, grey: &[u8]) -> String {
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, columns, grey.len() as u32 / columns);
+        encoder.set_color(png::ColorType::Grayscale);
+        encoder.write_header().unwrap().write_image_data(grey).unwrap();
+        format!(r#"{{"image": {{"path": "data:image/png;base64,{}"}}}}"#, crate::base64::base64(&bytes))
+    }
+
+    #[test]
+    fn the_dark_pixels_of_an_image_are_inside_its_top_row_at_the_greatest_y() {
+        // a pixel a site: two sites of the top row, one of the bottom one
+        let mut one = vec![255; 63];
+        (one[0], one[8], one[54]) = (0, 100, 127);
+        let lattice = cut(&image(9, &one)).unwrap();
+        let found: Vec<_> = (0..lattice.sites).map(|i| lattice.cell(i).1).collect();
+        assert_eq!(found, [[0, 0, 0], [0, 6, 0], [8, 6, 0]]);
+        // four pixels for all: the lower right quarter, with the sites in the middle
+        let quarter = cut(&image(2, &[255, 255, 255, 0])).unwrap();
+        assert_eq!(quarter.sites, 5 * 4, "{:?}", (0..quarter.sites).map(|i| quarter.cell(i).1).collect::<Vec<_>>());
+        assert!(cut(&image(1, &[255])).unwrap_err().contains("square.shape: no site"));
+        for (path, said) in [
+            ("mask.png", "square.shape.image.path: an image is read where"),
+            ("data:image/png;base64,AAAA", "cannot be read"),
+        ] {
+            let found = cut(&format!(r#"{{"image": {{"path": "{path}"}}}}"#)).unwrap_err();
+            assert!(found.contains(said), "{found}");
         }
     }
 

@@ -6,6 +6,7 @@
 use super::{Format, RunReport};
 use crate::drive::Outcome;
 use crate::error::{Error, Result};
+use crate::field::Components;
 use std::fmt::Write;
 
 /// What `csv` writes.
@@ -40,8 +41,8 @@ impl Format for PathCsv {
         let t = &run.outcome.images;
         let mut table = Table::new("path.csv");
         table.whole("image", 0..t.energy_mev.len());
-        for (name, column) in path_columns(run.outcome) {
-            table.real(&name, column.iter().copied());
+        for (name, column) in path_columns(run) {
+            table.real(&name, column);
         }
         table.render()
     }
@@ -84,14 +85,24 @@ impl Format for HistoryCsv {
     }
 }
 
-/// The columns of `path.csv` behind the number of the image.
-pub(super) fn path_columns(outcome: &Outcome) -> Vec<(String, &[f64])> {
-    let t = &outcome.images;
-    let mut columns: Vec<(String, &[f64])> =
-        vec![("reaction_coordinate_rad".into(), &t.reaction_coordinate_rad), ("energy_meV".into(), &t.energy_mev)];
-    columns.extend(t.terms_mev.iter().map(|(term, energy)| (format!("{}_meV", column_name(term)), &energy[..])));
-    columns.push(("max_perpendicular_torque_meV".into(), &t.max_perpendicular_torque_mev));
-    columns.push(("energy_above_initial_meV".into(), &t.above_initial_mev));
+/// The column of the topological charge.
+pub(super) const CHARGE: &str = "charge";
+
+/// The columns of `path.csv` behind the number of the image; the last is the topological charge of films and crystals.
+pub(super) fn path_columns(run: &RunReport) -> Vec<(String, Vec<f64>)> {
+    let (t, path) = (&run.outcome.images, &run.outcome.path);
+    let mut columns = vec![
+        ("reaction_coordinate_rad".into(), t.reaction_coordinate_rad.clone()),
+        ("energy_meV".into(), t.energy_mev.clone()),
+    ];
+    columns.extend(t.terms_mev.iter().map(|(term, energy)| (format!("{}_meV", column_name(term)), energy.clone())));
+    columns.push(("max_perpendicular_torque_meV".into(), t.max_perpendicular_torque_mev.clone()));
+    columns.push(("energy_above_initial_meV".into(), t.above_initial_mev.clone()));
+    let triangles = run.lattice.triangles();
+    if !triangles.corners.is_empty() {
+        let charge = |k: usize| triangles.charge(Components::new(path.image(k)));
+        columns.push((CHARGE.into(), (0..path.images()).map(charge).collect()));
+    }
     columns
 }
 

@@ -19,6 +19,7 @@ mod head;
 mod magnetisation_plot;
 mod manifest;
 mod number;
+mod ovf_mesh;
 mod partial;
 mod plot;
 mod plot_data;
@@ -172,7 +173,8 @@ pub const KINDS: &[Kind] = &[
     Kind {
         name: "npz",
         group: Group::Formats,
-        summary: "path.npz: the spins (image, site, xyz) and the columns of path.csv as NumPy arrays",
+        summary: "path.npz: the spins (image, site, xyz) and the columns of path.csv as NumPy arrays; of films and crystals the positions \
+                  of the sites too, positions_nm or positions_a (lattice constants)",
         formats: || vec![Box::new(PathNpz)],
     },
     Kind {

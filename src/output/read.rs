@@ -3,6 +3,10 @@
 use super::columns::WAY_OUT;
 use super::disk;
 use crate::error::{Error, Result};
+use crate::files;
+use crate::geometry::Vector;
+use crate::lattice::Lattice;
+use crate::spins::Spins;
 use std::path::Path;
 
 /// A file of a result, as it is named to the user.
@@ -19,4 +23,13 @@ pub(super) fn text(dir: &Path, name: &str) -> Result<Option<String>> {
 
 pub(super) fn bytes(dir: &Path, name: &str) -> Result<Option<Vec<u8>>> {
     disk::read_if_there(&dir.join(name))
+}
+
+/// The states in a file of spins of a lattice.
+pub(super) fn read_spins(dir: &Path, name: &str, bytes: &[u8], lattice: &Lattice) -> Result<Vec<Spins>> {
+    let file = shown(dir, name);
+    let found = files::read(&file, bytes)?;
+    // the reader's vectors are of unit length already
+    let state = |image: &Vec<Vector>| found.placed(image, lattice).map(|m| Spins::from_unit_vectors(&m));
+    found.images.iter().map(state).collect::<Result<_>>().map_err(|e| e.within(&file))
 }

@@ -2,11 +2,12 @@
 
 use super::disk::File;
 use super::number::Number;
-use super::spin_files::{mesh, positions};
+use super::ovf_mesh::OvfMesh;
+use super::spin_files::{places, vtk_points, without_idle};
 use crate::drive::RelaxedState;
 use crate::energy::Hamiltonian;
 use crate::error::{Error, Result};
-use crate::files::{self, Array, OvfData, Segment};
+use crate::files::{self, Array, OvfData};
 use crate::geometry::Vector;
 use crate::lattice::Lattice;
 use serde::Serialize;
@@ -177,21 +178,21 @@ fn spin_files(which: &str, formats: &[String]) -> Vec<String> {
     FORMATS.iter().filter(|f| f.is_in(formats)).map(|f| f.file(which)).collect()
 }
 
-fn npz(_: &RelaxReport, _: &str, spins: &[Vector]) -> Result<Vec<u8>> {
+fn npz(report: &RelaxReport, _: &str, spins: &[Vector]) -> Result<Vec<u8>> {
     let numbers = spins.iter().flatten().copied().collect();
-    files::write_npz(&[("spins".into(), Array { shape: vec![spins.len(), 3], numbers })])
+    let spins = ("spins".into(), Array { shape: vec![spins.len(), 3], numbers });
+    files::write_npz(&[spins].into_iter().chain(places(report.lattice)).collect::<Vec<_>>())
 }
 
 fn ovf(data: OvfData, report: &RelaxReport, which: &str, spins: &[Vector]) -> Vec<u8> {
     let energy = report.states.iter().find(|(name, _)| *name == which).map(|(_, s)| s.minimum.energy_mev);
     let energy = energy.map_or(String::new(), |e| format!(", energy {e:?} meV"));
     let description = format!("{}: relaxed {which} state{energy}", report.name);
-    files::write_ovf(data, &mesh(report.lattice), &[Segment { description: &description, spins }])
+    OvfMesh::of(report.lattice).file(data, vec![(description, spins.to_vec())])
 }
 
 fn vtp(report: &RelaxReport, _: &str, spins: &[Vector]) -> Result<Vec<u8>> {
-    let (positions, unit) = positions(report.lattice);
-    Ok(files::write_vtp(&positions, report.lattice.is_ring(), spins, unit))
+    Ok(vtk_points(report.lattice).file(&without_idle(report.lattice, spins.to_vec())))
 }
 
 fn mean(spins: &[Vector]) -> Vector {

@@ -1,9 +1,10 @@
 //! The spins of a path as files that other programs read: npz, OVF, csv, VTK.
 
 use super::disk::File;
+use super::ovf_mesh::OvfMesh;
 use super::{Format, RunReport, csv};
 use crate::error::{Error, Result};
-use crate::files::{self, Array, Mesh, OvfData, Segment};
+use crate::files::{self, Array, OvfData, VtkPoints};
 use crate::geometry::Vector;
 use crate::lattice::Lattice;
 
@@ -45,12 +46,13 @@ impl Format for PathNpz {
         let (images, sites) = (path.images(), path.sites());
         let numbers = (0..images).flat_map(|k| path.spins(k).vectors()).flatten().collect();
         let mut arrays = vec![("spins".into(), Array { shape: vec![images, sites, 3], numbers })];
-        for (name, column) in csv::path_columns(run.outcome) {
+        arrays.extend(places(run.lattice));
+        for (name, column) in csv::path_columns(run) {
             if let Some(k) = column.iter().position(|x| !x.is_finite()) {
                 let message = format!("path.npz: {name}, image {k}: {} is not a finite number", column[k]);
                 return Err(Error::Numerical(message));
             }
-            arrays.push((name, Array { shape: vec![column.len()], numbers: column.to_vec() }));
+            arrays.push((name, Array { shape: vec![column.len()], numbers: column }));
         }
         files::write_npz(&arrays)
     }
@@ -153,9 +155,8 @@ impl Format for Vtk {
 
     fn companions(&self, run: &RunReport) -> Result<Vec<File>> {
         let path = &run.outcome.path;
-        let (positions, unit) = positions(run.lattice);
-        let closed = run.lattice.is_ring();
-        let image = |k: usize| files::write_vtp(&positions, closed, &path.spins(k).vectors(), unit);
+        let points = vtk_points(run.lattice);
+        let image = |k: usize| points.file(&without_idle(run.lattice, path.spins(k).vectors()));
         Ok((0..path.images()).map(|k| File { name: numbered("vtk", k, "vtp"), bytes: image(k) }).collect())
     }
 }
@@ -173,9 +174,7 @@ fn numbered(folder: &str, k: usize, ending: &str) -> String {
 }
 
 fn ovf(data: OvfData, run: &RunReport, images: Vec<(String, Vec<Vector>)>) -> Vec<u8> {
-    let segments: Vec<Segment> =
-        images.iter().map(|(description, spins)| Segment { description, spins: spins.as_slice() }).collect();
-    files::write_ovf(data, &mesh(run.lattice), &segments)
+    OvfMesh::of(run.lattice).file(data, images)
 }
 
 /// One image as a file of its own: text, which every reader of OVF reads, with all digits.
@@ -192,79 +191,28 @@ fn image_description(run: &RunReport, k: usize) -> String {
     }
 }
 
-/// Cells in m, or in sites where the lattice has no length; their centers are where [`positions`] has the sites.
-pub(super) fn mesh(lattice: &Lattice) -> Mesh {
-    let (step, unit) = match lattice.spacing_nm {
-        Some(a) => {
-            // OVF knows one size of cells: the largest, where they differ
-            let larger = |p: [f64; 2], q: [f64; 2]| [p[0].max(q[0]), p[1].max(q[1])];
-            let sections = lattice.sections_nm.iter().flatten().copied();
-            let [width, thickness] = sections.reduce(larger).unwrap_or([a; 2]);
-            ([a, width, thickness].map(|nm| nm * 1e-9), "m")
-        }
-        None => ([1.0; 3], "site"),
-    };
-    Mesh { base: [lattice.first() * step[0], 0.0, 0.0], step, unit }
+/// Where the sites of a film or crystal are, as an array (site, xyz) whose name has the unit: nm, or lattice constants.
+pub(super) fn places(lattice: &Lattice) -> Option<(String, Array)> {
+    let name = if lattice.spacing_nm.is_some() { "positions_nm" } else { "positions_a" };
+    let numbers = || (0..lattice.sites).flat_map(|i| lattice.position(i)).collect();
+    (!lattice.is_row()).then(|| (name.into(), Array { shape: vec![lattice.sites, 3], numbers: numbers() }))
 }
 
-/// Where the sites are, and the unit of that.
-pub(super) fn positions(lattice: &Lattice) -> (Vec<Vector>, &'static str) {
-    ((0..lattice.sites).map(|i| lattice.position(i)).collect(), lattice.unit())
+/// The sites as points: a row joined by a line, a film by the triangles between neighbours.
+pub(super) fn vtk_points(lattice: &Lattice) -> VtkPoints {
+    let n = lattice.sites;
+    let triangles = lattice.triangles();
+    VtkPoints {
+        positions: (0..n).map(|i| lattice.position(i)).collect(),
+        unit: lattice.unit(),
+        line: if lattice.is_row() && n > 1 { (0..n).chain(lattice.is_ring().then_some(0)).collect() } else { vec![] },
+        triangles: if triangles.layers == 1 { triangles.corners } else { Vec::new() },
+    }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::lattice::Chain;
-
-    fn numbers(text: &str) -> Vec<f64> {
-        text.split_whitespace().map(|word| word.parse().unwrap()).collect()
-    }
-
-    /// The centers that an OVF file gives its cells, in nm where it is in m, and where each cell begins and ends.
-    fn ovf_cells(lattice: &Lattice) -> Vec<[f64; 3]> {
-        let spins = vec![[0.0, 0.0, 1.0]; lattice.sites];
-        let bytes = files::write_ovf(OvfData::Text, &mesh(lattice), &[Segment { description: "cells", spins: &spins }]);
-        let text = String::from_utf8(bytes).unwrap();
-        let value = |key: &str| {
-            let line = text.lines().find_map(|l| l.strip_prefix(&format!("# {key}: "))).unwrap();
-            line.parse::<f64>().unwrap_or_else(|_| panic!("{key}: {line}"))
-        };
-        let scale = if text.contains("meshunit: m\n") { 1e9 } else { 1.0 };
-        let (base, step, nodes) = (value("xbase"), value("xstepsize"), value("xnodes"));
-        assert!((value("xmin") + 0.5 * step - base).abs() < 1e-12 * step);
-        assert!((value("xmax") - value("xmin") - nodes * step).abs() < 1e-12 * nodes * step);
-        for axis in ["y", "z"] {
-            assert_eq!(value(&format!("{axis}base")), 0.0);
-            assert_eq!(value(&format!("{axis}min")), -value(&format!("{axis}max")));
-        }
-        (0..nodes as usize).map(|i| [scale * (base + i as f64 * step), 0.0, 0.0]).collect()
-    }
-
-    fn vtp_points(lattice: &Lattice) -> Vec<[f64; 3]> {
-        let (positions, unit) = positions(lattice);
-        let spins = vec![[0.0, 0.0, 1.0]; lattice.sites];
-        let text = String::from_utf8(files::write_vtp(&positions, lattice.is_ring(), &spins, unit)).unwrap();
-        let (_, from) = text.split_once("<Points>").unwrap();
-        let (_, from) = from.split_once("format=\"ascii\">").unwrap();
-        let (points, _) = from.split_once("</DataArray>").unwrap();
-        numbers(points).chunks(3).map(|p| [p[0], p[1], p[2]]).collect()
-    }
-
-    #[test]
-    fn vtk_and_ovf_have_every_site_at_the_same_place() {
-        let chain = |text: &str| serde_json::from_str::<Chain>(text).unwrap().resolve().unwrap();
-        for (text, first, step) in [
-            (r#"{"sites": 5}"#, 0.0, 1.0),
-            (r#"{"sites": 5, "spacing": "0.25 nm"}"#, 0.0, 0.25),
-            (r#"{"sites": 5, "spacing": "2 nm", "cross_section": ["20 nm", "5 nm"]}"#, 1.0, 2.0),
-        ] {
-            let (cells, points) = (ovf_cells(&chain(text)), vtp_points(&chain(text)));
-            assert_eq!((cells.len(), points.len()), (5, 5));
-            for (i, (cell, point)) in cells.iter().zip(&points).enumerate() {
-                assert!((0..3).all(|c| (cell[c] - point[c]).abs() < 1e-12), "{text}: {cell:?} {point:?}");
-                assert!((point[0] - first - step * i as f64).abs() < 1e-12, "{text}: {point:?}");
-            }
-        }
-    }
+/// The spins, of films and crystals with a zero vector at every vacant site.
+pub(super) fn without_idle(lattice: &Lattice, mut spins: Vec<Vector>) -> Vec<Vector> {
+    let idle = |i: &usize| lattice.vacant[*i] && !lattice.is_row();
+    (0..lattice.sites).filter(idle).for_each(|i| spins[i] = [0.0; 3]);
+    spins
 }

@@ -2,7 +2,7 @@
 
 use super::columns::{Columns, WAY_OUT};
 use super::number::Number;
-use super::read::{bytes, shown, text};
+use super::read::{bytes, read_spins, shown, text};
 use super::stored_run::history;
 use super::summary::{End, Minimum, Rejected, Saddle, Search, State, Summary};
 use crate::drive::{
@@ -10,6 +10,7 @@ use crate::drive::{
 };
 use crate::error::{Error, Result};
 use crate::files;
+use crate::lattice::Lattice;
 use crate::path::Path as SpinPath;
 use crate::spins::Spins;
 use std::path::Path;
@@ -27,8 +28,8 @@ pub struct StoredOutcome {
 }
 
 impl StoredOutcome {
-    /// Reads the result in `dir`; what is not there, in words, where its files do not hold all of it.
-    pub fn read(dir: &Path) -> Result<std::result::Result<StoredOutcome, String>> {
+    /// Reads the result in `dir` of a lattice; what is not there, in words, where its files do not hold all of it.
+    pub fn read(dir: &Path, lattice: &Lattice) -> Result<std::result::Result<StoredOutcome, String>> {
         let missing: Vec<&str> = NEEDED.into_iter().filter(|name| !dir.join(name).is_file()).collect();
         if !missing.is_empty() {
             return Ok(Err(format!("there is no {} with the result", missing.join(", no "))));
@@ -40,8 +41,8 @@ impl StoredOutcome {
         let Some(stop_code) = summary.stop_code else {
             return Ok(Err("its summary.json does not say how the run ended".into()));
         };
-        let path = states(dir, "path.npz")?;
-        let (saddles, minima) = (states(dir, "saddle.ovf")?, states(dir, "minima.ovf")?);
+        let path = states(dir, "path.npz", lattice)?;
+        let (saddles, minima) = (states(dir, "saddle.ovf", lattice)?, states(dir, "minima.ovf", lattice)?);
         let between = minima.len().saturating_sub(2);
         if path.len() < 2 || saddles.len() != summary.saddles.len() || between != summary.intermediate_minima.len() {
             return Ok(Err("its files of spins are not of one result with summary.json".into()));
@@ -132,10 +133,8 @@ fn rejected(r: Rejected) -> RejectedPath {
 }
 
 /// The states in a file of spins.
-fn states(dir: &Path, name: &str) -> Result<Vec<Spins>> {
-    let found = files::read(&shown(dir, name), &bytes(dir, name)?.unwrap_or_default())?.images;
-    // the reader's vectors are of unit length already
-    Ok(found.iter().map(|v| Spins::from_unit_vectors(v)).collect())
+fn states(dir: &Path, name: &str, lattice: &Lattice) -> Result<Vec<Spins>> {
+    read_spins(dir, name, &bytes(dir, name)?.unwrap_or_default(), lattice)
 }
 
 /// The columns beside the spins.

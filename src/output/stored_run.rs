@@ -7,15 +7,15 @@ use super::columns::Columns;
 use super::disk::{self, MARK};
 use super::folder::stored_result;
 use super::plot_data::above_first;
-use super::read::{bytes, shown, text};
+use super::read::{bytes, read_spins, shown, text};
 use super::spin_maps::SitePlaces;
 use super::summary::{Saddle, Summary};
 use super::{EnergyPath, Lifetimes, Places, PlotData};
 use crate::drive::{Barrier, HistoryRow};
 use crate::error::{Error, Result};
 use crate::files;
+use crate::lattice::Lattice;
 use crate::path::Path as SpinPath;
-use crate::spins::Spins;
 use std::path::Path;
 
 /// Files of spins, best first.
@@ -45,8 +45,8 @@ pub struct StoredRun {
 }
 
 impl StoredRun {
-    /// Reads the result in `dir`; with its spins if they are `wanted`.
-    pub fn read(dir: &Path, spins_wanted: bool) -> Result<StoredRun> {
+    /// Reads the result in `dir` but for its spins.
+    pub fn read(dir: &Path) -> Result<StoredRun> {
         let mut notes = Vec::new();
         let summary = summary(dir)?;
         // a figure that somebody changed is not read
@@ -78,13 +78,6 @@ impl StoredRun {
                 Vec::new()
             }
         };
-        let path = if spins_wanted { spins(dir, images)? } else { None };
-        if spins_wanted && path.is_none() {
-            notes.push(format!(
-                "there is no file of spins ({}): spins and magnetisation cannot be drawn",
-                SPINS.join(", ")
-            ));
-        }
         Ok(StoredRun {
             notes,
             vacant: Vec::new(),
@@ -96,18 +89,25 @@ impl StoredRun {
             terms_profile_mev,
             profile,
             history,
-            path,
+            path: None,
         })
+    }
+
+    /// With the spins of its lattice, and where they are.
+    pub fn with_spins(mut self, dir: &Path, lattice: &Lattice) -> Result<StoredRun> {
+        self.path = spins(dir, self.summary.path.images, lattice)?;
+        if self.path.is_none() {
+            let files = SPINS.join(", ");
+            self.notes.push(format!("there is no file of spins ({files}): spins and magnetisation cannot be drawn"));
+        }
+        (self.places, self.sites) = (Places::of(lattice), SitePlaces::of(lattice));
+        self.vacant = lattice.vacant.clone();
+        Ok(self)
     }
 
     /// Its name.
     pub fn name(&self) -> &str {
         &self.summary.name
-    }
-
-    /// Number of sites, where the spins are known.
-    pub fn sites(&self) -> Option<usize> {
-        self.path.as_ref().map(SpinPath::sites)
     }
 
     /// What its figures are drawn from.
@@ -198,14 +198,11 @@ pub(super) fn history(table: &Columns) -> Result<Vec<HistoryRow>> {
 }
 
 /// The spins of all images from the best file there is.
-fn spins(dir: &Path, images: usize) -> Result<Option<SpinPath>> {
+fn spins(dir: &Path, images: usize, lattice: &Lattice) -> Result<Option<SpinPath>> {
     for name in SPINS {
         let Some(bytes) = bytes(dir, name)? else { continue };
-        let file = shown(dir, name);
-        let found = files::read(&file, &bytes)?.images;
-        agree(&file, found.len(), images)?;
-        // the reader's vectors are of unit length already
-        let states: Vec<Spins> = found.iter().map(|v| Spins::from_unit_vectors(v)).collect();
+        let states = read_spins(dir, name, &bytes, lattice)?;
+        agree(&shown(dir, name), states.len(), images)?;
         return Ok(Some(SpinPath::new(&states)));
     }
     Ok(None)

@@ -1,9 +1,10 @@
 //! Spins from a file: OVF 2.0, npz, npy or csv; one image of it.
 
 use super::{StateBuilder, StateContext};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::files::{self, Stored};
 use crate::geometry::Vector;
+use crate::lattice::Lattice;
 use crate::registry::Described;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -37,10 +38,11 @@ impl Described for File {
 }
 
 impl File {
-    /// Reads the file, looked for in `folder`.
-    pub fn load(&mut self, folder: &Path) -> Result<&Stored> {
-        let stored = files::open(folder, &self.path, self.sha256.as_deref())?;
-        Ok(self.stored.insert(stored))
+    /// Reads the file, looked for in `folder`; the image that is taken of it, for the sites of a lattice if one is given.
+    pub fn load(&mut self, folder: &Path, lattice: Option<&Lattice>) -> Result<Vec<Vector>> {
+        let stored = self.stored.insert(files::open(folder, &self.path, self.sha256.as_deref())?);
+        let image = stored.image(self.segment)?;
+        lattice.map_or(Ok(image.to_vec()), |lattice| stored.placed(image, lattice))
     }
 }
 
@@ -50,15 +52,7 @@ impl StateBuilder for File {
             Some(stored) => stored.clone(),
             None => files::open(Path::new(""), &self.path, self.sha256.as_deref())?,
         };
-        let image = stored.image(self.segment)?;
-        let (found, sites) = (image.len(), context.lattice.sites);
-        match found == sites {
-            true => Ok(image.to_vec()),
-            false => Err(Error::invalid(
-                "path",
-                format!("{} has {found} spins, but the chain has {sites} sites", stored.file),
-            )),
-        }
+        stored.placed(stored.image(self.segment)?, context.lattice)
     }
 
     fn staggered(&self) -> bool {

@@ -18,6 +18,15 @@ SITES = 24
 SINGLE = float(np.finfo(np.float32).eps)
 
 
+# every kind of film and crystal, with vacancies and without
+FILMS = {
+    "square": {"square": {"cells": [9, 7], "spacing": "0.5 nm", "shape": {"disc": {"radius": 3.2}}, "vacant": [3]}},
+    "grid": {"grid": {"cells": [8, 6, 2], "cell": ["2 nm", "3 nm", "0.6 nm"], "vacant": [0, 50]}},
+    "honeycomb": {"honeycomb": {"cells": [6, 5], "spacing": "0.3 nm", "vacant": [7]}},
+    "hcp": {"hcp": {"cells": [4, 3, 2], "spacing": "0.3 nm"}},
+}
+
+
 def optional(name):
     try:
         return importlib.import_module(name)
@@ -99,6 +108,86 @@ def libovf_reads(ovf, result, spins):
                 assert handle.read_segment_data(k, segment, data) == ovf.OK, handle.get_latest_message()
                 found[k] = data
         same(f"libovf, {file}", found, spins, tolerance)
+
+
+def film(lattice):
+    """A short path on a film, written in all formats."""
+    [kind] = lattice
+    grid = {"exchange": {"A": "10 pJ/m"}}, {"anisotropy": {"K": "50 kJ/m^3", "axis": [0, 0, 1]}}
+    atoms = {"exchange": {"J": ["10 meV"]}}, {"anisotropy": {"K": "0.5 meV", "axis": [0, 0, 1]}}
+    formats = ["csv", "npz", "ovf", "ovf_binary4", "ovf_text", "ovf_images", "spins_csv", "vtk"]
+    material = {"name": "toy", "energy": list(grid if kind == "grid" else atoms)} | ({"Ms": "800 kA/m"} if kind == "grid" else {})
+    path = {"images": 5, "guess": {"sweep": {"from": [1, 0.3, 0]}}}
+    few = {"neb": {"max_evaluations": 3}, "saddle": {"refine": False, "certify": False}, "relax_ends": False}
+    return config(lattice=lattice, material=material, path=path, output={"formats": formats, "plots": []}, **few)
+
+
+def films(spinneb, folder, df):
+    """Positions, meshes and cells of films and crystals, and their files read back as states and paths."""
+    for kind, lattice in FILMS.items():
+        result = run(spinneb, folder, kind, film(lattice), codes=(0, 3))
+        npz = np.load(result / "path.npz")
+        spins, places = npz["spins"], npz["positions_nm"]
+        vacant = lattice[kind].get("vacant", [])
+        there = np.setdiff1d(np.arange(len(places)), vacant)
+        table = np.genfromtxt(result / "path.csv", delimiter=",", names=True)
+        same(f"{kind}: numpy, charge", npz["charge"], table["charge"])
+        vtk_film(kind, result, spins, places, there)
+        if df and kind in ("square", "grid"):
+            df_film(df, kind, result, lattice, spins, places, there)
+        elif kind not in ("square", "grid"):
+            rows = [line.split() for line in (result / "ovf/image_002.ovf").read_text().splitlines() if not line.startswith("#")]
+            numbers = np.array(rows, dtype=float)
+            same(f"{kind}: irregular ovf, positions (nm)", 1e9 * numbers[:, :3], places, 1e-12)
+            same(f"{kind}: irregular ovf, spins", numbers[there, 3:], spins[2, there])
+        for file in ["path.ovf", "path_text.ovf", "path_binary4.ovf", "path.npz"]:
+            again = film(lattice) | {"initial": {"file": {"path": f"results/{kind}/{file}", "segment": 2}}}
+            again["path"] = {"images": 5, "guess": {"file": {"path": f"results/{kind}/{file}"}}}
+            back = run(spinneb, folder, f"{kind}_{file}", again, codes=(0, 3))
+            tolerance = SINGLE if "binary4" in file else 0.0
+            same(f"{kind}: spinneb, {file}", np.load(back / "inputs/initial.npy")[there], spins[2, there], tolerance)
+            same(f"{kind}: spinneb, {file} as a path", np.load(back / "inputs/guess.npy")[:, there], spins[:, there], tolerance)
+
+
+def vtk_film(kind, result, spins, places, there):
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+
+    reader = vtkXMLPolyDataReader()
+    reader.SetFileName(str(result / "vtk/image_002.vtp"))
+    reader.Update()
+    data = reader.GetOutput()
+    assert data.GetNumberOfPoints() == data.GetNumberOfVerts() == len(places) and data.GetNumberOfLines() == 0
+    same(f"{kind}: vtk, positions (nm)", vtk_to_numpy(data.GetPoints().GetData()), places)
+    expected = spins[2].copy()
+    expected[np.setdiff1d(np.arange(len(places)), there)] = 0.0
+    same(f"{kind}: vtk, spins", vtk_to_numpy(data.GetPointData().GetVectors()), expected)
+    if kind in ("square", "honeycomb"):
+        corners = vtk_to_numpy(data.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+        assert len(corners) > len(places) / 2 and np.isin(corners, there).all()
+        m = spins[2][corners]
+        a, b, c = m[:, 0], m[:, 1], m[:, 2]
+        below = 1 + (a * b + b * c + c * a).sum(1)
+        solid = 2 * np.arctan2((a * np.cross(b, c)).sum(1), below)
+        charge = np.genfromtxt(result / "path.csv", delimiter=",", names=True)["charge"][2]
+        same(f"{kind}: vtk, charge of its triangles", solid.sum() / (4 * np.pi), charge, 1e-12)
+    else:
+        assert data.GetNumberOfPolys() == 0
+
+
+def df_film(df, kind, result, lattice, spins, places, there):
+    names = sorted(f"ovf/{path.name}" for path in (result / "ovf").iterdir())
+    fields = [df.Field.from_file(str(result / name)) for name in names]
+    cells = lattice[kind]["cells"]
+    mesh = fields[0].mesh
+    assert list(mesh.n) == cells + [1] * (3 - len(cells)), mesh.n
+    edges = [float(edge.split()[0]) for edge in lattice[kind].get("cell", ["0.5 nm"] * 3)]
+    same(f"{kind}: discretisedfield, cell (nm)", 1e9 * np.array(mesh.cell), edges, 1e-12)
+    for k, field in enumerate(fields):
+        found = np.array([field(1e-9 * place) for place in places[there]])
+        same(f"{kind}: discretisedfield, image {k} at every site", found, spins[k, there])
+        filled = (np.abs(field.array).sum(axis=-1) > 0).sum()
+        assert filled == len(there), f"{filled} cells have a spin, not {len(there)}"
 
 
 class Reader:
@@ -194,6 +283,7 @@ def main():
             discretisedfield_writes(df, reader, folder, spins)
         if ovf:
             libovf_writes(ovf, reader, folder, spins)
+        films(spinneb, folder, df)
         notebook(readme, result)
     print("interoperability: checked" + "".join(f", but not with {n}" for n, m in [("discretisedfield", df), ("libovf", ovf)] if not m))
 

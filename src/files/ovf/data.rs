@@ -48,7 +48,14 @@ fn ends_data(line: &Line) -> bool {
 /// Numbers of each node: three, or six where their positions are there.
 fn columns(header: &Header, numbers: usize) -> Option<usize> {
     let usual: &[usize] = if header.irregular { &[6, 3] } else { &[3] };
-    usual.iter().copied().find(|c| header.sites.checked_mul(*c) == Some(numbers))
+    usual.iter().copied().find(|c| header.nodes.checked_mul(*c) == Some(numbers))
+}
+
+impl Header {
+    /// Begins an image whose data have so many numbers a node. Where nodes have places, some may have no spin.
+    fn begin(&self, columns: usize, images: &mut Collector) -> Result<()> {
+        images.begin_on(self.nodes, self.mesh, self.mesh.is_some() || columns > 3)
+    }
 }
 
 fn text(header: &Header, lines: &mut Lines, images: &mut Collector, segment: usize) -> Result<()> {
@@ -80,11 +87,11 @@ fn text(header: &Header, lines: &mut Lines, images: &mut Collector, segment: usi
         }
     }
     let Some(columns) = columns(header, numbers.len()) else {
-        let (found, wanted) = (numbers.len(), header.sites);
+        let (found, wanted) = (numbers.len(), header.nodes);
         let message = format!("segment {segment}: found {found} numbers, but {wanted} nodes have 3 each");
         return Err(images.error(lines.place(), message));
     };
-    images.begin(header.sites);
+    header.begin(columns, images)?;
     for (i, node) in numbers.chunks_exact(columns).enumerate() {
         let v = &node[columns - 3..];
         images.push([v[0], v[1], v[2]], || {
@@ -101,7 +108,7 @@ fn binary(kind: Stored, header: &Header, lines: &mut Lines, images: &mut Collect
         Err(images.error(format!("byte {at}"), format!("segment {segment}: {m}")))
     };
     let columns = if header.irregular { &[6, 3][..] } else { &[3] };
-    let mut lengths = columns.iter().map(|c| (*c, (header.sites * c + 1) * size));
+    let mut lengths = columns.iter().map(|c| (*c, (header.nodes * c + 1) * size));
     let end = |length: usize| {
         let mut after = Lines::new(data.get(length..)?);
         while after.peek()?.is_blank() {
@@ -113,9 +120,9 @@ fn binary(kind: Stored, header: &Header, lines: &mut Lines, images: &mut Collect
     let Some((columns, length, blank)) = found else {
         let needed = lengths.next_back().map_or(0, |(_, length)| length);
         if data.len() < needed {
-            let (sites, there) = (header.sites, data.len());
+            let (nodes, there) = (header.nodes, data.len());
             let m =
-                format!("{sites} nodes take {needed} bytes with the check value, {there} are left: it is cut short");
+                format!("{nodes} nodes take {needed} bytes with the check value, {there} are left: it is cut short");
             return wrong(images, start, m);
         }
         let m = "expected \"# End: Data\" behind the data of all nodes: the file is damaged or cut short";
@@ -125,8 +132,8 @@ fn binary(kind: Stored, header: &Header, lines: &mut Lines, images: &mut Collect
         Ok(big_endian) => big_endian,
         Err(m) => return wrong(images, start, m),
     };
-    images.begin(header.sites);
-    for i in 0..header.sites {
+    header.begin(columns, images)?;
+    for i in 0..header.nodes {
         let at = size * (1 + columns * i + columns - 3);
         let v = vector(kind, &data[at..], big_endian);
         images.push(v, || format!("byte {}: segment {segment}, node {i}", start + at))?;

@@ -1,4 +1,4 @@
-//! A segment's header: what counts of it is how many spins there are.
+//! A segment's header: what counts of it is how many spins there are, and in which box.
 
 use super::lines::{Lines, squeezed};
 use crate::error::Result;
@@ -8,9 +8,11 @@ use crate::words::quoted;
 
 /// What a header says of the data.
 pub(super) struct Header {
-    /// Spins in the segment.
-    pub(super) sites: usize,
-    /// Every spin has its position before it, in files that keep to the letter of the format.
+    /// Nodes in the segment.
+    pub(super) nodes: usize,
+    /// Nodes along x, y and z, where that is more than a row.
+    pub(super) mesh: Option<[usize; 3]>,
+    /// Every vector has its position before it, in files that keep to the letter of the format.
     pub(super) irregular: bool,
 }
 
@@ -56,23 +58,21 @@ impl Header {
             return Err(format!("valuedim is {n}, but a spin has 3 components"));
         }
         let irregular = found.irregular.unwrap_or(false);
-        let sites = match (found.nodes, found.points) {
+        let (nodes, mesh) = match (found.nodes, found.points) {
             ([Some(x), Some(y), Some(z)], _) if !irregular => {
-                if [x, y, z].iter().filter(|n| **n > 1).count() > 1 {
-                    return Err(format!("a mesh of {x} × {y} × {z} nodes, but a chain is one row"));
-                }
-                x.max(y).max(z)
+                let mesh = Some([x, y, z]).filter(|mesh| mesh.iter().filter(|n| **n > 1).count() > 1);
+                (x.checked_mul(y).and_then(|area| area.checked_mul(z)).unwrap_or(usize::MAX), mesh)
             }
-            (_, Some(points)) => points,
+            (_, Some(points)) => (points, None),
             _ if irregular => return Err("the header has no pointcount".into()),
             (nodes, None) => {
                 let axis = nodes.iter().position(Option::is_none).unwrap_or(0);
                 return Err(format!("the header has no {}nodes", ["x", "y", "z"][axis]));
             }
         };
-        match sites > MAX_SITES {
-            true => Err(format!("{sites} nodes, but a chain has at most {MAX_SITES} sites")),
-            false => Ok(Header { sites, irregular }),
+        match nodes > MAX_SITES {
+            true => Err(format!("{nodes} nodes, but a lattice has at most {MAX_SITES} sites")),
+            false => Ok(Header { nodes, mesh, irregular }),
         }
     }
 }

@@ -25,15 +25,27 @@ impl OvfData {
     }
 }
 
-/// A chain as a mesh of N × 1 × 1 cells; x counts along the chain, whichever way it points.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mesh {
-    /// Center of the first cell.
-    pub base: [f64; 3],
-    /// Size of a cell.
-    pub step: [f64; 3],
-    /// Unit of that size.
-    pub unit: &'static str,
+/// Where the nodes of a file are.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Mesh {
+    /// In the middle of the cells of a box, counted with x fastest.
+    Cells {
+        /// Center of the first cell.
+        base: Vector,
+        /// Size of a cell.
+        step: Vector,
+        /// Cells along x, y and z.
+        nodes: [usize; 3],
+        /// Unit of these lengths.
+        unit: &'static str,
+    },
+    /// Anywhere: an irregular mesh, in whose data the position of each node stands before its vector.
+    Points {
+        /// One position a node.
+        at: Vec<Vector>,
+        /// Their unit.
+        unit: &'static str,
+    },
 }
 
 /// A segment of a file.
@@ -41,13 +53,13 @@ pub struct Mesh {
 pub struct Segment<'a> {
     /// What it is, in a line.
     pub description: &'a str,
-    /// One vector a site.
+    /// One vector a node; zero where there is no spin.
     pub spins: &'a [Vector],
 }
 
 /// An OVF 2.0 file of these segments.
 pub fn write_ovf(data: OvfData, mesh: &Mesh, segments: &[Segment]) -> Vec<u8> {
-    let size: usize = segments.iter().map(|s| 1024 + 24 * s.spins.len()).sum();
+    let size: usize = segments.iter().map(|s| 1024 + 48 * s.spins.len()).sum();
     let mut out = Vec::with_capacity(size);
     let mut line = |text: &str| line(&mut out, text);
     line("OOMMF OVF 2.0");
@@ -65,61 +77,83 @@ fn line(out: &mut Vec<u8>, text: &str) {
 }
 
 fn write_segment(out: &mut Vec<u8>, data: OvfData, mesh: &Mesh, segment: &Segment) {
-    let ([x, y, z], n) = (mesh.step, segment.spins.len());
-    let low = [0, 1, 2].map(|c| mesh.base[c] - 0.5 * mesh.step[c]);
-    let header = [
+    let before = [
         ("Begin", "Segment".into()),
         ("Begin", "Header".into()),
         ("Title", "m".into()),
         ("Desc", segment.description.into()),
-        ("meshunit", mesh.unit.into()),
-        ("meshtype", "rectangular".into()),
-        ("xbase", format!("{:e}", mesh.base[0])),
-        ("ybase", format!("{:e}", mesh.base[1])),
-        ("zbase", format!("{:e}", mesh.base[2])),
-        ("xstepsize", format!("{x:e}")),
-        ("ystepsize", format!("{y:e}")),
-        ("zstepsize", format!("{z:e}")),
-        ("xnodes", n.to_string()),
-        ("ynodes", "1".into()),
-        ("znodes", "1".into()),
-        ("xmin", format!("{:e}", low[0])),
-        ("ymin", format!("{:e}", low[1])),
-        ("zmin", format!("{:e}", low[2])),
-        ("xmax", format!("{:e}", low[0] + n as f64 * x)),
-        ("ymax", format!("{:e}", low[1] + y)),
-        ("zmax", format!("{:e}", low[2] + z)),
+    ];
+    let after = [
         ("valuedim", "3".into()),
         ("valuelabels", "m_x m_y m_z".into()),
         ("valueunits", "1 1 1".into()),
         ("End", "Header".into()),
         ("Begin", data.name().to_string()),
     ];
-    for (key, value) in &header {
+    for (key, value) in before.into_iter().chain(mesh.header()).chain(after) {
         line(out, &format!("{key}: {value}"));
     }
-    write_data(out, data, segment.spins);
+    match mesh {
+        Mesh::Cells { .. } => write_data(out, data, segment.spins.iter().map(|m| &m[..])),
+        Mesh::Points { at, .. } => {
+            let rows: Vec<[f64; 6]> =
+                at.iter().zip(segment.spins).map(|([x, y, z], m)| [*x, *y, *z, m[0], m[1], m[2]]).collect();
+            write_data(out, data, rows.iter().map(|row| &row[..]));
+        }
+    }
     line(out, &format!("End: {}", data.name()));
     line(out, "End: Segment");
 }
 
-fn write_data(out: &mut Vec<u8>, data: OvfData, spins: &[Vector]) {
-    let numbers = spins.iter().flatten();
+impl Mesh {
+    /// What the header of a segment says of it.
+    fn header(&self) -> Vec<(&'static str, String)> {
+        let three = |keys: [&'static str; 3], v: Vector| keys.into_iter().zip(v).map(|(k, x)| (k, format!("{x:e}")));
+        let (lowest, highest) = (["xmin", "ymin", "zmin"], ["xmax", "ymax", "zmax"]);
+        let mut lines = Vec::new();
+        match self {
+            Mesh::Cells { base, step, nodes, unit } => {
+                let low = [0, 1, 2].map(|c| base[c] - 0.5 * step[c]);
+                lines.extend([("meshunit", unit.to_string()), ("meshtype", "rectangular".into())]);
+                lines.extend(three(["xbase", "ybase", "zbase"], *base));
+                lines.extend(three(["xstepsize", "ystepsize", "zstepsize"], *step));
+                lines.extend(["xnodes", "ynodes", "znodes"].into_iter().zip(nodes.map(|n| n.to_string())));
+                lines.extend(three(lowest, low));
+                lines.extend(three(highest, [0, 1, 2].map(|c| low[c] + nodes[c] as f64 * step[c])));
+            }
+            Mesh::Points { at, unit } => {
+                let extreme =
+                    |start: f64, of: fn(f64, f64) -> f64| [0, 1, 2].map(|c| at.iter().map(|p| p[c]).fold(start, of));
+                lines.extend([("meshunit", unit.to_string()), ("meshtype", "irregular".into())]);
+                lines.push(("pointcount", at.len().to_string()));
+                lines.extend(three(lowest, extreme(f64::INFINITY, f64::min)));
+                lines.extend(three(highest, extreme(f64::NEG_INFINITY, f64::max)));
+            }
+        }
+        lines
+    }
+}
+
+/// The data, a row of numbers a node.
+fn write_data<'a>(out: &mut Vec<u8>, data: OvfData, rows: impl Iterator<Item = &'a [f64]>) {
     match data {
         OvfData::Text => {
-            for [x, y, z] in spins {
-                // a Vec takes whatever is written to it
-                let _ = writeln!(out, "{x:?} {y:?} {z:?}");
+            for row in rows {
+                for (k, x) in row.iter().enumerate() {
+                    // a Vec takes whatever is written to it
+                    let _ = write!(out, "{}{x:?}", if k > 0 { " " } else { "" });
+                }
+                out.push(b'\n');
             }
         }
         OvfData::Binary4 => {
             out.extend_from_slice(&CHECK_4.to_le_bytes());
-            out.extend(numbers.flat_map(|x| (*x as f32).to_le_bytes()));
+            out.extend(rows.flatten().flat_map(|x| (*x as f32).to_le_bytes()));
             out.push(b'\n');
         }
         OvfData::Binary8 => {
             out.extend_from_slice(&CHECK_8.to_le_bytes());
-            out.extend(numbers.flat_map(|x| x.to_le_bytes()));
+            out.extend(rows.flatten().flat_map(|x| x.to_le_bytes()));
             out.push(b'\n');
         }
     }

@@ -33,7 +33,6 @@ pub use line_plot::{AxisLabel, LinePlot, Marker, Series, mark};
 pub use number::{decimal, power_of_ten, significant};
 pub use obstacles::Obstacles;
 pub use palette::*;
-pub(super) use render_plot::base64;
 pub use render_plot::description;
 pub use shapes::{Align, Canvas, Point, Text};
 pub use style::{COLUMN_MM, Look, Style};

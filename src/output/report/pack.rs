@@ -5,9 +5,9 @@
 //! 3e-4 rad. From image to image only the steps are kept, as zigzag numbers (0, −1, 1, −2, …), the low bytes of all and then the high
 //! ones, compressed by zlib: most spins of a path stand still most of the time.
 
+use crate::base64::base64;
 use crate::error::{Error, Result};
 use crate::geometry::Vector;
-use crate::output::canvas::base64;
 use crate::path::Path;
 use flate2::{Compression, write::ZlibEncoder};
 use std::io::Write;
@@ -80,20 +80,8 @@ mod tests {
         unit([x, y, z]).unwrap()
     }
 
-    fn bytes(base64: &str) -> Vec<u8> {
-        let digit = |c: u8| match c {
-            b'A'..=b'Z' => c - b'A',
-            b'a'..=b'z' => c - b'a' + 26,
-            b'0'..=b'9' => c - b'0' + 52,
-            b'+' => 62,
-            _ => 63,
-        };
-        let digits: Vec<u32> = base64.trim_end_matches('=').bytes().map(|c| u32::from(digit(c))).collect();
-        let group = |g: &[u32]| {
-            let word = g.iter().enumerate().fold(0, |w, (k, d)| w | d << (18 - 6 * k));
-            word.to_be_bytes()[1..g.len()].to_vec()
-        };
-        digits.chunks(4).flat_map(group).collect()
+    fn bytes(text: &str) -> Vec<u8> {
+        crate::base64::bytes(text).unwrap()
     }
 
     fn vectors(count: usize, phase: f64) -> Vec<Vector> {

@@ -140,7 +140,8 @@ function wire() {
 function wireView(view) {
   for (const [name, { words }] of Object.entries(COLOURS)) $("colours").append(make("option", { value: name }, words));
   if (!data.periodic) $("layout").querySelector('[value="ring"]').remove();
-  $("layout").value = view.scene.kind;
+  if (path.places) wireLattice(view);
+  else $("layout").value = view.scene.kind;
   $("layout").onchange = () => view.arrange($("layout").value);
   $("length").oninput = () => {
     view.scene.stretch = Number($("length").value);
@@ -163,8 +164,29 @@ function wireView(view) {
   });
 }
 
+/** What a lattice is drawn with, and which of its layers. */
+function wireLattice(view) {
+  const { scene } = view;
+  $("layout").parentElement.hidden = true;
+  $("marks-choice").hidden = false;
+  $("marks").onchange = () => {
+    scene.marks = $("marks").value;
+    view.show(page.s);
+  };
+  const heights = [...new Set(scene.places.map(place => Number(place[2].toFixed(3))))].sort((a, b) => a - b);
+  if (heights.length < 2 || heights.length > 300) return;
+  $("layer-choice").hidden = false;
+  heights.forEach((z, k) => $("layer").append(make("option", { value: z }, `${k + 1} of ${heights.length} along z`)));
+  $("layer").onchange = () => {
+    scene.layer($("layer").value === "" ? null : Number($("layer").value));
+    view.rebuild(true);
+    view.show(page.s);
+  };
+}
+
 /** Whether neighbours of the initial state point against each other. */
-function alternates({ sites, spins }) {
+function alternates({ sites, spins, places }) {
+  if (places) return false;
   let sum = 0;
   for (let k = 1; k < sites.length; k++) for (let c = 0; c < 3; c++) sum += spins[3 * k + c] * spins[3 * (k - 1) + c];
   return sites.length > 1 && sum < -0.5 * (sites.length - 1);
@@ -173,7 +195,7 @@ function alternates({ sites, spins }) {
 /** Where the run is from, and what of it is not shown. */
 function introduce() {
   const { spacing_nm: spacing, periodic, frozen, vacant, sites, images } = data;
-  const parts = [data.material.name, `${periodic ? "ring" : "chain"} of ${plural(sites, "site")}${spacing && sites > 1 ? `, ${number(spacing, 4)} nm apart` : ""}`];
+  const parts = [data.material.name, data.lattice?.words ?? `${periodic ? "ring" : "chain"} of ${plural(sites, "site")}${spacing && sites > 1 ? `, ${number(spacing, 4)} nm apart` : ""}`];
   if (frozen.length) parts.push(`${frozen.length} frozen`);
   if (vacant.length) parts.push(`${vacant.length} vacant`);
   $("subject").textContent = [...parts, `spinneb ${data.summary.version}`].filter(Boolean).join(" · ");
@@ -204,7 +226,9 @@ async function begin() {
   page.chart.stagger = alternates(path);
   wireView(page.view);
   page.chart.render();
-  $("view").setAttribute("aria-label", `The spins of the chain as arrows in three dimensions: ${plural(path.sites.length, "arrow")}`);
+  $("view").setAttribute("aria-label", path.places
+    ? `The spins of the lattice at their places in three dimensions: ${plural(path.sites.length, "spin")}`
+    : `The spins of the chain as arrows in three dimensions: ${plural(path.sites.length, "arrow")}`);
   go(page.s);
 }
 

@@ -89,6 +89,8 @@ class Path {
     this.at = column(data.reaction_coordinate_rad);
     this.energy = column(data.energy_above_initial_meV);
     this.torque = column(data.max_perpendicular_torque_meV);
+    this.places = data.lattice && column(data.lattice.places);
+    this.charge = data.lattice?.charge && column(data.lattice.charge);
     this.terms = data.terms.map(term => ({ name: term.name, energy: column(term.above_initial_meV) }));
     const length = this.at.length ? this.at[this.at.length - 1] : 0;
     this.length = length > 1e-9 ? length : 0;

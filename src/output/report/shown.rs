@@ -1,10 +1,13 @@
 //! Which sites and images a page shows: all of a small path, of a large one as many as a page can hold and a browser can draw.
 //!
-//! Sites are thinned evenly, but even and odd ones take turns as they do in the chain: the picture of an antiferromagnet stays one.
+//! Sites of a chain are thinned evenly, but even and odd ones take turns as they do in the chain: the picture of an antiferromagnet
+//! stays one. Of a lattice every third, fifth, … cell in each direction is shown, with all its atoms; there are more of them, since
+//! they are drawn as discs where arrows have no room.
 //! Images are thinned evenly too, but those of saddles and minima stay. Sites give way first: spins between two images are
 //! interpolated, and images far apart would show what never happened.
 
 use crate::drive::Outcome;
+use crate::lattice::Lattice;
 
 /// Most images, apart from those at rest.
 const IMAGES: usize = 400;
@@ -14,16 +17,22 @@ const AT_REST: usize = 100;
 const SITES: usize = 1000;
 /// Most spins, sites times images.
 const SPINS: usize = 200_000;
+/// Most sites of a lattice that is no row.
+const LATTICE_SITES: usize = 100_000;
+/// Most spins of it.
+const LATTICE_SPINS: usize = 2_000_000;
 
 /// Numbers of the images and sites that are shown, ascending.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Shown {
     pub(super) images: Vec<usize>,
     pub(super) sites: Vec<usize>,
+    /// From a cell that is shown to the next.
+    pub(super) stride: usize,
 }
 
 impl Shown {
-    pub(super) fn of(outcome: &Outcome) -> Shown {
+    pub(super) fn of(outcome: &Outcome, lattice: &Lattice) -> Shown {
         let path = &outcome.path;
         let mut saddles: Vec<(f64, usize)> = outcome.saddles.iter().map(|s| (s.above_initial_mev, s.image)).collect();
         saddles.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -33,8 +42,12 @@ impl Shown {
         images.extend(at_rest.filter(|k| *k < path.images()));
         images.sort_unstable();
         images.dedup();
-        let most = SITES.min(SPINS / images.len().max(1)).max(2);
-        Shown { sites: alternating(path.sites(), most), images }
+        let most = |sites: usize, spins: usize| sites.min(spins / images.len().max(1)).max(2);
+        if lattice.is_row() {
+            return Shown { sites: alternating(path.sites(), most(SITES, SPINS)), stride: 1, images };
+        }
+        let (sites, stride) = by_cells(lattice, most(LATTICE_SITES, LATTICE_SPINS));
+        Shown { sites, stride, images }
     }
 
     /// Those of these sites that are shown.
@@ -66,6 +79,17 @@ fn alternating(count: usize, most: usize) -> Vec<usize> {
     sites
 }
 
+/// The sites of every so manieth cell in each direction, an odd number, so that no more than `most` are left; of a cell with more
+/// atoms than that, all.
+fn by_cells(lattice: &Lattice, most: usize) -> (Vec<usize>, usize) {
+    let kept = |stride: usize| -> Vec<usize> {
+        (0..lattice.sites).filter(|i| lattice.cell(*i).1.iter().all(|c| c % stride == 0)).collect()
+    };
+    let widest = lattice.grid.size.into_iter().fold(1, usize::max);
+    let strides = (1..=widest).step_by(2).map(|stride| (kept(stride), stride));
+    strides.filter(|(sites, _)| !sites.is_empty()).find(|(sites, _)| sites.len() <= most).unwrap_or((kept(1), 1))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -80,6 +104,17 @@ mod tests {
             assert_eq!((kept.len(), kept[0], kept[kept.len() - 1]), (most, 0, count - 1));
             assert!(kept.windows(2).all(|w| w[0] < w[1]));
         }
+    }
+
+    #[test]
+    fn a_lattice_is_thinned_by_its_cells_and_keeps_all_of_a_few() {
+        let text = r#"{"honeycomb": {"cells": [30, 20], "shape": {"not": {"disc": {"radius": 4}}}}}"#;
+        let lattice = serde_json::from_str::<crate::lattice::LatticeSpec>(text).unwrap().resolve().unwrap();
+        assert_eq!(by_cells(&lattice, 1200), ((0..lattice.sites).collect(), 1));
+        let (sites, stride) = by_cells(&lattice, 140);
+        assert_eq!(stride, 3);
+        assert!(sites.len() <= 140 && sites.len() > 100 && sites.windows(2).all(|w| w[0] < w[1]), "{}", sites.len());
+        assert!(sites.iter().all(|i| lattice.cell(*i).1[..2].iter().all(|c| c % 3 == 0)));
     }
 
     #[test]

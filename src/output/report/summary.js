@@ -120,11 +120,14 @@ function rejected(summary) {
 
 function energies(path) {
   const rows = path.images.map((image, k) => [String(image), number(path.at[k], 6), number(path.energy[k], 6),
-    ...path.terms.map(term => number(term.energy[k], 6)), number(path.torque[k], 2)]);
-  const headings = ["Image", "Reaction coordinate (rad)", "Above initial (meV)", ...path.terms.map(term => `${term.name} (meV)`), "Torque across the path (meV)"];
+    ...path.terms.map(term => number(term.energy[k], 6)), number(path.torque[k], 2), ...(path.charge ? [number(path.charge[k], 4)] : [])]);
+  const headings = ["Image", "Reaction coordinate (rad)", "Above initial (meV)", ...path.terms.map(term => `${term.name} (meV)`), "Torque across the path (meV)", ...(path.charge ? ["Charge"] : [])];
   const caption = "Energies above those of the initial state";
   section("The profile as a table", make("details", {}, make("summary", {}, plural(rows.length, "image")), table(caption, headings, rows)));
 }
+
+/** Rows of that table at most: more would hold a browser up. */
+const MOST_ROWS = 2000;
 
 /** The spins where the picture is, as a table; it is made when it is opened, and again when the picture comes to rest. */
 function spins(path) {
@@ -136,13 +139,15 @@ function spins(path) {
     const s = Number(details.dataset.s), m = new Float32Array(3 * path.sites.length);
     path.spinsAt(s, m);
     const degrees = radians => number(Number(((radians * 180) / Math.PI).toFixed(1)), 4);
-    const rows = path.sites.map((site, k) => {
+    const [vacant, frozen] = [path.data.vacant, path.data.frozen].map(list => new Set(list));
+    const rows = path.sites.slice(0, MOST_ROWS).map((site, k) => {
       const [x, y, z] = m.subarray(3 * k, 3 * k + 3);
       const three = [x, y, z].map(c => number(Number(c.toFixed(3)), 4));
-      const note = [path.data.vacant.includes(site) ? "vacant" : "", path.data.frozen.includes(site) ? "frozen" : ""].filter(Boolean).join(", ");
+      const note = [vacant.has(site) ? "vacant" : "", frozen.has(site) ? "frozen" : ""].filter(Boolean).join(", ");
       return [String(site), ...three, degrees(Math.acos(clamp(z, -1, 1))), degrees(Math.atan2(y, x)), note];
     });
-    const caption = `At ${number(s, 6)} rad; polar angle from +z, azimuth from +x towards +y`;
+    const first = path.sites.length > MOST_ROWS ? `, the first ${MOST_ROWS} sites of ${path.sites.length}` : "";
+    const caption = `At ${number(s, 6)} rad${first}; polar angle from +z, azimuth from +x towards +y`;
     place.replaceChildren(table(caption, ["Site", "m_x", "m_y", "m_z", "Polar (°)", "Azimuth (°)", ""], rows));
   });
   section("The spins as a table", details);

@@ -9,7 +9,7 @@ class View {
     Object.assign(this, { s: 0, scrolled: -1e9 });
     this.start(Glass.on(this.canvas));
     this.measure();
-    this.arrange(path.data.periodic ? "ring" : "line");
+    this.arrange(path.places ? "lattice" : path.data.periodic ? "ring" : "line");
     new ResizeObserver(() => this.measure()).observe($("frame"));
     this.listen();
   }
@@ -59,14 +59,20 @@ class View {
   /** Draws every third, ninth … site of a line as long as the arrows would stand closer than this (px). */
   thin() {
     const { scene } = this, closest = scene.lies ? 8 : 4;
+    if (scene.kind === "lattice") return this.rebuild(scene.choose(scene.camera(this.width, this.height)));
     const [, , , perSite] = project(scene.camera(this.width, this.height), scene.center);
     let stride = 1;
     while (scene.kind === "line" && stride * perSite < closest && 6 * stride < scene.places.length) stride *= 3;
     if (stride === scene.stride) return;
     scene.thin(stride);
-    this.pointed = undefined;
+    this.rebuild(true);
+  }
+
+  /** After a change of what is drawn. */
+  rebuild(changed) {
+    if (!changed) return;
     this.posed = false;
-    this.renderer.build(scene);
+    this.renderer.build(this.scene);
   }
 
   /** To one of the named views, without a detour through zoom and shift of before. */
@@ -137,6 +143,7 @@ class View {
   }
 
   paint() {
+    if (this.scene.kind === "lattice") this.thin();
     if (!this.posed) this.scene.pose(this.s);
     this.posed = this.shown = true;
     const camera = this.scene.camera(this.width, this.height);
@@ -155,12 +162,13 @@ class View {
     c.fillStyle = getComputedStyle(canvas).color;
     const { path, places, arrow, kind, stride } = this.scene;
     c.globalAlpha = 0.75;
-    for (const k of new Set(kind === "line" ? [0, places.length - 1] : [0])) {
+    for (const k of new Set({ line: [0, places.length - 1], ring: [0], lattice: [] }[kind])) {
       const [x, y, depth] = project(camera, add(places[k], [0, 0, -0.5 * arrow.length]));
       if (depth > 0) c.fillText(String(path.sites[k]), x, y + 16);
     }
     c.textAlign = "left";
     if (stride > 1) c.fillText(`1 of ${stride} sites is drawn: zoom in for all`, 10, this.height - 10);
+    if (this.scene.discs && this.scene.marks === "auto") c.fillText("a disc for each spin: zoom in for arrows", 10, this.height - 10);
     c.textAlign = "center";
     c.globalAlpha = 1;
     if (this.pointed !== undefined) this.tell(c, camera, this.pointed);

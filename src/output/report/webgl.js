@@ -27,6 +27,25 @@ void main() {
   float glint = 0.16 * pow(max(0.0, dot(n, vec3(-0.22, 0.32, 0.92))), 24.0);
   result = outline > 0.0 ? vec4(ink, 1.0) : vec4(paint * light + glint, 1.0);
 }`;
+const DISCS = `#version 300 es
+in vec3 place; in vec3 colour;
+uniform mat4 projection; uniform float size;
+out vec3 paint;
+void main() {
+  gl_Position = projection * vec4(place, 1.0);
+  gl_PointSize = max(size / gl_Position.w, 1.5);
+  paint = colour;
+}`;
+const ROUND = `#version 300 es
+precision highp float;
+in vec3 paint;
+out vec4 result;
+void main() {
+  vec2 at = 2.0 * gl_PointCoord - 1.0;
+  float far = dot(at, at);
+  if (far > 1.0) discard;
+  result = vec4(paint * (far > 0.7 ? 0.86 : 1.0), 1.0);
+}`;
 const LINES = `#version 300 es
 in vec3 place;
 uniform mat4 projection;
@@ -74,6 +93,7 @@ class Glass {
   constructor(gl) {
     this.gl = gl;
     this.arrows = this.program(ARROWS, SHADE);
+    this.discs = this.program(DISCS, ROUND);
     this.lines = this.program(LINES, PLAIN);
     this.buffers = Object.fromEntries(["mesh", "place", "spin", "colour", "line"].map(name => [name, gl.createBuffer()]));
   }
@@ -98,10 +118,12 @@ class Glass {
 
   /** After a change of the sites' places or the arrows' measures. */
   build(scene) {
-    const mesh = arrowMesh(scene.arrow, scene.live.length > 300 ? 12 : 24);
+    const mesh = arrowMesh(scene.arrow, scene.live.length > 2000 ? 7 : scene.live.length > 300 ? 12 : 24);
     this.corners = mesh.length / 9;
     this.fill("mesh", mesh);
-    this.fill("place", new Float32Array(scene.live.flatMap(k => scene.places[k])));
+    const places = new Float32Array(3 * scene.live.length);
+    scene.live.forEach((k, j) => places.set(scene.places[k], 3 * j));
+    this.fill("place", places);
     const ends = scene.bonds().flat();
     this.joints = ends.length;
     this.fill("line", new Float32Array(ends.flatMap(k => scene.places[k])));
@@ -113,6 +135,16 @@ class Glass {
     gl.enableVertexAttribArray(at);
     gl.vertexAttribPointer(at, 3, gl.FLOAT, false, stride, offset);
     gl.vertexAttribDivisor(at, divisor);
+  }
+
+  /** All sites as discs that touch. */
+  drawDiscs(scene, camera, projection, ratio) {
+    const gl = this.gl;
+    gl.useProgram(this.discs);
+    gl.uniformMatrix4fv(gl.getUniformLocation(this.discs, "projection"), false, projection);
+    gl.uniform1f(gl.getUniformLocation(this.discs, "size"), 1.04 * scene.stretch * camera.scale * ratio);
+    for (const name of ["place", "colour"]) this.attribute(this.discs, name, name, 12, 0, 0);
+    gl.drawArrays(gl.POINTS, 0, scene.live.length);
   }
 
   draw(scene, camera, ink, ratio) {
@@ -130,8 +162,9 @@ class Glass {
     this.attribute(this.lines, "place", "line", 12, 0, 0);
     gl.drawArrays(gl.LINES, 0, this.joints);
 
-    this.fill("spin", scene.world);
     this.fill("colour", scene.colour);
+    if (scene.discs) return this.drawDiscs(scene, camera, projection, ratio);
+    this.fill("spin", scene.world);
     const program = this.arrows;
     gl.useProgram(program);
     ["corner", "normal", "hull"].forEach((name, k) => this.attribute(program, name, "mesh", 36, 12 * k, 0));

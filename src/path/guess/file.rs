@@ -7,6 +7,7 @@ use crate::error::{Error, Result};
 use crate::field::ComponentsMut;
 use crate::files::{self, Stored};
 use crate::geometry::Vector;
+use crate::lattice::Lattice;
 use crate::path::Path;
 use crate::registry::Described;
 use crate::spins::Spins;
@@ -35,9 +36,10 @@ impl Described for PathFile {
 }
 
 impl PathFile {
-    /// Reads the file, looked for in `folder`.
-    pub fn load(&mut self, folder: &std::path::Path) -> Result<&Stored> {
+    /// Reads the file, looked for in `folder`, for the sites of a lattice if one is given.
+    pub fn load(&mut self, folder: &std::path::Path, lattice: Option<&Lattice>) -> Result<&Stored> {
         let stored = files::open(folder, &self.path, self.sha256.as_deref())?;
+        let stored = lattice.map_or(Ok(stored.clone()), |lattice| stored.on(lattice))?;
         Ok(self.stored.insert(stored))
     }
 }
@@ -48,13 +50,9 @@ impl FirstGuess for PathFile {
             Some(stored) => stored.clone(),
             None => files::open(std::path::Path::new(""), &self.path, self.sha256.as_deref())?,
         };
+        let stored = stored.on(context.states.lattice)?;
         let given = &stored.content.images;
         let (count, sites) = (given.len(), a.sites());
-        if given[0].len() != sites {
-            let found = given[0].len();
-            let message = format!("{} has {found} spins an image, but the chain has {sites} sites", stored.file);
-            return Err(Error::invalid("path", message));
-        }
         if count < 3 {
             let message = format!("{} holds {count} of the at least 3 images of a path", stored.file);
             return Err(Error::invalid("path", message));
