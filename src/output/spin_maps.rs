@@ -31,8 +31,9 @@ impl SitePlaces {
     }
 }
 
-/// Maps in a row of the figure.
+/// Maps in a row of the figure, and in one of strips: those this much lower than wide, and lower still.
 const COLUMNS: usize = 3;
+const STRIPS: [(f64, usize); 2] = [(0.2, 1), (0.5, 2)];
 /// Between maps, and above each for its title.
 const GAP: f64 = 6.0;
 const TITLE: f64 = SMALL_PT + 5.0;
@@ -50,32 +51,81 @@ pub fn draw_spin_maps(data: &PlotData, places: &SitePlaces, look: &Look) -> Resu
     let path = data.path.ok_or_else(|| Error::Numerical("spins: the spins are not known".into()))?;
     let layer = Layer::of(places, &data.vacant);
     let maps = maps(&data.energy.images, path.images());
-    let width = Canvas::styled(look, 10.0).width();
-    let wide = (width - 2.0 * MARGIN - (COLUMNS - 1) as f64 * GAP) / COLUMNS as f64;
-    let scale = (wide / layer.size[0]).min(HIGHEST * wide / layer.size[1]);
-    // the wheel takes the place of the sixth map, and needs room of its own
-    let high = (scale * layer.size[1]).max(0.8 * wide);
-    let rows = (maps.len() + 1).div_ceil(COLUMNS);
-    let height = 2.0 * MARGIN + rows as f64 * (high + TITLE) + (rows - 1) as f64 * GAP + TITLE;
-    let mut canvas = Canvas::styled(look, height / MM);
-    let corner = |k: usize| {
-        let (column, row) = ((k % COLUMNS) as f64, (k / COLUMNS) as f64);
-        (MARGIN + column * (wide + GAP), MARGIN + TITLE + row * (high + TITLE + GAP))
-    };
+    let plan = Plan::of(Canvas::styled(look, 10.0).width(), layer.size, maps.len());
+    let mut canvas = Canvas::styled(look, plan.height / MM);
     for (k, (image, role)) in maps.iter().enumerate() {
-        let (x, y) = corner(k);
-        let (w, h) = (scale * layer.size[0], scale * layer.size[1]);
-        let (x0, y0) = (x + (wide - w) / 2.0, y + (high - h) / 2.0);
-        let rect = Rect { x0, y0, x1: x0 + w, y1: y0 + h };
+        let rect = plan.map(k, layer.size);
         let title = Text::new(format!("{role} (image {image})"), SMALL_PT).align(Align::Centre);
-        canvas.text((x + wide / 2.0, rect.y0 - 3.0), title)?;
+        canvas.text(((rect.x0 + rect.x1) / 2.0, rect.y0 - 3.0), title)?;
         layer.draw(&mut canvas, rect, Components::new(path.image(*image)));
         canvas.outline(rect, THIN_PT, BLACK);
     }
-    let (x, y) = corner(maps.len());
-    wheel(&mut canvas, Rect { x0: x, y0: y, x1: x + wide, y1: y + high })?;
-    canvas.text((MARGIN, height - MARGIN), Text::new(layer.words(places.unit), SMALL_PT))?;
+    wheel(&mut canvas, plan.wheel)?;
+    let (left, base, bar) = (MARGIN + plan.left(layer.size), plan.height - MARGIN, round_part(layer.size[0]));
+    let end = left + plan.scale * bar;
+    canvas.line(&[(left, base - 0.35 * SMALL_PT), (end, base - 0.35 * SMALL_PT)], 1.6, BLACK);
+    canvas
+        .text((end + 4.0, base), Text::new(format!("{bar} {}, {}", places.unit, layer.words(places.unit)), SMALL_PT))?;
     Ok(canvas)
+}
+
+/// Where maps and wheel are.
+struct Plan {
+    columns: usize,
+    /// Room for each map.
+    wide: f64,
+    high: f64,
+    /// Points a unit of length.
+    scale: f64,
+    wheel: Rect,
+    height: f64,
+}
+
+impl Plan {
+    /// Three maps in a row, and the wheel in the place of a sixth; of strips fewer, and the wheel below them.
+    fn of(width: f64, size: [f64; 2], maps: usize) -> Plan {
+        let share = |columns: usize| (width - 2.0 * MARGIN - (columns - 1) as f64 * GAP) / columns as f64;
+        let columns = STRIPS.iter().find(|(low, _)| size[1] < low * size[0]).map_or(COLUMNS, |(_, columns)| *columns);
+        let wide = share(columns);
+        let scale = (wide / size[0]).min(HIGHEST * wide / size[1]);
+        let room = 0.8 * share(COLUMNS);
+        let own = columns < COLUMNS;
+        // where it stands among the maps, the wheel has as much room as they
+        let high = if own { scale * size[1] } else { (scale * size[1]).max(room) };
+        let rows = (maps + usize::from(!own)).div_ceil(columns);
+        let below = rows as f64 * (high + TITLE + GAP);
+        let mut plan =
+            Plan { columns, wide, high, scale, wheel: Rect { x0: 0.0, y0: 0.0, x1: 0.0, y1: 0.0 }, height: 0.0 };
+        let (x, y) = if own { ((width - share(COLUMNS)) / 2.0, MARGIN + TITLE + below) } else { plan.corner(maps) };
+        plan.wheel = Rect { x0: x, y0: y, x1: x + share(COLUMNS), y1: y + if own { room } else { high } };
+        plan.height = 2.0 * MARGIN + below - GAP + TITLE + if own { room + TITLE } else { 0.0 };
+        plan
+    }
+
+    fn corner(&self, k: usize) -> (f64, f64) {
+        let (column, row) = ((k % self.columns) as f64, (k / self.columns) as f64);
+        (MARGIN + column * (self.wide + GAP), MARGIN + TITLE + row * (self.high + TITLE + GAP))
+    }
+
+    /// From the left of the room to the map.
+    fn left(&self, size: [f64; 2]) -> f64 {
+        (self.wide - self.scale * size[0]) / 2.0
+    }
+
+    /// The k-th map, in the middle of its room.
+    fn map(&self, k: usize, size: [f64; 2]) -> Rect {
+        let ((x, y), [w, h]) = (self.corner(k), size.map(|length| self.scale * length));
+        let (x0, y0) = (x + self.left(size), y + (self.high - h) / 2.0);
+        Rect { x0, y0, x1: x0 + w, y1: y0 + h }
+    }
+}
+
+/// A round length, of about a quarter of another one.
+fn round_part(length: f64) -> f64 {
+    let power = libm::pow(10.0, (0.3 * length).log10().floor());
+    let steps = [5.0, 2.0, 1.0].into_iter().map(|step| step * power);
+    let round = |x: f64| format!("{x:.12}").parse().unwrap_or(x);
+    round(steps.into_iter().find(|x| *x <= 0.3 * length).unwrap_or(power))
 }
 
 /// The images that are shown, each with what it is; points of the path are (reaction coordinate, energy).
@@ -170,10 +220,8 @@ impl Layer {
 
     /// What the maps are of.
     fn words(&self, unit: &str) -> String {
-        let [width, height] =
-            self.size.map(|x| format!("{:.4}", x).trim_end_matches('0').trim_end_matches('.').to_string());
         let layer = self.z.map(|z| format!(", the layer at z = {z:.4} {unit}")).unwrap_or_default();
-        format!("Maps of {width} × {height} {unit}, x to the right, y upwards{layer}")
+        format!("x to the right, y upwards{layer}")
     }
 }
 
@@ -248,6 +296,24 @@ mod tests {
     }
 
     #[test]
+    fn strips_are_below_each_other_and_nothing_overlaps() {
+        for (size, columns) in [([16.0, 2.0], 1), ([10.0, 4.0], 2), ([5.0, 5.0], 3), ([2.0, 9.0], 3)] {
+            let plan = Plan::of(241.0, size, 5);
+            assert_eq!(plan.columns, columns, "{size:?}");
+            let mut rects: Vec<Rect> = (0..5).map(|k| plan.map(k, size)).collect();
+            rects.push(plan.wheel);
+            for (k, a) in rects.iter().enumerate() {
+                assert!(a.x0 > 0.0 && a.x1 < 241.0 && a.y0 > 0.0 && a.y1 < plan.height, "{size:?} {k}");
+                let apart = |b: &Rect| {
+                    a.x1 <= b.x0 || b.x1 <= a.x0 || a.y1 + TITLE <= b.y0 + 1e-9 || b.y1 + TITLE <= a.y0 + 1e-9
+                };
+                assert!(rects[k + 1..].iter().all(apart), "{size:?} {k}");
+            }
+        }
+        assert_eq!([6.75, 16.2, 40.0, 0.9].map(round_part), [2.0, 2.0, 10.0, 0.2]);
+    }
+
+    #[test]
     fn a_film_is_drawn_with_its_size_and_a_wheel() {
         let [up, x, down] =
             [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]].map(|m| Spins::from_vectors(&[m; 6]).unwrap());
@@ -256,7 +322,7 @@ mod tests {
         let data = PlotData { energy, path: Some(&path), ..Default::default() };
         let canvas = draw_spin_maps(&data, &film(), &Look::default()).unwrap();
         let svg = String::from_utf8(canvas.svg().unwrap()).unwrap();
-        for words in ["Initial", "Highest", "Final", "4 × 6 nm", "+x"] {
+        for words in ["Initial", "Highest", "Final", "1 nm, x to the right", "+x"] {
             assert!(svg.contains(words), "{words}");
         }
     }

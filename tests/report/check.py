@@ -169,6 +169,45 @@ def plays(browser, file):
     quiet(browser)
 
 
+def shows_lattices(browser, film, crystal, large):
+    """A film with its spins at their places, seen from above as its map; a crystal layer by layer; of many sites discs, close up arrows."""
+    choose = "((id, value) => {{ const c = document.querySelector(id); c.value = value; c.dispatchEvent(new Event('change')); }})('{0}', '{1}')"
+    for file in (film, crystal, large):
+        browser.open(file)
+        quiet(browser)
+        assert browser.run("document.querySelector('#layout').parentElement.hidden && !document.querySelector('#marks-choice').hidden")
+        assert browser.run("document.querySelector('#chart svg image')") is None, "the map is that of a chain"
+        assert "Charge" in browser.run("document.querySelector('#chart svg').textContent")
+        assert "cells" in browser.run("document.querySelector('#subject').textContent")
+    browser.open(film)
+    shown = {}
+    for marks in ["arrows", "discs"]:
+        browser.run(choose.format("#marks", marks))
+        browser.run("document.querySelector('[data-view=top]').click()")
+        browser.settle(0.7)
+        shown[marks] = browser.picture("#frame", keep=keep(f"film_{marks}"))
+        assert shown[marks].colours() > 100, marks
+    assert shown["arrows"].differs(shown["discs"]) > 0.02
+    browser.open(crystal)
+    whole = browser.picture("#frame")
+    layers = browser.run("[...document.querySelector('#layer').options].map(o => o.value)")
+    assert len(layers) == 5, layers
+    browser.run(choose.format("#layer", layers[2]))
+    browser.settle()
+    assert browser.picture("#frame", keep=keep("crystal_layer")).differs(whole) > 0.02
+    browser.open(large)
+    far = browser.picture("#frame", keep=keep("large_far"))
+    assert "of 100489 sites" in browser.run("document.querySelector('#notes').textContent")
+    browser.run("document.querySelector('#spins-table').open = true")
+    browser.settle(0.6)
+    assert browser.run("document.querySelectorAll('#spins-table tbody tr').length") == 2000
+    for _ in range(12):
+        browser.run("document.querySelector('#zoom-in').click()")
+    browser.settle()
+    assert browser.picture("#frame", keep=keep("large_near")).differs(far) > 0.05
+    quiet(browser)
+
+
 def is_for_all(browser, file):
     """Every control has a name and can be reached by the Tab key, and what has the focus shows it."""
     browser.open(file)
@@ -233,15 +272,28 @@ def main():
         pages["long"] = page(folder, "long", long)
         pages["short"] = page(folder, "short", config("wall_nucleation"), "lattice.chain.sites=2")
         pages["nowhere"] = page(folder, "nowhere", config("wall_nucleation"), "final.uniform.direction=[0.1,0,1]")
+        # of lattices the pictures are looked at, not the answers
+        def lattice(name, lattice, left="left", **more):
+            path = {"images": 7, "guess": {"sweep": {"from": left}}}
+            once = {"neb": {"max_evaluations": 1}, "saddle": {"refine": False, "certify": False}, "relax_ends": False}
+            file = os.path.join(folder, f"{name}.json")
+            with open(file, "w") as text:
+                json.dump({**changed, "lattice": lattice, "path": path, **once, **more}, text)
+            return page(folder, name, file)
+        vacant = {"disc": {"center": [4, 4], "radius": 1}}
+        pages["film"] = lattice("film", {"triangular": {"cells": [18, 16], "spacing": "0.3 nm", "vacant": vacant}})
+        pages["crystal"] = lattice("crystal", {"cubic": {"cells": [7, 6, 4]}})
+        pages["large_film"] = lattice("large_film", {"square": {"cells": [317, 317]}})
         first = pages["wall_nucleation"]
         with Browser(CHROMIUM) as browser:
             checks = [(draws, pages), (slides, first), (numbers, first), (steers, first), (plays, first), (is_for_all, first),
-                      (is_unhurt, page(folder, "hostile", hostile)), (themes, first)]
+                      (is_unhurt, page(folder, "hostile", hostile)), (themes, first), (shows_lattices, [pages[n] for n in ("film", "crystal", "large_film")]),
+                      (slides, pages["film"]), (steers, pages["crystal"])]
             for check, what in checks:
-                check(browser, what)
+                check(browser, *what) if isinstance(what, list) else check(browser, what)
                 print(f"report: {check.__name__}: as it should be", flush=True)
         with Browser(CHROMIUM, "--disable-3d-apis") as browser:
-            draws(browser, {"flat": first})
+            draws(browser, {"flat": first, "flat_film": pages["film"]})
             slides(browser, first)
             steers(browser, first)
         print("report: the same without WebGL")
