@@ -4,6 +4,7 @@ pub mod check;
 pub mod collect;
 mod drawing;
 mod jobs;
+pub mod landscape;
 pub mod list;
 pub mod plot;
 mod points;
@@ -66,6 +67,8 @@ pub enum Command {
     Run(Run),
     /// Relax the states of configs: energy, torque, minimum or not, lowest modes, zero modes
     Relax(relax::Relax),
+    /// Find all minima and saddles below an energy: their graph, and how long states live
+    Landscape(landscape::Arguments),
     /// Run a config at many values of its keys
     Sweep(sweep::Arguments),
     /// Put the results of a sweep into one table and one figure

@@ -31,6 +31,7 @@ pub mod hessian;
 pub mod landscape;
 pub mod lattice;
 pub mod linalg;
+pub mod network;
 pub mod optimise;
 pub mod output;
 pub mod path;

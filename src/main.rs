@@ -16,6 +16,7 @@ fn main() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Run(arguments) => cli::run::run(&arguments),
         Command::Relax(arguments) => cli::relax::relax(&arguments),
+        Command::Landscape(arguments) => cli::landscape::landscape(&arguments),
         Command::Sweep(arguments) => cli::sweep::sweep(&arguments),
         Command::Collect(arguments) => cli::collect::collect(&arguments),
         Command::Check(arguments) => cli::check::check(&arguments),

@@ -4,7 +4,7 @@ pub(super) use super::progress::Progress;
 use super::signals::Signals;
 use super::threads::start_threads;
 use super::write::{Earlier, names, write};
-use super::{Looking, Run, UNFINISHED, USAGE, note, report, worse};
+use super::{Interval, Looking, Run, UNFINISHED, USAGE, note, report, worse};
 use anyhow::Result;
 use serde_json::{Value, json};
 use spinneb::config::{Loaded, load};
@@ -21,6 +21,22 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// How a run is recorded.
+pub(super) struct Keeping {
+    /// How often.
+    pub(super) every: Interval,
+    /// Go on from what is there.
+    pub(super) resume: bool,
+    /// Start anew where that cannot be.
+    pub(super) force: bool,
+}
+
+impl Run {
+    fn keeping(&self) -> Keeping {
+        Keeping { every: self.checkpoint_every, resume: self.resume, force: self.force }
+    }
+}
 
 /// Runs all configs, one after the other. Nothing starts before all of them are known to be right.
 pub fn run(arguments: &Run) -> Result<u8> {
@@ -97,7 +113,7 @@ pub(super) fn run_one(arguments: &Run, signals: &Signals, loaded: &Loaded, direc
     let mut problem = loaded.problem()?;
     problem.control.obey(signals.switch());
     let (name, place) = (&loaded.name, directory.display());
-    let Some(lock) = reserve(arguments, loaded, directory)? else {
+    let Some(lock) = reserve(loaded, directory, &names(loaded), arguments.force)? else {
         say(&format!("{name}: {place} holds the finished result of this config already; --force runs it again"));
         return print(arguments, name, directory);
     };
@@ -105,7 +121,7 @@ pub(super) fn run_one(arguments: &Run, signals: &Signals, loaded: &Loaded, direc
         say(&format!("{name}: the file system of {place} has no locks: see to it that no other run writes there"));
     }
     let mut progress = Progress::new(name, arguments.quiet);
-    if let Some(checkpoint) = checkpoint(arguments, loaded, directory, &progress)? {
+    if let Some(checkpoint) = checkpoint(&arguments.keeping(), loaded, directory, &progress)? {
         problem.control.record(Box::new(checkpoint));
     }
     let outcome = match drive::run(&problem, &mut progress) {
@@ -157,17 +173,17 @@ pub(super) fn run_one(arguments: &Run, signals: &Signals, loaded: &Loaded, direc
 }
 
 /// Sees that the results can be written, and that nobody else writes there; nothing if they are there already.
-fn reserve(arguments: &Run, loaded: &Loaded, directory: &Path) -> Result<Option<Lock>> {
+pub(super) fn reserve(loaded: &Loaded, directory: &Path, names: &[String], force: bool) -> Result<Option<Lock>> {
     let source = source(loaded);
-    let (names, known) = (names(loaded), known_files(loaded));
+    let known = known_files(loaded);
     let intent = Intent {
         version: VERSION,
         config_sha256: &loaded.sha256,
         source: source.as_deref(),
-        names: &names,
+        names,
         known: &known,
         made_from: &loaded.made_from,
-        force: arguments.force,
+        force,
     };
     let finished = || -> Result<bool> { Ok(matches!(folder::prepare(directory, &intent)?, Destination::Finished(_))) };
     if finished()? {
@@ -180,7 +196,7 @@ fn reserve(arguments: &Run, loaded: &Loaded, directory: &Path) -> Result<Option<
         }
         return Ok(None);
     }
-    Checkpoint::check(directory, arguments.force)?;
+    Checkpoint::check(directory, force)?;
     let lock = Lock::of(directory)?;
     // who held the lock may have finished meanwhile
     if finished()? {
@@ -193,7 +209,7 @@ fn reserve(arguments: &Run, loaded: &Loaded, directory: &Path) -> Result<Option<
 }
 
 /// The config's file, as the manifest of its result names it.
-fn source(loaded: &Loaded) -> Option<String> {
+pub(super) fn source(loaded: &Loaded) -> Option<String> {
     loaded.source.as_ref().map(|path| path.to_string_lossy().into_owned())
 }
 
@@ -204,25 +220,30 @@ fn known_files(loaded: &Loaded) -> Vec<File> {
 }
 
 /// What only an unfinished run needs.
-fn discard_leftovers(directory: &Path) -> Result<()> {
+pub(super) fn discard_leftovers(directory: &Path) -> Result<()> {
     folder::discard_note(directory)?;
     Checkpoint::discard(directory)?;
     Ok(discard_partial(directory)?)
 }
 
 /// Where the run is recorded, if that is asked for, with what it goes on from.
-fn checkpoint(arguments: &Run, loaded: &Loaded, directory: &Path, progress: &Progress) -> Result<Option<Checkpoint>> {
-    let Some(every) = arguments.checkpoint_every.0 else { return Ok(None) };
+pub(super) fn checkpoint(
+    keeping: &Keeping,
+    loaded: &Loaded,
+    directory: &Path,
+    progress: &Progress,
+) -> Result<Option<Checkpoint>> {
+    let Some(every) = keeping.every.0 else { return Ok(None) };
     let new = || Checkpoint::new(directory, VERSION, &loaded.sha256, every, progress.speaker());
     let mut say = progress.speaker();
-    if !arguments.resume {
+    if !keeping.resume {
         if Checkpoint::exists(directory) {
             say("starting anew; --resume would have gone on from the checkpoint that is there");
         }
         return Ok(Some(new()));
     }
     let checkpoint = match new().resume() {
-        Err(e) if arguments.force => {
+        Err(e) if keeping.force => {
             say(&format!("starting anew: {e}"));
             new()
         }

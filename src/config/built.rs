@@ -1,6 +1,6 @@
 //! From a config to the problem that the drive is given, with every check on the way.
 
-use super::{Loaded, Text, memory, physics};
+use super::{Loaded, RatesConfig, Text, memory, physics};
 use crate::drive::{FEWEST_IMAGES, Images, Outcome, Problem, Scales};
 use crate::energy::{EnergyTerm, Hamiltonian, Medium, Part, TermSpec, symmetry_axes};
 use crate::error::{Error, Result, both};
@@ -78,7 +78,7 @@ impl Loaded {
         problem.certify = config.saddle.certify;
         problem.search = config.effort().map_err(here)?;
         problem.neb = config.neb.settings();
-        problem.rates = self.rates(problem.hamiltonian.lattice())?;
+        problem.rates = self.rates(problem.hamiltonian.lattice(), config.rates.as_ref())?;
         self.affordable(needed_bytes(&problem, &scales), Some(expected_images(&problem, &scales)))?;
         guess(&problem, &scales).map_err(here)?;
         let of_physics = physics::warnings(self, &problem.hamiltonian, &scales);
@@ -113,9 +113,33 @@ impl Loaded {
         Ok(States { hamiltonian, scales, initial, final_state, sense })
     }
 
+    /// The problem whose ends are both the initial state, with further states beside it (the final one among them) and the rates that
+    /// are asked for.
+    pub(super) fn seeded_problem(
+        &self,
+        others: &[StateSpec],
+        rates: Option<&RatesConfig>,
+    ) -> Result<(Problem, Vec<Spins>, Option<RateSettings>)> {
+        let States { hamiltonian, scales, initial, final_state, sense } = self.states(true)?;
+        let context = StateContext { sense, ..scales.states(&hamiltonian) };
+        let mut seeds: Vec<Spins> = final_state.into_iter().collect();
+        for (k, spec) in others.iter().enumerate() {
+            let here = |e: Error| self.text.locate(e.within(&format!("landscape.states[{k}].{}", spec.name())));
+            let state = spec.build(&context).map_err(here)?;
+            seeds.push(frozen(hamiltonian.lattice(), &initial, state).map_err(|e| self.text.locate(e))?);
+        }
+        let rates = self.rates(hamiltonian.lattice(), rates)?;
+        let mut problem = Problem::new(hamiltonian, initial.clone(), initial);
+        problem.sense = sense;
+        problem.neb = self.config.neb.settings();
+        self.affordable(needed_bytes(&problem, &scales), None)?;
+        problem.warnings = self.warnings.clone();
+        Ok((problem, seeds, rates))
+    }
+
     /// What rates are asked for, with the moments of the sites.
-    fn rates(&self, lattice: &Lattice) -> Result<Option<RateSettings>> {
-        let Some(config) = &self.config.rates else { return Ok(None) };
+    fn rates(&self, lattice: &Lattice, config: Option<&RatesConfig>) -> Result<Option<RateSettings>> {
+        let Some(config) = config else { return Ok(None) };
         let none = |e: Error| match e {
             Error::Invalid { .. } => Error::invalid(
                 "rates",

@@ -41,6 +41,10 @@ impl Inputs {
         let from = (folder, lattice);
         inputs.state(&mut config.initial, "initial", "/initial", "initial", from)?;
         inputs.state(&mut config.final_state, "final", "/final", "final", from)?;
+        for (k, state) in config.landscape.iter_mut().flat_map(|own| &mut own.states).enumerate() {
+            let place = format!("landscape.states[{k}]");
+            inputs.state(state, &place, &format!("/landscape/states/{k}"), &format!("state_{k}"), from)?;
+        }
         match &mut config.path.guess {
             Some(GuessSpec::File(file)) => {
                 let here = |e: Error| e.within("path.guess.file");

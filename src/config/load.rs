@@ -72,12 +72,24 @@ fn known_file(path: &Path) -> Option<PathBuf> {
 
 /// Reads a config whose states alone are wanted; whether it has a `final` one, which it need not.
 pub fn load_states(path: &Path, sets: &[String]) -> Result<(Loaded, bool)> {
+    let (loaded, [given]) = load_without(path, sets, ["final"])?;
+    Ok((loaded, given))
+}
+
+/// Reads a config whose ends are but states to start from, and need not be there.
+pub fn load_landscape(path: &Path, sets: &[String]) -> Result<Loaded> {
+    Ok(load_without(path, sets, ["initial", "final"])?.0)
+}
+
+/// Reads a config that may lack some states; whether it has each.
+fn load_without<const N: usize>(path: &Path, sets: &[String], states: [&str; N]) -> Result<(Loaded, [bool; N])> {
     let mut text = read(path)?.set(sets)?;
     let value: Value = text.parse()?;
-    let given = !value.is_object() || value.get("final").is_some();
-    if !given {
+    let given = states.map(|key| !value.is_object() || value.get(key).is_some());
+    for (key, _) in states.iter().zip(given).filter(|(_, given)| !given) {
         // it stands at the end and moves nothing else
-        text.text = apply_set(&text.file, &text.text, &[r#"final={"uniform": {"direction": [0, 0, 1]}}"#.into()])?;
+        let any = format!(r#"{key}={{"uniform": {{"direction": [0, 0, 1]}}}}"#);
+        text.text = apply_set(&text.file, &text.text, &[any])?;
     }
     Ok((load_from(shown(path), text, known_file(path))?, given))
 }

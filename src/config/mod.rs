@@ -7,6 +7,7 @@ mod built;
 pub mod estimate;
 mod inputs;
 mod json;
+mod landscape;
 pub mod library;
 mod load;
 mod material;
@@ -30,7 +31,8 @@ pub mod sweep;
 pub mod text;
 
 pub use built::{States, expected_images, needed_bytes};
-pub use load::{Loaded, load, load_states, load_text};
+pub use landscape::{GroupConfig, LandscapeConfig};
+pub use load::{Loaded, load, load_landscape, load_states, load_text};
 pub use material::{Material, MaterialChoice, Reference};
 pub use material_scales::MaterialScales;
 pub use name::Name;
@@ -92,6 +94,9 @@ pub struct Config {
     /// Rates and lifetimes; none if absent.
     #[serde(default)]
     pub rates: Option<RatesConfig>,
+    /// What `spinneb landscape` looks for; a run ignores it.
+    #[serde(default)]
+    pub landscape: Option<LandscapeConfig>,
     /// What is written.
     #[serde(default)]
     pub output: OutputConfig,

@@ -20,6 +20,7 @@ mod settle;
 mod settled;
 mod stop;
 mod stored;
+pub mod survey;
 mod verdict;
 
 pub use explore::natural_guesses;

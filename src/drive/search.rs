@@ -11,7 +11,7 @@ use crate::energy::Hamiltonian;
 use crate::error::Result;
 use crate::geometry::Vector;
 use crate::hessian::factorisation_flops;
-use crate::landscape::{Effort, Landscape, Minimum, Settings, search};
+use crate::landscape::{Aim, Effort, Landscape, Minimum, Settings, search};
 use crate::record::Count;
 use crate::spins::Spins;
 use crate::stationary::{Relaxed, relax_to_minimum};
@@ -48,8 +48,8 @@ impl<'a> Run<'a, '_> {
         if most.evaluations > 0 {
             self.through_third_states(top_mev)?;
         }
-        let settings = Settings { effort, most, top_mev, c: self.scales.stiffness_mev, context: self.context() };
-        let searched = search(&mut self.land, ends, &settings)?;
+        let settings = Settings { effort, most, c: self.scales.stiffness_mev, context: self.context() };
+        let searched = search(&mut self.land, Aim::Route(ends, top_mev), &settings)?;
         report.searches = searched.searches;
         report.quiet = searched.quiet;
         report.spent = searched.spent;
@@ -122,13 +122,13 @@ impl<'a> Run<'a, '_> {
         Ok(())
     }
 
-    fn is_joined(&self, [a, b]: [usize; 2], below_mev: f64) -> bool {
+    pub(super) fn is_joined(&self, [a, b]: [usize; 2], below_mev: f64) -> bool {
         let parts = self.land.parts_below(below_mev);
         parts[a] == parts[b]
     }
 
     /// A run of its own between two minima, over the best of their natural first paths; what it finds stays in the landscape.
-    fn connect_by_first_path(&mut self, minima: [usize; 2], below_mev: f64) -> Result<()> {
+    pub(super) fn connect_by_first_path(&mut self, minima: [usize; 2], below_mev: f64) -> Result<()> {
         let h = self.problem.evaluator();
         let land = std::mem::replace(&mut self.land, Landscape::new(h, self.ends[0].spins.as_slice()));
         let ends = minima.map(|k| at_rest(&land.minima()[k]));

@@ -92,11 +92,16 @@ impl<'a> Landscape<'a> {
 
     /// Finds the symmetries of the energy. From now on, and for all that is in it already, images are put in too.
     pub fn unfold(&mut self) {
-        if self.operations.is_some() {
-            return;
+        if self.operations.is_none() {
+            let group = Group::of(&self.h, &self.reference, &[]);
+            self.unfold_by(&group, IMAGES);
         }
-        let images = IMAGES.min(IMAGE_SPINS / self.h.sites());
-        self.operations = Some(Group::of(&self.h, &self.reference, &[]).operations().take(images).collect());
+    }
+
+    /// The same by so many operations of a group at most.
+    pub fn unfold_by(&mut self, group: &Group, most: usize) {
+        let images = most.min(IMAGE_SPINS / self.h.sites());
+        self.operations = Some(group.operations().take(images).collect());
         for k in 0..self.minima.len() {
             self.unfold_minimum(k);
         }
@@ -118,6 +123,11 @@ impl<'a> Landscape<'a> {
     /// Energies of the minima above the reference (meV).
     pub fn heights_mev(&self) -> &[f64] {
         &self.heights_mev
+    }
+
+    /// All passes, each once.
+    pub fn passes(&self) -> &[Pass] {
+        &self.passes
     }
 
     /// All passes and their images.
@@ -207,6 +217,13 @@ impl<'a> Landscape<'a> {
     /// The minimum that one is an image of by symmetry: itself if it was there first.
     pub fn orbit(&self, k: usize) -> usize {
         self.orbits[k]
+    }
+
+    /// How many minima below a height there are (meV above the reference) of which no symmetry makes another one.
+    pub fn orbits_below(&self, height_mev: f64) -> usize {
+        let counts =
+            |k: &usize| self.orbits[*k] == *k && self.stands_for[*k] == *k && self.heights_mev[*k] < height_mev;
+        (0..self.minima.len()).filter(counts).count()
     }
 
     /// The minimum that stands for one of the minima.

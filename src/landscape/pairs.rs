@@ -33,7 +33,7 @@ pub(super) fn tired(squared: f64, tries: usize) -> f64 {
 
 impl Landscape<'_> {
     /// The square of the distance of two minima, Σ |m − m'|², turned about the symmetry axes to be near each other.
-    pub(super) fn squared_distance(&self, [a, b]: [usize; 2]) -> f64 {
+    pub fn squared_distance(&self, [a, b]: [usize; 2]) -> f64 {
         let [a, b] = [a.min(b), a.max(b)].map(|k| &self.minima()[k].spins);
         let together = match self.evaluator().symmetry_axes() {
             [] => slab::dot(a.as_slice(), b.as_slice()),

@@ -1,12 +1,15 @@
 //! The search for lower passes: rivals by turns, until they bring no news.
 //!
+//! Or for all there is below an energy: then T is that, and the search ends after so many without news as there are states to look
+//! from.
+//!
 //! T is the highest saddle of the best route known. A rival names a state from which a saddle below T may be reached; from there a
 //! climb goes to one, descents from it to its two minima, and both go into the landscape: the route may then have a lower T.
 //! News is a lower T, or a saddle of an energy that none had before; the search ends after so many searches in a row without any.
 //! Searches are made in batches, each batch from what is known before it, its searches side by side: what is found does not depend
 //! on how many threads there are.
 
-use super::rivals::{Cut, rivals};
+use super::rivals::{Cut, rivals, scouts};
 use super::{Landscape, Pass, Saddle};
 use crate::energy::{Evaluator, Stored, recorded};
 use crate::error::Result;
@@ -54,6 +57,59 @@ impl Effort {
             (Effort::Thorough, _) => 100,
         }
     }
+
+    /// And so many for each state, where all are looked for.
+    fn a_state(self) -> usize {
+        match self {
+            Effort::None => 0,
+            Effort::Quick => 2,
+            Effort::Normal => 6,
+            Effort::Thorough => 20,
+        }
+    }
+}
+
+/// What is looked for.
+#[derive(Clone, Copy, Debug)]
+pub enum Aim {
+    /// A route between two minima that is lower than what is known; as high as the best path known is (meV above the landscape's
+    /// reference), for as long as no route is.
+    Route([usize; 2], f64),
+    /// All minima and passes no higher than this above the lowest minimum (meV).
+    All(f64),
+}
+
+impl Aim {
+    /// Where T is now (meV above the landscape's reference).
+    fn top_mev(self, land: &Landscape) -> f64 {
+        match self {
+            Aim::Route([from, to], known_mev) => land.top_mev(from, to).unwrap_or(known_mev),
+            Aim::All(window_mev) => land.heights_mev().iter().copied().fold(f64::INFINITY, f64::min) + window_mev,
+        }
+    }
+
+    /// What passes have to be lower than.
+    fn below_mev(self, land: &Landscape, top_mev: f64) -> f64 {
+        match self {
+            Aim::Route(..) => top_mev - land.tolerance_mev(top_mev),
+            Aim::All(_) => top_mev,
+        }
+    }
+
+    fn ends(self) -> Option<[usize; 2]> {
+        match self {
+            Aim::Route(ends, _) => Some(ends),
+            Aim::All(_) => None,
+        }
+    }
+
+    /// So many searches in a row without news end the search.
+    fn quiet(self, effort: Effort, found: bool, land: &Landscape) -> usize {
+        match self {
+            Aim::Route(..) => effort.quiet(found),
+            Aim::All(_) => effort.quiet(true).max(effort.a_state() * land.orbits_below(self.top_mev(land))),
+        }
+    }
 }
 
 /// What a search is given.
@@ -63,8 +119,6 @@ pub struct Settings<'a> {
     pub effort: Effort,
     /// Most gradients and Hessians of single states.
     pub most: Count,
-    /// As high as the best path known is (meV above the landscape's reference), for as long as no route is.
-    pub top_mev: f64,
     /// Stiffness scale c (meV).
     pub c: f64,
     /// What first paths need to know.
@@ -82,13 +136,13 @@ pub struct Searched {
     pub spent: bool,
 }
 
-/// Looks for passes below the top of the route between two minima.
-pub fn search(land: &mut Landscape, [from, to]: [usize; 2], settings: &Settings) -> Result<Searched> {
+/// Looks for passes below the top of the route between two minima, or for all below an energy.
+pub fn search(land: &mut Landscape, aim: Aim, settings: &Settings) -> Result<Searched> {
     let h = land.evaluator();
     land.unfold();
     let mut done = Searched::default();
     let mut random = ChaCha8Rng::seed_from_u64(SEED);
-    let mut rivals = rivals();
+    let mut rivals = if aim.ends().is_some() { rivals() } else { scouts() };
     let mut turn = 0;
     let passes = land.edges().len();
     let mut lowest = f64::INFINITY;
@@ -98,16 +152,16 @@ pub fn search(land: &mut Landscape, [from, to]: [usize; 2], settings: &Settings)
             || now.hessians - before.hessians >= settings.most.hessians
     };
     loop {
-        let top_mev = land.top_mev(from, to).unwrap_or(settings.top_mev);
+        let top_mev = aim.top_mev(land);
         if top_mev < lowest - land.tolerance_mev(top_mev) {
             (lowest, done.quiet) = (top_mev, 0);
         }
-        let wanted = settings.effort.quiet(land.edges().len() > passes);
+        let wanted = aim.quiet(settings.effort, land.edges().len() > passes, land);
         done.spent = is_spent(h.evaluated());
         if done.quiet >= wanted || done.spent {
             break;
         }
-        let cut = Cut::of(land, [from, to], top_mev - land.tolerance_mev(top_mev), settings.context);
+        let cut = Cut::of(land, aim.ends(), aim.below_mev(land, top_mev), settings.context);
         let count = BATCH.min(wanted - done.quiet);
         let mut next = || {
             let count = rivals.len();

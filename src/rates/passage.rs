@@ -9,14 +9,10 @@
 //! (an absorbing Markov chain with the minima as states). All terms are positive, and all is done in logarithms. A change of the two
 //! rates over saddle i by one factor changes t_i by it, and no other: t_i over the whole is how far the time hangs on that saddle.
 
+use crate::linalg::log_sum;
+
 /// Ten years of 365.25 days (s).
 pub const TEN_YEARS_S: f64 = 3.155_76e8;
-
-/// ln(e^a + e^b).
-fn log_sum(a: f64, b: f64) -> f64 {
-    let (large, small) = if a >= b { (a, b) } else { (b, a) };
-    if small == f64::NEG_INFINITY { large } else { large + libm::log1p(libm::exp(small - large)) }
-}
 
 /// ln t_i (s) from the logarithms of the rates (1/s) over the n saddles: `onward[i]` from minimum i to i + 1, `back[i]` from minimum
 /// i + 1 to i.

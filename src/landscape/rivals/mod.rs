@@ -1,5 +1,6 @@
 //! Where a saddle below the top of the best route may be looked for. One file a rival.
 
+mod modes;
 mod near;
 mod push;
 mod walls;
@@ -14,6 +15,11 @@ pub(super) fn rivals() -> Vec<Box<dyn Rival>> {
     vec![Box::<walls::Walls>::default(), Box::<near::Near>::default(), Box::<push::Push>::default()]
 }
 
+/// Those that look for all there is.
+pub(super) fn scouts() -> Vec<Box<dyn Rival>> {
+    vec![Box::<modes::Modes>::default(), Box::<near::Near>::default(), Box::<push::Push>::default()]
+}
+
 /// Names states from which climbs may lead to passes below the top.
 pub trait Rival: Debug {
     /// The next one (3N); nothing if there is none to try.
@@ -25,8 +31,8 @@ pub trait Rival: Debug {
 pub struct Cut<'l> {
     /// All that is known.
     pub land: &'l Landscape<'l>,
-    /// The two minima that are to be joined.
-    pub ends: [usize; 2],
+    /// The two minima that are to be joined; none where all are.
+    pub ends: Option<[usize; 2]>,
     /// Where T is, less what passes must be lower by (meV above the landscape's reference).
     pub top_mev: f64,
     /// For each minimum the number that those joined with it below T share.
@@ -37,27 +43,34 @@ pub struct Cut<'l> {
 
 impl<'l> Cut<'l> {
     /// At a height.
-    pub fn of(land: &'l Landscape<'l>, ends: [usize; 2], top_mev: f64, context: GuessContext<'l>) -> Cut<'l> {
-        let ends = ends.map(|k| land.standing_for(k));
+    pub fn of(land: &'l Landscape<'l>, ends: Option<[usize; 2]>, top_mev: f64, context: GuessContext<'l>) -> Cut<'l> {
+        let ends = ends.map(|ends| ends.map(|k| land.standing_for(k)));
         Cut { land, ends, top_mev, part: land.parts_below(top_mev), context }
     }
 
     /// The highest saddle of the route (3N), if there is one.
     pub fn highest_saddle(&self) -> Option<&'l [f64]> {
-        let route = self.land.route(self.ends[0], self.ends[1])?;
+        let [from, to] = self.ends?;
+        let route = self.land.route(from, to)?;
         let edges = route.steps.iter().map(|(k, _)| &self.land.edges()[*k]);
         edges.max_by(|p, q| p.height_mev.total_cmp(&q.height_mev)).map(|edge| &edge.saddle[..])
     }
 
-    /// Whether a minimum is joined with one of the two ends below T.
+    /// Whether a minimum is joined with one of the two ends below T; where all are looked for, every one is as good as an end.
     pub fn is_near_an_end(&self, minimum: usize) -> bool {
-        self.ends.iter().any(|end| self.part[*end] == self.part[minimum])
+        self.ends.is_none_or(|ends| ends.iter().any(|end| self.part[*end] == self.part[minimum]))
     }
 
     /// The minima below T.
     pub fn below(&self) -> impl Iterator<Item = usize> {
-        (0..self.part.len()).filter(|k| {
-            self.land.standing_for(*k) == *k && (self.land.heights_mev()[*k] < self.top_mev || self.ends.contains(k))
+        let is_end = |k: usize| self.ends.is_some_and(|ends| ends.contains(&k));
+        (0..self.part.len()).filter(move |k| {
+            self.land.standing_for(*k) == *k && (self.land.heights_mev()[*k] < self.top_mev || is_end(*k))
         })
+    }
+
+    /// Those to start from: where all are looked for, one of each kind that symmetry makes the same.
+    pub fn starts(&self) -> impl Iterator<Item = usize> {
+        self.below().filter(|k| self.ends.is_some() || self.land.orbit(*k) == *k)
     }
 }

@@ -38,7 +38,7 @@ impl Near {
     fn nearest(&mut self, cut: &Cut) -> Option<[usize; 2]> {
         let below: Vec<usize> = cut.below().collect();
         let mut best: Option<(f64, [usize; 2])> = None;
-        for &a in below.iter().filter(|a| cut.is_near_an_end(**a)) {
+        for a in cut.starts().filter(|a| cut.is_near_an_end(*a)) {
             for &b in below.iter().filter(|b| cut.part[a] != cut.part[**b]) {
                 let pair = [a.min(b), a.max(b)];
                 let (squared, tries) = *self.pairs.entry(pair).or_insert_with(|| (cut.land.squared_distance(pair), 0));

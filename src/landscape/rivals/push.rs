@@ -45,7 +45,7 @@ impl Rival for Push {
 impl Push {
     /// One of the minima that were pushed least, those joined with an end first.
     fn least_pushed(&mut self, cut: &Cut, random: &mut ChaCha8Rng) -> Option<usize> {
-        let (near, far): (Vec<usize>, Vec<usize>) = cut.below().partition(|k| cut.is_near_an_end(*k));
+        let (near, far): (Vec<usize>, Vec<usize>) = cut.starts().partition(|k| cut.is_near_an_end(*k));
         let pool = if far.is_empty() || random.random_bool(NEAR_AN_END) { near } else { far };
         let mut best: Option<(f64, usize)> = None;
         for k in pool {

@@ -1,0 +1,197 @@
+//! `landscape`: all minima and saddles of a config below an energy.
+
+use super::progress::Progress;
+use super::run::{Keeping, checkpoint, discard_leftovers, reserve, source};
+use super::signals::Signals;
+use super::threads::start_threads;
+use super::{EVERY, Interval, Looking, UNFINISHED, interval, note, report};
+use anyhow::Result;
+use clap::Args;
+use serde_json::{Value, json};
+use spinneb::config::{Loaded, load_landscape};
+use spinneb::drive::survey::survey;
+use spinneb::error::Error;
+use spinneb::files::disk;
+use spinneb::output::folder::{self, NewResult};
+use spinneb::output::{LandscapeReport, landscape_file_names};
+use spinneb::record::Checkpoint;
+use std::fs;
+use std::io::{self, Write};
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+
+/// The arguments of `landscape`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+A config of landscape needs no \"initial\" and no \"final\" state; its block \"landscape\" says how far above the lowest minimum is
+looked (energy_window), for how long (effort), from which further states, and at which temperatures lifetimes are wanted.
+
+Examples:
+  spinneb landscape island.json
+  spinneb landscape island.json --set 'landscape.energy_window=\"20 meV\"' --effort thorough
+  spinneb landscape island.json --resume
+
+Exit codes: 0 the search came to its stop, 3 the work that it may do was spent before, 2 the command line or a config is wrong")]
+pub struct Arguments {
+    /// The config
+    #[arg(value_name = "CONFIG")]
+    pub config: PathBuf,
+
+    /// Folder for the results [default: results/<name>_landscape]
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+
+    /// Number of threads; results do not depend on it [default: all cores]
+    #[arg(short, long, value_name = "N")]
+    pub threads: Option<NonZeroUsize>,
+
+    /// Change a value of the config first, as in `run`; may be given several times
+    #[arg(long, value_name = "KEY.PATH=JSON")]
+    pub set: Vec<String>,
+
+    /// How long minima and saddles are looked for, in place of the config's `landscape.effort`
+    #[arg(long, value_enum)]
+    pub effort: Option<Looking>,
+
+    /// Replace results that are in the folder
+    #[arg(long)]
+    pub force: bool,
+
+    /// No progress and no messages, only errors
+    #[arg(short, long)]
+    pub quiet: bool,
+
+    /// Print one line of JSON on stdout
+    #[arg(long)]
+    pub json: bool,
+
+    /// Go on from the last checkpoint in the folder; without one, start anew
+    #[arg(long)]
+    pub resume: bool,
+
+    /// How often a checkpoint is written; \"off\" writes none
+    #[arg(long, value_name = "TIME", default_value = EVERY, value_parser = interval)]
+    pub checkpoint_every: Interval,
+}
+
+/// Surveys a config into its folder, or says that it is done.
+pub fn landscape(arguments: &Arguments) -> Result<u8> {
+    start_threads(arguments.threads)?;
+    let effort = arguments.effort.map(|effort| effort.setting().replacen("search", "landscape", 1));
+    let set: Vec<String> = arguments.set.iter().cloned().chain(effort).collect();
+    let loaded = load_landscape(&arguments.config, &set)?;
+    let name = &loaded.name;
+    let directory = arguments.out.clone().unwrap_or_else(|| Path::new("results").join(format!("{name}_landscape")));
+    let say = |line: &str| {
+        if !arguments.quiet {
+            note(line)
+        }
+    };
+    let mut asked = loaded.survey()?;
+    let signals = Signals::watch()?;
+    asked.problem.control.obey(signals.switch());
+    let Some(lock) = reserve(&loaded, &directory, &names(&loaded), arguments.force)? else {
+        say(&format!(
+            "{name}: {} holds the finished result of this config already; --force makes it again",
+            directory.display()
+        ));
+        return print(arguments, name, &directory);
+    };
+    if !lock.is_sure() {
+        say(&format!(
+            "{name}: the file system of {} has no locks: see to it that nobody else writes there",
+            directory.display()
+        ));
+    }
+    let mut progress = Progress::new(name, arguments.quiet);
+    let keeping = Keeping { every: arguments.checkpoint_every, resume: arguments.resume, force: arguments.force };
+    if let Some(checkpoint) = checkpoint(&keeping, &loaded, &directory, &progress)? {
+        asked.problem.control.record(Box::new(checkpoint));
+    }
+    let found = match survey(&asked, &mut progress) {
+        Ok(found) => found,
+        Err(error) => match (&error, signals.caught()) {
+            (Error::Stopped, Some((code, word))) => {
+                let stage = progress.stage_now().to_string();
+                drop(progress);
+                let on = match Checkpoint::exists(&directory) {
+                    true => "--resume goes on from there",
+                    false => "there is no checkpoint to go on from",
+                };
+                say(&format!("{name}: {word} while {stage}; {on}"));
+                return Ok(code);
+            }
+            _ => return Err(error.into()),
+        },
+    };
+    drop(progress);
+    let files = files(&loaded, &found)?;
+    let source = source(&loaded);
+    let new =
+        NewResult { files: &files, source: source.as_deref(), keep_earlier: !arguments.force, force: arguments.force };
+    if let Err(error) = folder::write_result(&directory, &new) {
+        // what was computed is not lost with the files
+        asked.problem.control.recorder().save();
+        return Err(error.into());
+    }
+    drop(asked);
+    if let Err(error) = discard_leftovers(&directory) {
+        report(&error);
+    }
+    found.warnings.iter().for_each(|warning| say(&format!("{name}: warning: {warning}")));
+    print(arguments, name, &directory)
+}
+
+fn names(loaded: &Loaded) -> Vec<String> {
+    let own = landscape_file_names(&loaded.config.output.plots);
+    own.into_iter().chain(loaded.inputs.iter().map(|file| file.name.clone())).collect()
+}
+
+fn files(loaded: &Loaded, found: &spinneb::drive::survey::Survey) -> Result<Vec<disk::File>> {
+    let report = LandscapeReport {
+        name: &loaded.name,
+        version: env!("CARGO_PKG_VERSION"),
+        config_sha256: &loaded.sha256,
+        config_text: &loaded.as_run,
+        inputs: &loaded.inputs,
+        lattice: &loaded.lattice,
+        look: loaded.look()?,
+        plots: &loaded.config.output.plots,
+        survey: found,
+    };
+    Ok(report.files()?)
+}
+
+/// The line about a result on standard output; the exit code.
+fn print(arguments: &Arguments, name: &str, directory: &Path) -> Result<u8> {
+    let read = |file: &str| -> Result<Value> { Ok(serde_json::from_str(&fs::read_to_string(directory.join(file))?)?) };
+    let summary = read(disk::MARK)?;
+    let code = if summary["converged"] == true { 0 } else { UNFINISHED };
+    let count = |key: &str| summary[key].as_u64().unwrap_or(0);
+    let words = format!(
+        "{name}: {} minima of {} kinds, {} saddles of {} kinds; {}; results in {}",
+        count("minima"),
+        count("kinds_of_minima"),
+        count("saddles"),
+        count("kinds_of_saddles"),
+        summary["stop_reason"].as_str().unwrap_or_default(),
+        directory.display()
+    );
+    let line = match arguments.json {
+        true => json!({
+            "name": name,
+            "minima": count("minima"),
+            "kinds_of_minima": count("kinds_of_minima"),
+            "saddles": count("saddles"),
+            "kinds_of_saddles": count("kinds_of_saddles"),
+            "finished": code == 0,
+            "warnings": summary["warnings"],
+            "exit_code": code,
+            "directory": directory.to_string_lossy(),
+        })
+        .to_string(),
+        false => words,
+    };
+    writeln!(io::stdout(), "{line}")?;
+    Ok(code)
+}

@@ -1,0 +1,172 @@
+//! How long the states of a survey live: rates over every saddle, and the times of the network that they make.
+
+use super::{Survey, SurveyProblem};
+use crate::landscape::{Landscape, Pass};
+use crate::network::Network;
+use crate::rates::{Crossing, LEAST_BARRIER, RateSettings, SaddleRate, Theory, saddle_rates};
+use crate::symmetry::Group;
+use crate::units::K_B;
+
+/// So many of the lowest minima are groups of their own, where none are named.
+const LOWEST: usize = 8;
+
+/// The mean time from one group of minima to another, or until it is left.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lifetime {
+    /// From this group, in its own equilibrium.
+    pub from: String,
+    /// To this one; to any other state if absent.
+    pub to: Option<String>,
+    /// Temperature (K).
+    pub temperature_k: f64,
+    /// The highest saddle of the lowest way, above the lowest minimum of the group (meV).
+    pub climb_mev: f64,
+    /// ln of the mean time (s), by theory: HTST, Langer.
+    pub ln_time_s: [Option<f64>; 2],
+    /// Why there is none.
+    pub reason: Option<String>,
+}
+
+/// All times, and what they are made of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lifetimes {
+    /// What was asked for.
+    pub settings: RateSettings,
+    /// Groups by name, each with its minima.
+    pub groups: Vec<(String, Vec<usize>)>,
+    /// The rates over each kind of saddle: from the first of its two minima to the second, and back.
+    pub saddles: Vec<[SaddleRate; 2]>,
+    /// One row a pair of groups and temperature.
+    pub rows: Vec<Lifetime>,
+}
+
+impl Lifetimes {
+    pub(super) fn of(
+        survey: &Survey,
+        asked: &SurveyProblem,
+        settings: &RateSettings,
+        land: &Landscape,
+        group: &Group,
+        passes: &[&Pass],
+    ) -> Lifetimes {
+        let saddles = passes.iter().enumerate().map(|(k, pass)| over(land, group, pass, k, settings)).collect();
+        let groups = groups(survey, asked);
+        let mut found = Lifetimes { settings: settings.clone(), groups, saddles, rows: Vec::new() };
+        for t in &settings.temperatures_k {
+            let networks = Theory::ALL.map(|theory| found.network(survey, theory, *t));
+            let mut rows = Vec::new();
+            for (from, states) in &found.groups {
+                let others = found.groups.iter().filter(|(name, _)| name != from);
+                let targets = std::iter::once(None).chain(others.map(Some));
+                rows.extend(targets.map(|to| found.row(survey, (from, states), to, *t, &networks)));
+            }
+            found.rows.extend(rows);
+        }
+        found
+    }
+
+    /// The network at a temperature (K); nothing where a saddle has no rate.
+    pub fn network(&self, survey: &Survey, theory: Theory, temperature_k: f64) -> Option<Network> {
+        let mut network = Network::new(survey.minima.len());
+        for saddle in &survey.saddles {
+            let [a, b] = saddle.minima;
+            if a == b {
+                continue;
+            }
+            let [on, back] = &self.saddles[saddle.kind];
+            // those that are equivalent are saddles of their own here
+            let ln =
+                |r: &SaddleRate| Some(r.ln_rate_per_s(theory, temperature_k)? - libm::log(r.equivalents.count as f64));
+            network.add(a, b, ln(on)?);
+            network.add(b, a, ln(back)?);
+        }
+        Some(network)
+    }
+
+    fn row(
+        &self,
+        survey: &Survey,
+        (from, states): (&String, &Vec<usize>),
+        to: Option<&(String, Vec<usize>)>,
+        temperature_k: f64,
+        networks: &[Option<Network>; 2],
+    ) -> Lifetime {
+        let outside = || (0..survey.minima.len()).filter(|k| !states.contains(k)).collect();
+        let goal: Vec<usize> = to.map_or_else(outside, |(_, states)| states.clone());
+        let climb_mev = climb(survey, states, &goal);
+        let time = |network: &Option<Network>| network.as_ref()?.ln_passage_s(states, &goal);
+        let reason = if !survey.is_whole() {
+            Some("not all states that symmetry makes are listed".to_string())
+        } else if climb_mev == f64::INFINITY {
+            Some("no passes lead there".to_string())
+        } else if climb_mev < LEAST_BARRIER * K_B * temperature_k {
+            Some(format!("the climb is below {LEAST_BARRIER} k_BT"))
+        } else if networks.iter().all(Option::is_none) {
+            self.refusal()
+        } else {
+            None
+        };
+        let ln_time_s = if reason.is_some() { [None; 2] } else { networks.each_ref().map(time) };
+        Lifetime {
+            from: from.clone(),
+            to: to.map(|(name, _)| name.clone()),
+            temperature_k,
+            climb_mev,
+            ln_time_s,
+            reason,
+        }
+    }
+
+    /// Why there is no network.
+    fn refusal(&self) -> Option<String> {
+        let reasons = self.saddles.iter().flatten().flat_map(|r| &r.refused);
+        let words = reasons.map(|(theory, reason)| format!("no rate by {}: {reason}", theory.name())).next();
+        words.or_else(|| Some("no rates were asked for".into()))
+    }
+}
+
+/// Named groups with the minima that they hold; where none are named, each of the lowest minima by itself.
+fn groups(survey: &Survey, asked: &SurveyProblem) -> Vec<(String, Vec<usize>)> {
+    if asked.groups.is_empty() {
+        return (0..survey.minima.len().min(LOWEST)).map(|k| (format!("minimum {k}"), vec![k])).collect();
+    }
+    let held = asked.groups.iter().map(|(name, label)| {
+        let states = (0..survey.minima.len()).filter(|k| label.holds(&survey.minima[*k].spins)).collect();
+        (name.clone(), states)
+    });
+    held.filter(|(_, states): &(String, Vec<usize>)| !states.is_empty()).collect()
+}
+
+/// The highest saddle of the lowest way from some minima to others, above the lowest of the first (meV).
+fn climb(survey: &Survey, from: &[usize], to: &[usize]) -> f64 {
+    let mut saddles: Vec<(f64, [usize; 2])> =
+        survey.saddles.iter().map(|s| (survey.saddle_kinds[s.kind].above_lowest_mev, s.minima)).collect();
+    saddles.sort_by(|p, q| p.0.total_cmp(&q.0));
+    let lowest = from.iter().map(|k| survey.minimum_kinds[survey.minima[*k].kind].above_lowest_mev);
+    let lowest = lowest.fold(f64::INFINITY, f64::min);
+    let mut part: Vec<usize> = (0..survey.minima.len()).collect();
+    for (height, [a, b]) in saddles {
+        let (a, b) = (part[a], part[b]);
+        part.iter_mut().filter(|p| **p == b).for_each(|p| *p = a);
+        if from.iter().any(|i| to.iter().any(|j| part[*i] == part[*j])) {
+            return height - lowest;
+        }
+    }
+    f64::INFINITY
+}
+
+/// The rates over a pass, from the minimum before it and back.
+fn over(land: &Landscape, group: &Group, pass: &Pass, number: usize, settings: &RateSettings) -> [SaddleRate; 2] {
+    let h = land.evaluator();
+    let doubt = pass.doubt(h).map(|doubt| doubt.to_string());
+    let crossing = Crossing {
+        saddle: &pass.saddle.refined.state,
+        valley: &pass.saddle.refined.valley,
+        spectrum: &pass.spectrum,
+        minima: [&pass.before.spins, &pass.after.spins],
+        minima_spectra: [&pass.before.spectrum, &pass.after.spectrum],
+        group,
+        doubt: doubt.as_deref(),
+    };
+    saddle_rates(h, number, &crossing, settings)
+}

@@ -1,0 +1,200 @@
+//! The landscape as a result: all minima and passes below an energy, as far as they are found, and what follows from them.
+//!
+//! Seeds (the states of the problem, uniform ones along and against x, y and z, random ones) are relaxed to minima. Then climbs from
+//! these and from what they lead to, along soft modes, from between neighbours and from local turns, until they bring no news; what is
+//! not joined by then is joined by first paths and their bands, and what these meet is searched from in turn.
+
+mod found;
+mod lifetimes;
+
+pub use found::{FoundMinimum, FoundSaddle, Kind, Survey};
+pub use lifetimes::{Lifetime, Lifetimes};
+
+use super::run::{END_TOLERANCE, Run};
+use super::{Observer, Problem};
+use crate::energy::recorded;
+use crate::error::Result;
+use crate::geometry::Direction;
+use crate::landscape::{Aim, Effort, Minimum, Searched, Settings, search};
+use crate::rates::RateSettings;
+use crate::record::Count;
+use crate::spins::Spins;
+use crate::stationary::relax_to_minimum;
+use crate::symmetry::Group;
+use rayon::prelude::*;
+use std::collections::BTreeSet;
+
+/// Images by symmetry of every minimum and pass, at most.
+const IMAGES: usize = 1000;
+/// Searches and joins follow each other so many times at most.
+const ROUNDS: usize = 4;
+/// Of spins, so many are evaluated at most for each step of effort, and so many times as many of a Hessian's blocks.
+const SPINS: usize = 50_000_000;
+
+/// What a survey is asked for.
+#[derive(Debug)]
+pub struct SurveyProblem {
+    /// The energy, a first seed (both its ends), and how bands are relaxed.
+    pub problem: Problem,
+    /// Further states to start from.
+    pub seeds: Vec<Spins>,
+    /// States above the lowest minimum by more than this are left out (meV).
+    pub window_mev: f64,
+    /// How long is looked.
+    pub effort: Effort,
+    /// Groups of minima, by name: those whose mean spin along a direction is within a range.
+    pub groups: Vec<(String, MeanSpin)>,
+    /// Lifetimes; none if absent.
+    pub rates: Option<RateSettings>,
+}
+
+/// States whose mean spin along a direction is from one number to another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeanSpin {
+    /// The direction.
+    pub axis: Direction,
+    /// At least.
+    pub from: f64,
+    /// At most.
+    pub to: f64,
+}
+
+impl MeanSpin {
+    /// Whether a state is one of them.
+    pub fn holds(&self, spins: &Spins) -> bool {
+        let n = spins.sites() as f64;
+        let mean = |c: usize| spins.as_slice()[c * spins.sites()..(c + 1) * spins.sites()].iter().sum::<f64>() / n;
+        let along: f64 = (0..3).map(|c| self.axis.vector()[c] * mean(c)).sum();
+        (self.from..=self.to).contains(&along)
+    }
+}
+
+/// How many random states are seeds, and how many times as much work as by the least effort may be done.
+fn share(effort: Effort) -> [usize; 2] {
+    match effort {
+        Effort::None => [0, 1],
+        Effort::Quick => [8, 1],
+        Effort::Normal => [32, 4],
+        Effort::Thorough => [128, 20],
+    }
+}
+
+/// Finds the minima and passes of a problem below an energy. One that its control stops ends with
+/// [`Error::Stopped`](crate::error::Error::Stopped).
+pub fn survey(asked: &SurveyProblem, observer: &mut dyn Observer) -> Result<Survey> {
+    asked.problem.control.recorder().begin(|| asked.fingerprint());
+    rayon::scope(|_| {
+        let mut run = Run::prepare(&asked.problem, observer)?;
+        let alike = asked.rates.as_ref().map_or(&[][..], |rates| &rates.moments_mub);
+        let group = Group::of(&asked.problem.hamiltonian, run.ends[0].spins.as_slice(), alike);
+        run.land.unfold_by(&group, IMAGES);
+        let seeds = run.plant(asked)?;
+        let searched = run.explore(asked)?;
+        Survey::of(asked, &run.land, &group, seeds, searched, run.warnings)
+    })
+}
+
+impl SurveyProblem {
+    fn fingerprint(&self) -> crate::record::Fingerprint {
+        let SurveyProblem { problem, seeds, window_mev, effort, groups, rates } = self;
+        let print = problem.fingerprint().text(&format!("{window_mev:?} {effort:?} {groups:?} {rates:?}"));
+        seeds.iter().fold(print, |print, seed| print.row(seed.as_slice()))
+    }
+
+    /// States to start from: those that are given, uniform ones and random ones; frozen spins as they are.
+    fn starts(&self) -> Vec<Spins> {
+        let (h, given) = (&self.problem.hamiltonian, &self.problem.initial);
+        let sites = h.sites();
+        let axes = [Direction::X, Direction::Y, Direction::Z];
+        let uniform = axes.into_iter().flat_map(|d| [d, d.reversed()]).map(|d| Spins::uniform(sites, d));
+        let [random, _] = share(self.effort);
+        let random = (0..random as u64).map(|seed| Spins::random(sites, seed));
+        let free = |state: Spins| {
+            let mut m = state.as_slice().to_vec();
+            for i in (0..sites).filter(|i| h.is_frozen(*i)) {
+                (0..3).for_each(|c| m[c * sites + i] = given.as_slice()[c * sites + i]);
+            }
+            Spins::from_unit_components(&m)
+        };
+        self.seeds.iter().cloned().chain(uniform.chain(random).map(free)).collect()
+    }
+}
+
+impl Run<'_, '_> {
+    /// Relaxes all starts and puts the minima in; how many starts there were.
+    fn plant(&mut self, asked: &SurveyProblem) -> Result<usize> {
+        self.observer.stage("relaxing the seeds");
+        let h = self.problem.evaluator();
+        let starts = asked.starts();
+        let input: Vec<&[f64]> = starts.iter().map(Spins::as_slice).collect();
+        let relaxed = |start: &Spins| -> Result<Minimum> {
+            let relaxed = relax_to_minimum(h, start, END_TOLERANCE * h.stiffness_mev())?;
+            Ok(Minimum::examine(h, &relaxed.spins))
+        };
+        let minima: Vec<Minimum> = recorded(h, "seeds", &input, || starts.par_iter().map(relaxed).collect())?;
+        let lowest = |heights: &[f64]| heights.iter().copied().fold(f64::INFINITY, f64::min);
+        let heights: Vec<f64> = minima.iter().map(|m| self.land.height_mev(m.spins.as_slice())).collect();
+        let top = lowest(&heights).min(lowest(self.land.heights_mev())) + asked.window_mev;
+        for (minimum, _) in minima.iter().zip(&heights).filter(|(m, height)| m.is_proven() && **height <= top) {
+            self.land.add_minimum(minimum);
+        }
+        Ok(starts.len() + 1)
+    }
+
+    /// Searches, and joins what is not joined, by turns until neither brings news.
+    fn explore(&mut self, asked: &SurveyProblem) -> Result<Searched> {
+        let mut all = Searched::default();
+        let before = self.problem.evaluator().evaluated();
+        let mut tried = BTreeSet::new();
+        for _ in 0..ROUNDS {
+            self.observer.stage("looking for minima and passes");
+            let most = self.left_of_budget(asked, before);
+            let settings =
+                Settings { effort: asked.effort, most, c: self.scales.stiffness_mev, context: self.context() };
+            let round = search(&mut self.land, Aim::All(asked.window_mev), &settings)?;
+            all = Searched { searches: all.searches + round.searches, ..round };
+            let known = [self.land.minima().len(), self.land.edges().len()];
+            if round.spent || asked.effort == Effort::None {
+                break;
+            }
+            self.observer.stage("joining minima");
+            self.join(asked, before, &mut tried)?;
+            if [self.land.minima().len(), self.land.edges().len()] == known {
+                break;
+            }
+        }
+        Ok(all)
+    }
+
+    /// Joins pairs of minima that no pass joins below the window's top, the nearest first, each kind with its nearest neighbour once.
+    fn join(&mut self, asked: &SurveyProblem, before: Count, tried: &mut BTreeSet<usize>) -> Result<()> {
+        loop {
+            let lowest = self.land.heights_mev().iter().copied().fold(f64::INFINITY, f64::min);
+            let top = lowest + asked.window_mev;
+            let part = self.land.parts_below(top);
+            let is_in = |k: usize| self.land.standing_for(k) == k && self.land.heights_mev()[k] <= top;
+            let nodes: Vec<usize> = (0..part.len()).filter(|k| is_in(*k)).collect();
+            let Some(&a) = nodes.iter().find(|k| {
+                self.land.orbit(**k) == **k && !tried.contains(*k) && nodes.iter().any(|b| part[*b] != part[**k])
+            }) else {
+                return Ok(());
+            };
+            tried.insert(a);
+            let near = |b: &&usize| self.land.squared_distance([a, **b]);
+            let others = nodes.iter().filter(|b| part[**b] != part[a]);
+            let Some(&b) = others.min_by(|p, q| near(p).total_cmp(&near(q))) else { return Ok(()) };
+            if self.left_of_budget(asked, before).evaluations == 0 {
+                return Ok(());
+            }
+            self.connect_by_first_path([a, b], top)?;
+        }
+    }
+
+    fn left_of_budget(&self, asked: &SurveyProblem, before: Count) -> Count {
+        let h = self.problem.evaluator();
+        let (own, [_, parts]) = (h.evaluated(), share(asked.effort));
+        let allowed = parts * SPINS / h.sites();
+        let left = |now: usize, before: usize| allowed.saturating_sub(now - before);
+        Count { evaluations: left(own.evaluations, before.evaluations), hessians: left(own.hessians, before.hessians) }
+    }
+}

@@ -1,0 +1,44 @@
+//! `lifetimes.svg` and `.png`: mean times against 1000/T, on a logarithmic scale: Langer's, or those of HTST where there are none of
+//! his. The numbers are those of `lifetimes.csv`. One temperature makes no figure.
+
+use super::LandscapeReport;
+use crate::drive::survey::Lifetime;
+use crate::error::Result;
+use crate::output::canvas::{Canvas, LinePlot, Marker, Series};
+
+/// Times that are drawn (s).
+const DRAWN_S: std::ops::RangeInclusive<f64> = 1e-15..=1e25;
+/// Most lines.
+const LINES: usize = 6;
+
+pub(super) fn draw(report: &LandscapeReport) -> Result<Option<Canvas>> {
+    let Some(lifetimes) = &report.survey.lifetimes else { return Ok(None) };
+    if lifetimes.settings.temperatures_k.len() < 2 {
+        return Ok(None);
+    }
+    let mut pairs: Vec<(&str, Option<&str>)> = Vec::new();
+    for row in &lifetimes.rows {
+        let pair = (row.from.as_str(), row.to.as_deref());
+        if !pairs.contains(&pair) {
+            pairs.push(pair);
+        }
+    }
+    // ways from group to group say most
+    pairs.sort_by_key(|(_, to)| to.is_none());
+    let mut plot = LinePlot::new("1000 K / T", "Mean time (s)").log_y().look(&report.look);
+    plot.legend_above = true;
+    for (from, to) in pairs {
+        let own = |r: &&Lifetime| r.from == from && r.to.as_deref() == to;
+        let time = |r: &Lifetime| r.ln_time_s[1].or(r.ln_time_s[0]).map(libm::exp);
+        let point = |r: &Lifetime| Some((1000.0 / r.temperature_k, time(r).filter(|t| DRAWN_S.contains(t))?));
+        let mut points: Vec<(f64, f64)> = lifetimes.rows.iter().filter(own).filter_map(point).collect();
+        points.sort_by(|p, q| p.0.total_cmp(&q.0));
+        if points.is_empty() || plot.series.len() == LINES {
+            continue;
+        }
+        let words = to.map_or_else(|| format!("out of {from}"), |to| format!("{from} to {to}"));
+        let marker = (points.len() <= 12).then_some(Marker::Disc);
+        plot.series.push(Series { marker, ..Series::line(points).label(words) });
+    }
+    if plot.series.is_empty() { Ok(None) } else { plot.draw().map(Some) }
+}

@@ -1,0 +1,176 @@
+//! `spinneb landscape`: all minima and saddles of small problems, their graph, and how long states live.
+
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+const LANDSCAPE: &str = r#""landscape": {"temperatures": ["1 K", "2 K"],
+    "groups": {"up": {"axis": [0, 0, 1], "from": 0.5}, "down": {"axis": [0, 0, 1], "to": -0.5}}}"#;
+
+fn material(more: &str) -> String {
+    format!(
+        r#"{{"name": "toy", "moment": "2 mu_B", "energy": [{{"exchange": {{"J": ["2 meV"]}}}},
+            {{"anisotropy": {{"K": "0.5 meV", "axis": [0, 0, 1]}}}}, {{"anisotropy": {{"K": "-0.2 meV", "axis": [1, 0, 0]}}}}{more}]}}"#
+    )
+}
+
+/// Two hard axes, so that the two turns of a wall differ from those of the other: sites in a row.
+fn chain(sites: usize) -> String {
+    format!(r#"{{"material": {}, "lattice": {{"chain": {{"sites": {sites}}}}}, {LANDSCAPE}}}"#, material(""))
+}
+
+fn spinneb(folder: &Path, arguments: &[&str]) -> (Option<i32>, String, String) {
+    let Output { status, stdout, stderr } =
+        Command::new(env!("CARGO_BIN_EXE_spinneb")).current_dir(folder).args(arguments).output().unwrap();
+    (status.code(), String::from_utf8(stdout).unwrap(), String::from_utf8(stderr).unwrap())
+}
+
+fn folder(config: &str) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("chain.json"), config).unwrap();
+    folder
+}
+
+fn json(path: &Path) -> Value {
+    serde_json::from_slice(&fs::read(path).unwrap()).unwrap()
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+}
+
+/// `landscape.json` of a config, with its folder.
+fn landscape(config: &str, arguments: &[&str]) -> (Value, tempfile::TempDir) {
+    let folder = folder(config);
+    let all: Vec<&str> =
+        ["landscape", "chain.json", "--out", "found"].into_iter().chain(arguments.iter().copied()).collect();
+    let (code, out, said) = spinneb(folder.path(), &all);
+    assert_eq!(code, Some(0), "{out}{said}");
+    let document = json(&folder.path().join("found/landscape.json"));
+    (document, folder)
+}
+
+fn kinds(document: &Value, of: &str) -> Vec<(f64, u64)> {
+    let entry = |e: &Value| (number(&e["above_lowest_meV"]), e["multiplicity"].as_u64().unwrap());
+    document[of].as_array().unwrap().iter().map(entry).collect()
+}
+
+#[test]
+fn a_spin_with_two_axes_has_two_minima_and_two_saddles() {
+    let (document, folder) = landscape(&chain(1), &[]);
+    let minima = kinds(&document, "minima");
+    let saddles = kinds(&document, "saddles");
+    assert_eq!((minima, saddles.len(), saddles[0].1), (vec![(0.0, 2)], 1, 2), "{document}");
+    // over ±y: K
+    assert!((saddles[0].0 - 0.5).abs() < 1e-14, "{saddles:?}");
+    assert_eq!(document["saddles"][0]["minima"], serde_json::json!([0, 0]));
+    for (file, rows) in [("minima.csv", 2), ("saddles.csv", 2), ("lifetimes.csv", 8), ("min.data", 1), ("ts.data", 1)] {
+        let text = fs::read_to_string(folder.path().join("found").join(file)).unwrap();
+        let head = usize::from(file.ends_with("csv"));
+        assert!(text.lines().count() - head >= rows, "{file}: {text}");
+    }
+    for file in ["landscape.npz", "landscape.graphml", "disconnectivity.svg", "disconnectivity.png", "lifetimes.svg"] {
+        assert!(fs::metadata(folder.path().join("found").join(file)).unwrap().len() > 200, "{file}");
+    }
+}
+
+#[test]
+fn lifetimes_between_up_and_down_are_those_of_a_run_between_them() {
+    for sites in [1, 8] {
+        let (document, folder) = landscape(&chain(sites), &[]);
+        let ends = [
+            r#"initial={"uniform": {"direction": [0, 0, 1]}}"#,
+            r#"final={"uniform": {"direction": [0, 0, -1]}}"#,
+            r#"rates={"temperatures": ["1 K", "2 K"]}"#,
+        ];
+        let set: Vec<&str> = ends.iter().flat_map(|end| ["--set", end]).collect();
+        let arguments: Vec<&str> = ["run", "chain.json", "--out", "run"].into_iter().chain(set).collect();
+        let (code, _, said) = spinneb(folder.path(), &arguments);
+        assert_eq!(code, Some(0), "{said}");
+        let summary = json(&folder.path().join("run/summary.json"));
+        let entries = document["lifetimes"].as_array().unwrap();
+        for (k, kelvin) in [1.0, 2.0].into_iter().enumerate() {
+            let run = &summary["rates"][0]["temperatures"][k];
+            assert_eq!(number(&run["temperature_K"]), kelvin);
+            let own = entries
+                .iter()
+                .find(|e| e["from"] == "up" && e["to"] == "down" && number(&e["temperature_K"]) == kelvin);
+            let own = own.unwrap();
+            for theory in ["htst", "langer"] {
+                let expected = 1.0 / number(&run[format!("{theory}_rate_per_s")]);
+                let found = number(&own[format!("{theory}_time_s")]);
+                assert!((found / expected - 1.0).abs() < 1e-9, "{sites} {theory} {kelvin} K: {found} {expected}");
+            }
+        }
+    }
+}
+
+#[test]
+fn min_data_and_ts_data_say_the_rates() {
+    let field = r#", {"zeeman": {"B": ["0 T", "0 T", "0.4 T"]}}"#;
+    let config = chain(1).replace(&material(""), &material(field));
+    let (document, folder) = landscape(&config, &[]);
+    let table = |file: &str| -> Vec<Vec<f64>> {
+        let text = fs::read_to_string(folder.path().join("found").join(file)).unwrap();
+        text.lines().map(|line| line.split(' ').map(|word| word.parse().unwrap()).collect()).collect()
+    };
+    let (minima, saddles) = (table("min.data"), table("ts.data"));
+    assert_eq!((minima.len(), saddles.len()), (2, 2));
+    let beta = 1.0 / (8.617333262e-2 * 1.0);
+    let rate = |from: usize| -> f64 {
+        let over = |s: &Vec<f64>| ((minima[from][1] - s[1]) / 2.0 - beta * (s[0] - minima[from][0])).exp();
+        saddles.iter().map(over).sum::<f64>() / (2.0 * std::f64::consts::PI)
+    };
+    let entries = document["lifetimes"].as_array().unwrap();
+    for (from, state) in [("up", 0), ("down", 1)] {
+        let row = entries.iter().find(|e| e["from"] == from && e["to"].is_null() && number(&e["temperature_K"]) == 1.0);
+        let expected = number(&row.unwrap()["langer_time_s"]);
+        assert!((expected * rate(state) - 1.0).abs() < 1e-9, "{from}: {expected} {}", 1.0 / rate(state));
+    }
+}
+
+#[test]
+fn states_above_the_window_are_left_out() {
+    let field = r#", {"zeeman": {"B": ["0 T", "0 T", "0.4 T"]}}"#;
+    let config = chain(1).replace(&material(""), &material(field));
+    // down lies 2 μB 0.4 T · 2 above up
+    let (whole, _folder) = landscape(&config, &[]);
+    assert_eq!(kinds(&whole, "minima").len(), 2);
+    let (below, _folder) = landscape(&config, &["--set", r#"landscape.energy_window="0.05 meV""#]);
+    assert_eq!((kinds(&below, "minima"), kinds(&below, "saddles").len()), (vec![(0.0, 1)], 0));
+}
+
+#[test]
+fn threads_do_not_matter_and_a_finished_result_stays() {
+    let (_, folder) = landscape(&chain(5), &["--threads", "1", "--effort", "quick"]);
+    let arguments = ["landscape", "chain.json", "--out", "other", "--threads", "2", "--effort", "quick"];
+    let (code, _, said) = spinneb(folder.path(), &arguments);
+    assert_eq!(code, Some(0), "{said}");
+    for file in ["landscape.json", "minima.csv", "saddles.csv", "lifetimes.csv", "landscape.npz", "ts.data"] {
+        let read = |dir: &str| fs::read(folder.path().join(dir).join(file)).unwrap();
+        assert!(read("found") == read("other"), "{file}");
+    }
+    let (code, out, said) = spinneb(folder.path(), &arguments);
+    assert!(code == Some(0) && said.contains("holds the finished result") && out.contains("minima of"), "{said}");
+    fs::write(folder.path().join("other/minima.csv"), "mine").unwrap();
+    let (code, _, said) = spinneb(folder.path(), &arguments);
+    assert!(code == Some(2) && said.contains("minima.csv"), "{code:?} {said}");
+    assert_eq!(fs::read_to_string(folder.path().join("other/minima.csv")).unwrap(), "mine");
+}
+
+#[test]
+fn what_a_landscape_cannot_be_is_said_with_its_place() {
+    for (set, words) in [
+        (r#"landscape.energy_window="0 meV""#, "landscape.energy_window"),
+        (r#"landscape.energy_window=20"#, "landscape.energy_window"),
+        (r#"landscape.groups={"up": {"axis": [0, 0, 1], "from": 0.5, "to": 0.2}}"#, "landscape.groups.up"),
+        (r#"landscape.effrt="quick""#, "effort"),
+        (r#"landscape.states=[{"file": {"path": "nowhere.ovf"}}]"#, "landscape.states[0].file"),
+    ] {
+        let folder = folder(&chain(3));
+        let (code, _, said) = spinneb(folder.path(), &["landscape", "chain.json", "--set", set]);
+        assert!(code == Some(2) && said.contains(words), "{set}: {code:?} {said}");
+        assert!(!folder.path().join("results").exists(), "{set}");
+    }
+}
