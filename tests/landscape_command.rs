@@ -174,3 +174,29 @@ fn what_a_landscape_cannot_be_is_said_with_its_place() {
         assert!(!folder.path().join("results").exists(), "{set}");
     }
 }
+
+#[test]
+fn every_shipped_landscape_comes_to_its_stop() {
+    let configs = fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/landscapes")).unwrap();
+    let expected = [("island", (1, 2)), ("pinned_walls", (11, 42))];
+    for config in configs.map(|entry| entry.unwrap().path()) {
+        let folder = tempfile::tempdir().unwrap();
+        let (code, out, said) = spinneb(folder.path(), &["landscape", config.to_str().unwrap(), "--out", "found"]);
+        assert_eq!(code, Some(0), "{out}{said}");
+        let document = json(&folder.path().join("found/landscape.json"));
+        let minima = kinds(&document, "minima");
+        let all: u64 = minima.iter().map(|kind| kind.1).sum();
+        let states = document["minima"].as_array().unwrap().last().unwrap()["states"][1].as_u64().unwrap() + 1;
+        assert_eq!(all, states, "{document}");
+        let name = document["name"].as_str().unwrap();
+        if let Some((_, counts)) = expected.iter().find(|(own, _)| *own == name) {
+            assert_eq!((minima.len() as u64, all), *counts, "{document}");
+        }
+        let timed = document["lifetimes"].as_array().unwrap().iter().all(|row| row["reason"].is_null());
+        assert!(timed, "{}", document["lifetimes"]);
+        // a wall slips out of the weak sites beside the ends
+        let shallow =
+            document["warnings"].as_array().unwrap().iter().all(|words| words.as_str().unwrap().contains("k_BT"));
+        assert!(shallow, "{document}");
+    }
+}

@@ -157,7 +157,9 @@ impl Survey {
         survey.judge();
         if let Some(settings) = &asked.rates {
             let passes: Vec<_> = passes.into_iter().map(|k| &land.passes()[k]).collect();
-            survey.lifetimes = Some(Lifetimes::of(&survey, asked, settings, land, group, &passes));
+            let lifetimes = Lifetimes::of(&survey, asked, settings, land, group, &passes);
+            survey.warnings.extend(lifetimes.warnings());
+            survey.lifetimes = Some(lifetimes);
         }
         Ok(survey)
     }

@@ -65,6 +65,18 @@ impl Lifetimes {
         found
     }
 
+    /// What the user should know of the times.
+    pub(super) fn warnings(&self) -> Vec<String> {
+        let hottest = self.settings.temperatures_k.iter().copied().fold(0.0, f64::max);
+        let low = |r: &SaddleRate| r.barrier_mev.is_some_and(|e| e < LEAST_BARRIER * K_B * hottest);
+        let count = self.saddles.iter().filter(|both| both.iter().any(low)).count();
+        let words = format!(
+            "{count} kinds of saddles are lower than {LEAST_BARRIER} k_BT at {hottest} K above a minimum beside them: such a minimum hardly \
+             holds the spins there, and its part in the times is formal"
+        );
+        if count > 0 { vec![words] } else { Vec::new() }
+    }
+
     /// The network at a temperature (K); nothing where a saddle has no rate.
     pub fn network(&self, survey: &Survey, theory: Theory, temperature_k: f64) -> Option<Network> {
         let mut network = Network::new(survey.minima.len());

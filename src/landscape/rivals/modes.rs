@@ -10,7 +10,7 @@ use std::collections::{BTreeSet, VecDeque};
 /// How many modes.
 const MODES: usize = 4;
 /// How far (rad, the spin that turns most).
-const START: f64 = 0.6;
+const STARTS: [f64; 2] = [0.6, 1.2];
 
 /// Which minima were left, and the starts that wait.
 #[derive(Debug, Default)]
@@ -26,12 +26,11 @@ impl Rival for Modes {
             self.left.insert(minimum);
             let state = State::at(cut.land.evaluator(), cut.land.minima()[minimum].spins.as_slice().to_vec());
             for mode in lowest_modes(&state.hessian, MODES, &state.zeros) {
-                let mut along = state.field(&mode.vector);
-                let size = rotation_of(&along);
-                slab::scale(&mut along, START / size);
-                for sense in [1.0, -1.0] {
-                    slab::scale(&mut along, sense);
-                    self.next.push_back(state.moved(&along));
+                let along = state.field(&mode.vector);
+                for far in STARTS.into_iter().flat_map(|far| [far, -far]) {
+                    let mut turn = along.clone();
+                    slab::scale(&mut turn, far / rotation_of(&along));
+                    self.next.push_back(state.moved(&turn));
                 }
             }
         }

@@ -11,7 +11,7 @@ const HEIGHT_MM: f64 = 64.0;
 /// Saddles that differ by no more than this part of the whole height are drawn at one energy.
 const ALIKE: f64 = 1e-9;
 /// Thickness of a branch (pt).
-const LINE_PT: f64 = 0.9;
+const LINE_PT: f64 = 0.7;
 /// Room for a number below a minimum (pt).
 const PITCH: f64 = 11.0;
 
