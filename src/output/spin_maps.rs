@@ -6,7 +6,8 @@
 
 use super::PlotData;
 use super::canvas::{
-    Align, BLACK, Canvas, Colour, LABEL_PT, LIGHT_GREY, Look, MM, Rect, SMALL_PT, THIN_PT, Text, WHITE, direction,
+    Align, BLACK, Canvas, Colour, GREY, LABEL_PT, LIGHT_GREY, Look, MM, Rect, SMALL_PT, THIN_PT, Text, WHITE,
+    direction, mix,
 };
 use crate::error::{Error, Result};
 use crate::field::Components;
@@ -90,15 +91,16 @@ impl Plan {
         let scale = (wide / size[0]).min(HIGHEST * wide / size[1]);
         let room = 0.8 * share(COLUMNS);
         let own = columns < COLUMNS;
-        // where it stands among the maps, the wheel has as much room as they
-        let high = if own { scale * size[1] } else { (scale * size[1]).max(room) };
+        let high = scale * size[1];
         let rows = (maps + usize::from(!own)).div_ceil(columns);
         let below = rows as f64 * (high + TITLE + GAP);
         let mut plan =
             Plan { columns, wide, high, scale, wheel: Rect { x0: 0.0, y0: 0.0, x1: 0.0, y1: 0.0 }, height: 0.0 };
         let (x, y) = if own { ((width - share(COLUMNS)) / 2.0, MARGIN + TITLE + below) } else { plan.corner(maps) };
-        plan.wheel = Rect { x0: x, y0: y, x1: x + share(COLUMNS), y1: y + if own { room } else { high } };
-        plan.height = 2.0 * MARGIN + below - GAP + TITLE + if own { room + TITLE } else { 0.0 };
+        // among the maps it may need more room than they
+        let more = if own { room + TITLE + GAP } else { (room - high).max(0.0) };
+        plan.wheel = Rect { x0: x, y0: y, x1: x + share(COLUMNS), y1: y + if own { room } else { room.max(high) } };
+        plan.height = 2.0 * MARGIN + below - GAP + TITLE + more;
         plan
     }
 
@@ -112,11 +114,11 @@ impl Plan {
         (self.wide - self.scale * size[0]) / 2.0
     }
 
-    /// The k-th map, in the middle of its room.
+    /// The k-th map, in the middle of its column.
     fn map(&self, k: usize, size: [f64; 2]) -> Rect {
         let ((x, y), [w, h]) = (self.corner(k), size.map(|length| self.scale * length));
-        let (x0, y0) = (x + self.left(size), y + (self.high - h) / 2.0);
-        Rect { x0, y0, x1: x0 + w, y1: y0 + h }
+        let x0 = x + self.left(size);
+        Rect { x0, y0: y, x1: x0 + w, y1: y + h }
     }
 }
 
@@ -207,11 +209,12 @@ impl Layer {
         let scale = PIXELS / self.size[0].max(self.size[1]);
         let [columns, rows] = self.size.map(|x| (scale * x).ceil().max(1.0) as usize);
         let mut rgb = Vec::with_capacity(3 * columns * rows);
+        let nothing = mix(LIGHT_GREY, GREY, 0.3);
         for row in (0..rows).rev() {
             for column in 0..columns {
                 let fraction = [(column as f64 + 0.5) / columns as f64, (row as f64 + 0.5) / rows as f64];
                 let at = [0, 1].map(|c| self.low[c] + fraction[c] * self.size[c]);
-                let Colour(r, g, b) = self.site_at(at).map_or(LIGHT_GREY, |i| direction(m.get(i)));
+                let Colour(r, g, b) = self.site_at(at).map_or(nothing, |i| direction(m.get(i)));
                 rgb.extend([r, g, b]);
             }
         }

@@ -141,7 +141,9 @@ class Chart {
   /** The topological charge of the images. */
   drawCharge() {
     const { svg, path, lower } = this, { charge } = path;
-    const [low, high] = [Math.min(0, ...charge), Math.max(0, ...charge)], room = 0.12 * Math.max(high - low, 0.5);
+    let [low, high] = [Math.min(0, ...charge), Math.max(0, ...charge)];
+    if (high - low < 0.1) [low, high] = [-0.5, 0.5];
+    const room = 0.12 * (high - low);
     const y = q => lower.bottom - ((q - low + room) / (high - low + 2 * room)) * (lower.bottom - lower.top);
     for (const q of ticks(low, high + 1e-9, 2)) {
       draw(svg, "line", { class: "grid", x1: ROOM.left, x2: this.right, y1: y(q), y2: y(q) });
