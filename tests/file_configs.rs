@@ -177,7 +177,9 @@ fn an_image_is_a_shape_and_a_region_and_the_config_as_run_needs_it_no_more() {
         ("text.png", Some(b"no image".to_vec()), "lattice.square.shape.image.path: text.png is no PNG image"),
         ("white.png", Some(png(1, &[255])), "lattice.square.shape: no site of the lattice is inside"),
     ] {
-        bytes.map(|bytes| fs::write(folder.join(path), bytes).unwrap());
+        if let Some(bytes) = bytes {
+            fs::write(folder.join(path), bytes).unwrap();
+        }
         config["lattice"]["square"]["shape"]["image"]["path"] = json!(path);
         write(folder, "bad.json", &config);
         let refused = spinneb(folder, &["run", "bad.json"]);

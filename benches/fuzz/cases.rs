@@ -260,7 +260,8 @@ fn same(images: &[Vec<Vector>], other: &Vectors) -> Result<(), String> {
             }
             let v = v.map(|x| x / largest);
             let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
-            if (0..3).any(|c| !((m[c] - v[c] / length).abs() <= 4e-15)) {
+            let agree = |c: usize| (m[c] - v[c] / length).abs() <= 4e-15;
+            if !(0..3).all(agree) {
                 return Err(format!("image {k}, site {i}: {m:?} instead of {v:?}"));
             }
         }
