@@ -263,9 +263,37 @@ def notebook(readme, result):
     print(f"  README's example in Python: {figure.name}")
 
 
+def landscape(spinneb, folder, config, pygt, nx):
+    """The network of a landscape as PyGT and networkx read it: its times are those of lifetimes.csv."""
+    out = folder / "landscape"
+    done = subprocess.run([spinneb, "landscape", config, "--out", out, "--quiet"], capture_output=True, text=True)
+    assert done.returncode == 0, f"landscape: exit code {done.returncode}: {done.stderr}"
+    mean = np.genfromtxt(out / "minima.csv", delimiter=",", names=True)["mean_spin_z"]
+    lines = [line.split(",") for line in (out / "lifetimes.csv").read_text().splitlines()]
+    column = lines[0].index("langer_time_s")
+    kelvin = float(lines[1][2])
+    times = {(row[0], row[1]): float(row[column]) for row in lines[1:] if float(row[2]) == kelvin}
+    if nx:
+        graph = nx.read_graphml(out / "landscape.graphml")
+        saddles = (out / "saddles.csv").read_text().count("\n") - 1
+        assert (graph.number_of_nodes(), graph.number_of_edges()) == (len(mean), saddles), "landscape.graphml"
+    if pygt:
+        rates = pygt.io.load_ktn(str(out), beta=1 / (8.617333262e-2 * kelvin))
+        onward, kept = np.array(rates[1].todense()).T, rates[7]
+        assert kept.all(), "PyGT leaves states out"
+        onward -= np.diag(onward.sum(axis=1))
+        for start, goal, sign in [("up", "down", 1.0), ("down", "up", -1.0)]:
+            inner = np.flatnonzero(sign * mean > -0.95)
+            passage = np.linalg.solve(onward[np.ix_(inner, inner)], -np.ones(len(inner)))
+            found = float(np.mean(passage[sign * mean[inner] > 0.95]))
+            expected = times[(f'"{start}"', f'"{goal}"')]
+            assert abs(found / expected - 1) < 1e-9, f"from {start} to {goal}: {found} s, {expected} s"
+
+
 def main():
     spinneb, readme = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
     df, ovf = optional("discretisedfield"), optional("ovf.ovf")
+    pygt, nx = optional("PyGT"), optional("networkx")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         formats = ["csv", "npz", "ovf", "ovf_binary4", "ovf_text", "ovf_images", "spins_csv", "vtk"]
@@ -284,8 +312,9 @@ def main():
         if ovf:
             libovf_writes(ovf, reader, folder, spins)
         films(spinneb, folder, df)
+        landscape(spinneb, folder, readme.parent / "configs/landscapes/ring.json", pygt, nx)
         notebook(readme, result)
-    print("interoperability: checked" + "".join(f", but not with {n}" for n, m in [("discretisedfield", df), ("libovf", ovf)] if not m))
+    print("interoperability: checked" + "".join(f", but not with {n}" for n, m in [("discretisedfield", df), ("libovf", ovf), ("PyGT", pygt), ("networkx", nx)] if not m))
 
 
 main()

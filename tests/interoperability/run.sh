@@ -1,6 +1,6 @@
 #!/bin/sh
 # Files of spins against the programs of others: tests/interoperability/run.sh [--venv DIR]
-# Installs discretisedfield, ovf (libovf), vtk and numpy into a virtual environment (a temporary one unless DIR is given), builds
+# Installs discretisedfield, ovf (libovf), vtk, PyGT, networkx and numpy into a virtual environment (a temporary one unless DIR is given), builds
 # spinneb, and checks that each reads what the other writes. Exit code 77: the check cannot run here, and why is said.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
@@ -32,6 +32,7 @@ usual="numpy==2.2.6 matplotlib==3.10.3 vtk==9.5.0"
 # shellcheck disable=SC2086
 pip $usual discretisedfield==0.92.0 ovf==0.4.3 || pip $usual discretisedfield==0.92.0 || pip $usual ||
     cannot "numpy, matplotlib and vtk cannot be installed: is there a network?"
+pip PyGT==0.3.0 networkx==3.4.2 || pip networkx==3.4.2 || true
 cargo build --release --quiet --manifest-path "$root/Cargo.toml"
 export PYTHONDONTWRITEBYTECODE=1 MPLBACKEND=Agg
 "$venv/bin/python" "$here/check.py" "${CARGO_TARGET_DIR:-$root/target}/release/spinneb" "$root/README.md"
