@@ -20,6 +20,8 @@ pub struct Images {
     pub images: Vec<Vec<Vector>>,
     /// Nodes along x, y and z, x fastest, where the file has them in more than a row.
     pub mesh: Option<[usize; 3]>,
+    /// Where the nodes of the first image stand, in the file's own unit; none where it does not say.
+    pub places: Vec<Vector>,
     /// What the user should know of the file.
     pub warnings: Vec<String>,
 }
@@ -35,6 +37,7 @@ pub struct Collector<'a> {
     file: &'a str,
     images: Vec<Vec<Vector>>,
     mesh: Option<[usize; 3]>,
+    places: Vec<Vector>,
     may_be_empty: bool,
     vectors: usize,
     off: usize,
@@ -47,8 +50,8 @@ impl<'a> Collector<'a> {
     /// Nothing read of this file yet.
     pub fn new(file: &'a str) -> Collector<'a> {
         let (shortest, longest) = (f64::INFINITY, 0.0);
-        let (images, mesh, may_be_empty) = (Vec::new(), None, false);
-        Collector { file, images, mesh, may_be_empty, vectors: 0, off: 0, worst: None, shortest, longest }
+        let (images, mesh, places, may_be_empty) = (Vec::new(), None, Vec::new(), false);
+        Collector { file, images, mesh, places, may_be_empty, vectors: 0, off: 0, worst: None, shortest, longest }
     }
 
     /// An error at a place of the file.
@@ -118,6 +121,13 @@ impl<'a> Collector<'a> {
         Ok(())
     }
 
+    /// The position of the next node.
+    pub fn stand(&mut self, at: Vector) {
+        if self.images.len() == 1 {
+            self.places.push(at);
+        }
+    }
+
     fn keep(&mut self, v: Vector) {
         if let Some(image) = self.images.last_mut() {
             image.push(v);
@@ -134,7 +144,8 @@ impl<'a> Collector<'a> {
             let found = self.images[k].len();
             return Err(self.wrong(format!("image {k} has {found} sites, but image 0 has {sites}")));
         }
-        Ok(Images { warnings: self.warning().into_iter().collect(), images: self.images, mesh: self.mesh })
+        let warnings = self.warning().into_iter().collect();
+        Ok(Images { warnings, images: self.images, mesh: self.mesh, places: self.places })
     }
 
     fn warning(&self) -> Option<String> {

@@ -1,12 +1,15 @@
 //! Spins of a file for the sites of a lattice.
 //!
 //! A mesh of nodes is the box of cells, x fastest: a node where there is no site is of no account, one at a vacant site may be empty.
-//! Any other file lists the sites in their order.
+//! Any other file lists the sites in their order; where it has positions too, they are those of the sites, in whatever unit.
 
 use super::Images;
 use crate::error::{Error, Result};
-use crate::geometry::Vector;
+use crate::geometry::{Vector, vector};
 use crate::lattice::Lattice;
+
+/// A node farther than this from its site (lattice constants) is of another site.
+const APART: f64 = 0.01;
 
 impl Images {
     /// One of the images for the sites of a lattice; vacant sites without a spin are given their idle one. An error, that begins
@@ -23,6 +26,11 @@ impl Images {
             }
         } else if image.len() != sites {
             return wrong(format!("has {} spins, but the {kind} has {sites} sites", image.len()));
+        } else if let Some(i) = self.misplaced(lattice) {
+            return wrong(format!(
+                "has node {i} at {:?}, where the {kind} has no site {i}: its sites are others",
+                self.places[i]
+            ));
         }
         let node = |i: usize| if self.mesh.is_some() { lattice.slots.slot(i) } else { i };
         let mut spins: Vec<Vector> = (0..sites).map(|i| image[node(i)]).collect();
@@ -35,6 +43,25 @@ impl Images {
                 wrong(format!("has a zero vector at node {}, where the {kind} has the spin of site {i}", node(i)))
             }
         }
+    }
+}
+
+impl Images {
+    /// A node that does not stand where its site does, after a shift and a change of unit; none where no positions are known.
+    fn misplaced(&self, lattice: &Lattice) -> Option<usize> {
+        if lattice.is_row() || lattice.sites < 2 || self.places.len() != lattice.sites {
+            return None;
+        }
+        let sites: Vec<Vector> = (0..lattice.sites).map(|i| lattice.place(i)).collect();
+        let from_middle = |all: &[Vector]| -> Vec<Vector> {
+            let sum = all.iter().fold([0.0; 3], |sum, p| vector::add(sum, *p));
+            all.iter().map(|p| vector::sub(*p, vector::scale(1.0 / all.len() as f64, sum))).collect()
+        };
+        let (nodes, sites) = (from_middle(&self.places), from_middle(&sites));
+        let product = |a: &[Vector], b: &[Vector]| a.iter().zip(b).map(|(p, q)| vector::dot(*p, *q)).sum::<f64>();
+        let unit = product(&nodes, &sites) / product(&sites, &sites);
+        let is_near = |i: usize| vector::norm(vector::sub(nodes[i], vector::scale(unit, sites[i]))) <= APART * unit;
+        (0..lattice.sites).find(|i| !is_near(*i))
     }
 }
 

@@ -109,7 +109,8 @@ impl Stored {
     /// The same with all its images for the sites of a lattice.
     pub fn on(&self, lattice: &Lattice) -> Result<Arc<Stored>> {
         let placed = self.content.images.iter().map(|image| self.placed(image, lattice));
-        let content = Images { images: placed.collect::<Result<_>>()?, mesh: None, ..self.content.clone() };
+        let images = placed.collect::<Result<_>>()?;
+        let content = Images { images, warnings: self.content.warnings.clone(), ..Images::default() };
         Ok(Arc::new(Stored { file: self.file.clone(), content }))
     }
 

@@ -254,6 +254,13 @@ mod tests {
                 assert!(said.starts_with("has ") && said.contains("but the lattice has "), "{text}: {said}");
             }
         }
+        // positions of other sites, or of the same in another order
+        let [one, other] = [r#"{"honeycomb": {"cells": [4, 3]}}"#, r#"{"honeycomb": {"cells": [3, 4]}}"#].map(lattice);
+        let bytes = OvfMesh::of(&one).file(OvfData::Binary4, vec![("a".into(), fan(one.sites))]);
+        let found = files::read("m.ovf", &bytes).unwrap();
+        assert!(found.placed(&found.images[0], &one).is_ok());
+        let said = found.placed(&found.images[0], &other).unwrap_err().to_string();
+        assert!(said.contains("its sites are others"), "{said}");
         // a file of a smaller shape has no spin for some sites
         let [disc, whole] = [r#", "shape": {"disc": {"radius": 1.3}}"#, ""]
             .map(|shape| lattice(&format!(r#"{{"square": {{"cells": [4, 3]{shape}}}}}"#)));

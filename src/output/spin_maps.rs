@@ -122,12 +122,16 @@ impl Plan {
     }
 }
 
+/// Without the last digits.
+fn rounded(x: f64) -> f64 {
+    format!("{x:.6}").parse().unwrap_or(x)
+}
+
 /// A round length, of about a quarter of another one.
 fn round_part(length: f64) -> f64 {
     let power = libm::pow(10.0, (0.3 * length).log10().floor());
     let steps = [5.0, 2.0, 1.0].into_iter().map(|step| step * power);
-    let round = |x: f64| format!("{x:.12}").parse().unwrap_or(x);
-    round(steps.into_iter().find(|x| *x <= 0.3 * length).unwrap_or(power))
+    rounded(steps.into_iter().find(|x| *x <= 0.3 * length).unwrap_or(power))
 }
 
 /// The images that are shown, each with what it is; points of the path are (reaction coordinate, energy).
@@ -223,7 +227,7 @@ impl Layer {
 
     /// What the maps are of.
     fn words(&self, unit: &str) -> String {
-        let layer = self.z.map(|z| format!(", the layer at z = {z:.4} {unit}")).unwrap_or_default();
+        let layer = self.z.map(|z| format!(", the layer at z = {} {unit}", rounded(z))).unwrap_or_default();
         format!("x to the right, y upwards{layer}")
     }
 }

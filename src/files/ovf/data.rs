@@ -94,6 +94,9 @@ fn text(header: &Header, lines: &mut Lines, images: &mut Collector, segment: usi
     header.begin(columns, images)?;
     for (i, node) in numbers.chunks_exact(columns).enumerate() {
         let v = &node[columns - 3..];
+        if columns > 3 {
+            images.stand([node[0], node[1], node[2]]);
+        }
         images.push([v[0], v[1], v[2]], || {
             let line = starts.partition_point(|(first, _)| *first <= i * columns);
             format!("line {}: segment {segment}, node {i}", line.checked_sub(1).map_or(0, |k| starts[k].1))
@@ -136,6 +139,9 @@ fn binary(kind: Stored, header: &Header, lines: &mut Lines, images: &mut Collect
     for i in 0..header.nodes {
         let at = size * (1 + columns * i + columns - 3);
         let v = vector(kind, &data[at..], big_endian);
+        if columns > 3 {
+            images.stand(vector(kind, &data[at - 3 * size..], big_endian));
+        }
         images.push(v, || format!("byte {}: segment {segment}, node {i}", start + at))?;
     }
     lines.skip(length + blank);
