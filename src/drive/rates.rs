@@ -9,8 +9,8 @@ use crate::landscape::Saddle;
 use crate::landscape::{Minimum, Pass};
 use crate::linalg::slab;
 use crate::rates::{
-    Crossing, Equivalents, Orbits, RateSettings, Rates, Refusal, SaddleRate, ZeroKind, equivalent_saddles, refused,
-    saddle_rates, transitions,
+    Equivalents, Orbits, RateSettings, Rates, Refusal, SaddleRate, ZeroKind, equivalent_saddles, refused, saddle_rates,
+    transitions,
 };
 use crate::spins::Spins;
 use crate::stationary::{self, Refined, State};
@@ -80,16 +80,7 @@ fn proven(known: &Known, group: &Group, link: &Pass, settings: &RateSettings) ->
     let doubt = link.doubt(h).map(|doubt| doubt.to_string());
     let m = &link.saddle.refined.state.m;
     let number = known.saddles.iter().position(|s| s.spins.as_slice() == m).unwrap_or(0);
-    let crossing = Crossing {
-        saddle: &link.saddle.refined.state,
-        valley: &link.saddle.refined.valley,
-        spectrum: &link.spectrum,
-        minima: [&link.before.spins, &link.after.spins],
-        minima_spectra: [&link.before.spectrum, &link.after.spectrum],
-        group,
-        doubt: doubt.as_deref(),
-    };
-    saddle_rates(h, number, &crossing, settings)
+    saddle_rates(h, number, &link.crossing(group, doubt.as_deref()), settings)
 }
 
 /// Without a proof there is no minimum to leave: the barriers are those above the ends.

@@ -4,9 +4,10 @@ use super::{Doubt, Minimum, Saddle};
 use crate::energy::{Evaluator, recorded};
 use crate::error::Result;
 use crate::linalg::slab;
+use crate::rates::Crossing;
 use crate::spins::Spins;
 use crate::stationary::{Spectrum, descend, relax_to_minimum};
-use crate::symmetry::Operation;
+use crate::symmetry::{Group, Operation};
 use serde::{Deserialize, Serialize};
 
 /// Energies that differ by less than this part of the largest stiffness along a whole way make it flat.
@@ -94,6 +95,19 @@ impl Pass {
         let Saddle { top, refined } = &saddle;
         let [m, valley, tau] = [&refined.state.m, &refined.valley, &top.tau].map(Vec::clone);
         recorded(h, "descents", &[&m, &valley, &tau], || Pass::of(h, saddle, c))
+    }
+
+    /// As the theories of rates take it. `doubt`: what stands against its certificate.
+    pub fn crossing<'a>(&'a self, group: &'a Group, doubt: Option<&'a str>) -> Crossing<'a> {
+        Crossing {
+            saddle: &self.saddle.refined.state,
+            valley: &self.saddle.refined.valley,
+            spectrum: &self.spectrum,
+            minima: [&self.before.spins, &self.after.spins],
+            minima_spectra: [&self.before.spectrum, &self.after.spectrum],
+            group,
+            doubt,
+        }
     }
 
     /// What a symmetry of the energy makes of it.

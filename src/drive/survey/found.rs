@@ -83,65 +83,9 @@ impl Survey {
     ) -> Result<Survey> {
         let heights = land.heights_mev();
         let lowest = heights.iter().copied().fold(f64::INFINITY, f64::min);
-        let top = lowest + asked.window_mev;
-        // kinds by energy, then in the order in which they were found
-        let is_in = |k: &usize| land.standing_for(*k) == *k && heights[*k] <= top;
-        let mut nodes: Vec<usize> = (0..heights.len()).filter(is_in).collect();
-        let height_of = |k: usize| heights[land.orbit(k)];
-        nodes.sort_by(|p, q| {
-            height_of(*p).total_cmp(&height_of(*q)).then(land.orbit(*p).cmp(&land.orbit(*q))).then(p.cmp(q))
-        });
-        let mut number = vec![usize::MAX; heights.len()];
-        let (mut minimum_kinds, mut minima): (Vec<Kind>, Vec<FoundMinimum>) = (Vec::new(), Vec::new());
-        for (id, &k) in nodes.iter().enumerate() {
-            number[k] = id;
-            let minimum = &land.minima()[k];
-            let new = id == 0 || land.orbit(nodes[id - 1]) != land.orbit(k);
-            if new {
-                minimum_kinds.push(Kind {
-                    first: id,
-                    multiplicity: multiplicity(land, group, minimum.spins.as_slice()),
-                    listed: 0,
-                    above_lowest_mev: heights[k] - lowest,
-                    energy_mev: minimum.energy_mev,
-                    spectrum: minimum.spectrum.clone(),
-                    max_torque_mev: minimum.max_torque_mev,
-                });
-            }
-            let kind = minimum_kinds.len() - 1;
-            minimum_kinds[kind].listed += 1;
-            minima.push(FoundMinimum { kind, spins: minimum.spins.clone() });
-        }
-        let is_joined = |e: &usize| {
-            let edge = &land.edges()[*e];
-            edge.height_mev <= top && edge.ends.iter().all(|k| number[*k] != usize::MAX)
-        };
-        let mut edges: Vec<usize> = (0..land.edges().len()).filter(is_joined).collect();
-        let own = |e: usize| land.edges()[e].pass;
-        let first_height = |e: usize| land.height_mev(land.passes()[own(e)].saddle.spins());
-        edges.sort_by(|p, q| first_height(*p).total_cmp(&first_height(*q)).then(own(*p).cmp(&own(*q))).then(p.cmp(q)));
-        let (mut saddle_kinds, mut saddles): (Vec<Kind>, Vec<FoundSaddle>) = (Vec::new(), Vec::new());
-        let mut passes = Vec::new();
-        for &e in &edges {
-            let (edge, pass) = (&land.edges()[e], &land.passes()[own(e)]);
-            if passes.last() != Some(&own(e)) {
-                passes.push(own(e));
-                let state = &pass.saddle.refined.state;
-                saddle_kinds.push(Kind {
-                    first: saddles.len(),
-                    multiplicity: multiplicity(land, group, &state.m),
-                    listed: 0,
-                    above_lowest_mev: land.height_mev(&state.m) - lowest,
-                    energy_mev: land.evaluator().energy_mev(&state.m),
-                    spectrum: pass.spectrum.clone(),
-                    max_torque_mev: state.max_torque_mev(),
-                });
-            }
-            let kind = saddle_kinds.len() - 1;
-            saddle_kinds[kind].listed += 1;
-            let minima = edge.ends.map(|k| number[k]);
-            saddles.push(FoundSaddle { kind, minima, spins: Spins::from_unit_components(&edge.saddle) });
-        }
+        let view = View { land, group, lowest, top: lowest + asked.window_mev };
+        let (minimum_kinds, minima, number) = view.minima();
+        let (saddle_kinds, saddles, passes) = view.saddles(&number);
         let mut survey = Survey {
             minimum_kinds,
             saddle_kinds,
@@ -198,9 +142,87 @@ impl Survey {
     }
 }
 
-/// How many states the group makes of one.
-fn multiplicity(land: &Landscape, group: &Group, m: &[f64]) -> usize {
-    let h = land.evaluator();
-    let keeps = 1 + group.operations().filter(|operation| is_same_state(h, &operation.apply(m), m)).count();
-    group.order() / keeps
+/// A landscape up to a height.
+struct View<'l> {
+    land: &'l Landscape<'l>,
+    group: &'l Group,
+    /// The lowest minimum, and how high it reaches (meV above the landscape's reference).
+    lowest: f64,
+    top: f64,
+}
+
+impl View<'_> {
+    /// Kinds of minima, by energy and then in the order in which they were found; all of them; and the number of each node.
+    fn minima(&self) -> (Vec<Kind>, Vec<FoundMinimum>, Vec<usize>) {
+        let (land, heights) = (self.land, self.land.heights_mev());
+        let is_in = |k: &usize| land.standing_for(*k) == *k && heights[*k] <= self.top;
+        let mut nodes: Vec<usize> = (0..heights.len()).filter(is_in).collect();
+        let order = |p: &usize, q: &usize| {
+            let [a, b] = [*p, *q].map(|k| land.orbit(k));
+            heights[a].total_cmp(&heights[b]).then(a.cmp(&b)).then(p.cmp(q))
+        };
+        nodes.sort_by(order);
+        let mut number = vec![usize::MAX; heights.len()];
+        let (mut kinds, mut minima): (Vec<Kind>, Vec<FoundMinimum>) = (Vec::new(), Vec::new());
+        for (id, &k) in nodes.iter().enumerate() {
+            number[k] = id;
+            let minimum = &land.minima()[k];
+            if id == 0 || land.orbit(nodes[id - 1]) != land.orbit(k) {
+                kinds.push(Kind {
+                    first: id,
+                    multiplicity: self.multiplicity(minimum.spins.as_slice()),
+                    listed: 0,
+                    above_lowest_mev: heights[k] - self.lowest,
+                    energy_mev: minimum.energy_mev,
+                    spectrum: minimum.spectrum.clone(),
+                    max_torque_mev: minimum.max_torque_mev,
+                });
+            }
+            let kind = kinds.len() - 1;
+            kinds[kind].listed += 1;
+            minima.push(FoundMinimum { kind, spins: minimum.spins.clone() });
+        }
+        (kinds, minima, number)
+    }
+
+    /// Kinds of saddles between these minima, likewise; all of them; and the pass of each kind.
+    fn saddles(&self, number: &[usize]) -> (Vec<Kind>, Vec<FoundSaddle>, Vec<usize>) {
+        let (land, edges) = (self.land, self.land.edges());
+        let is_in =
+            |e: &usize| edges[*e].height_mev <= self.top && edges[*e].ends.iter().all(|k| number[*k] != usize::MAX);
+        let mut order: Vec<usize> = (0..edges.len()).filter(is_in).collect();
+        let own: Vec<f64> = land.passes().iter().map(|pass| land.height_mev(pass.saddle.spins())).collect();
+        let place = |e: &usize| (own[edges[*e].pass], edges[*e].pass);
+        order.sort_by(|p, q| place(p).0.total_cmp(&place(q).0).then(place(p).1.cmp(&place(q).1)).then(p.cmp(q)));
+        let (mut kinds, mut saddles): (Vec<Kind>, Vec<FoundSaddle>) = (Vec::new(), Vec::new());
+        let mut passes = Vec::new();
+        for edge in order.into_iter().map(|e| &edges[e]) {
+            let pass = &land.passes()[edge.pass];
+            if passes.last() != Some(&edge.pass) {
+                passes.push(edge.pass);
+                let state = &pass.saddle.refined.state;
+                kinds.push(Kind {
+                    first: saddles.len(),
+                    multiplicity: self.multiplicity(&state.m),
+                    listed: 0,
+                    above_lowest_mev: own[edge.pass] - self.lowest,
+                    energy_mev: land.evaluator().energy_mev(&state.m),
+                    spectrum: pass.spectrum.clone(),
+                    max_torque_mev: state.max_torque_mev(),
+                });
+            }
+            let kind = kinds.len() - 1;
+            kinds[kind].listed += 1;
+            let minima = edge.ends.map(|k| number[k]);
+            saddles.push(FoundSaddle { kind, minima, spins: Spins::from_unit_components(&edge.saddle) });
+        }
+        (kinds, saddles, passes)
+    }
+
+    /// How many states the group makes of one.
+    fn multiplicity(&self, m: &[f64]) -> usize {
+        let (h, group) = (self.land.evaluator(), self.group);
+        let keeps = 1 + group.operations().filter(|operation| is_same_state(h, &operation.apply(m), m)).count();
+        group.order() / keeps
+    }
 }

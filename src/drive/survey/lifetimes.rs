@@ -3,7 +3,7 @@
 use super::{Survey, SurveyProblem};
 use crate::landscape::{Landscape, Pass};
 use crate::network::Network;
-use crate::rates::{Crossing, LEAST_BARRIER, RateSettings, SaddleRate, Theory, saddle_rates};
+use crate::rates::{LEAST_BARRIER, RateSettings, SaddleRate, Theory, saddle_rates};
 use crate::symmetry::Group;
 use crate::units::K_B;
 
@@ -171,14 +171,5 @@ fn climb(survey: &Survey, from: &[usize], to: &[usize]) -> f64 {
 fn over(land: &Landscape, group: &Group, pass: &Pass, number: usize, settings: &RateSettings) -> [SaddleRate; 2] {
     let h = land.evaluator();
     let doubt = pass.doubt(h).map(|doubt| doubt.to_string());
-    let crossing = Crossing {
-        saddle: &pass.saddle.refined.state,
-        valley: &pass.saddle.refined.valley,
-        spectrum: &pass.spectrum,
-        minima: [&pass.before.spins, &pass.after.spins],
-        minima_spectra: [&pass.before.spectrum, &pass.after.spectrum],
-        group,
-        doubt: doubt.as_deref(),
-    };
-    saddle_rates(h, number, &crossing, settings)
+    saddle_rates(h, number, &pass.crossing(group, doubt.as_deref()), settings)
 }
