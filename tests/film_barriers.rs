@@ -165,6 +165,87 @@ fn reference_barriers_are_certified_with_their_lowest_modes() {
     assert!(compared.len() == 15, "{compared:?}");
 }
 
+/// Runs a problem from its natural first paths without a search for others.
+fn by_default(mut problem: Problem) -> Outcome {
+    problem.search = Effort::None;
+    run(&problem, &mut Silent).unwrap()
+}
+
+#[test]
+fn natural_first_paths_find_the_reference_barriers() {
+    let mut compared = 0;
+    // half a minute for 1024 sites of nine shells: the gallery has 400 of them
+    for case in references().iter().filter(|case| case["name"] != "pdfe_ir_fcc_4T") {
+        let found = by_default(problem(&case["config"].to_string()));
+        let (name, barrier) = (&case["name"], found.barrier.unwrap());
+        assert!(found.certified, "{name}: {:?}", found.warnings);
+        for (direction, mev) in [("forward", barrier.forward_mev), ("backward", barrier.backward_mev)] {
+            let expected = case["barrier_meV"][direction].as_f64().unwrap();
+            let within = case["tolerance_relative"].as_f64().unwrap() * expected;
+            assert!((mev - expected).abs() < within, "{name}: {direction} {mev} {expected}");
+        }
+        compared += 1;
+    }
+    assert_eq!(compared, 21);
+}
+
+/// A reference problem with other keys at its root.
+fn reference_with(name: &str, key: &str, value: serde_json::Value) -> Problem {
+    let case = references().into_iter().find(|case| case["name"] == name).unwrap();
+    let mut config = case["config"].clone();
+    config[key] = value;
+    problem(&config.to_string())
+}
+
+#[test]
+fn disorder_asks_for_every_edge_and_every_top_of_a_path_is_refined() {
+    // from y over 18.966; from x over three saddles, of which the last one alone would be 18.884
+    for (side, expected) in [([-1, 0, 0], 19.231164476956), ([0, -1, 0], 18.966186443395)] {
+        let guess = serde_json::json!({"guess": {"sweep": {"from": side}}});
+        let found = by_default(reference_with("grains24", "path", guess));
+        assert!(found.certified && found.saddles.len() > 1);
+        assert!((found.barrier.unwrap().forward_mev - expected).abs() < 1e-9, "{side:?}: {:?}", found.barrier);
+        let highest = found.saddles.iter().map(|s| s.above_initial_mev).fold(f64::MIN, f64::max);
+        assert!((highest - expected).abs() < 1e-9 && found.saddles.iter().any(|s| s.above_initial_mev < 18.9));
+    }
+}
+
+#[test]
+fn a_band_too_coarse_for_its_peak_comes_to_the_same_saddle() {
+    for images in [5, 7] {
+        let path = serde_json::json!({"images": images});
+        let found = by_default(reference_with("square20_collapse", "path", path));
+        let barrier = found.barrier.unwrap().forward_mev;
+        assert!(found.certified && (barrier - 4.329255887059).abs() < 1e-9, "{images}: {barrier}");
+    }
+}
+
+#[test]
+fn a_minimum_half_way_splits_the_path_into_two_equal_saddles() {
+    // with a Dzyaloshinskii–Moriya interaction the wall across the film is a true minimum
+    let case = references().into_iter().find(|case| case["name"] == "square24_dmi").unwrap();
+    let found = by_default(problem(&case["config"].to_string()));
+    assert!(found.certified && found.saddles.len() == 2 && found.intermediate_minima.len() == 1);
+    let [first, second] = [0, 1].map(|k| found.saddles[k].above_initial_mev);
+    assert!((first - second).abs() < 1e-9 && found.intermediate_minima[0].state.energy_mev < -1125.849);
+}
+
+#[test]
+fn natural_first_paths_take_few_evaluations_at_any_number_of_sites() {
+    for cells in [16, 32, 64] {
+        let found = by_default(reversal(cells, 0.1 * (16.0 / cells as f64).powi(2)));
+        assert!(found.certified && found.work.iterations <= 15, "{cells}: {}", found.work.iterations);
+    }
+    for cells in [20, 32, 44] {
+        let found = by_default(skyrmion(cells, 1.0, (cells / 2) as f64));
+        assert!(found.certified && found.work.iterations <= 25, "{cells}: {}", found.work.iterations);
+    }
+    // the way down after a nucleus relaxes slowly, and no barrier depends on it
+    let nucleus = reference_with("square24_field", "name", "nucleus".into());
+    let found = by_default(nucleus);
+    assert!(found.certified && found.work.iterations <= 15, "{}", found.work.iterations);
+}
+
 /// Band evaluations of a run, and its barrier.
 fn evaluations(problem: Problem, kind: &str) -> (usize, f64) {
     let wall = 4.0 * Scales::of_terms(&problem.hamiltonian).wall_width_sites;

@@ -20,6 +20,8 @@ const COARSEST: f64 = 2.0;
 const ESCAPES: usize = 3;
 /// On a film the best path of another kind is followed to its saddle too, unless its top is higher than the lowest saddle times this.
 const OF_OTHER_KINDS: f64 = 1.5;
+/// Barriers that differ by less than this part are equal.
+const ALIKE: f64 = 1e-9;
 
 impl<'a> Run<'a, '_> {
     /// The first paths, the most promising first: the one that was asked for, or the natural ones.
@@ -46,13 +48,13 @@ impl<'a> Run<'a, '_> {
         }
         tried.sort_by(|p, q| p.top_mev().total_cmp(&q.top_mev()));
         let scale = self.scales.stiffness_mev;
+        let is_row = self.problem.hamiltonian.lattice().is_row();
         let (mut finished, mut lowest_barrier) = (0, f64::INFINITY);
         let mut kinds: Vec<String> = vec!["geodesic".into()];
         for c in &mut tried {
             let lowest = c.top_mev();
             let worth = finished < 2 && !(finished == 1 && lowest > 1.2 * lowest_barrier);
             // a collapse and an escape over an edge are two answers, and both are told
-            let is_row = self.problem.hamiltonian.lattice().is_row();
             let other = !is_row && !kinds.iter().any(|k| k == c.kind()) && lowest < OF_OTHER_KINDS * lowest_barrier;
             if self.problem.seeks_saddles() && (worth || other) {
                 self.conclude(c)?;
@@ -62,8 +64,16 @@ impl<'a> Run<'a, '_> {
             }
         }
         tried.sort_by(|p, q| {
-            p.rank(scale).cmp(&q.rank(scale)).then(p.barrier_mev(scale).total_cmp(&q.barrier_mev(scale)))
+            let by_barrier = p.barrier_mev(scale).total_cmp(&q.barrier_mev(scale));
+            p.rank(scale).cmp(&q.rank(scale)).then(by_barrier)
         });
+        if !is_row && let Some(lowest) = tried.first().map(|c| (c.rank(scale), c.barrier_mev(scale))) {
+            // of paths over one saddle, or over images of it by a symmetry, the one that came there soonest
+            let alike = tried.partition_point(|c| {
+                c.rank(scale) == lowest.0 && c.barrier_mev(scale) < lowest.1 + ALIKE * lowest.1.abs()
+            });
+            tried[..alike].sort_by_key(|c| c.band.evaluations());
+        }
         Ok(tried)
     }
 

@@ -22,8 +22,10 @@ pub const LOOSE: f64 = 5e-3;
 const SLOWER: usize = 20;
 /// Moves of more (rad, any spin) are too long to be told by their slope.
 const FREE: f64 = 1e-2;
-/// A top that moves by less than this part of its height in an evaluation stands still.
+/// A top that moves by less than this part of its height in an evaluation stands still, if its force can lower it by no more than
+/// that other part.
 const STILL: f64 = 1e-3;
+const LOWERED: f64 = 1e-2;
 /// A maximum climbs if it stands out by more than this part of the path's height.
 const PROMINENT: f64 = 1e-3;
 
@@ -221,14 +223,17 @@ impl Relaxation<'_> {
         None
     }
 
-    /// Whether the highest image is relaxed and stays as high as it is. In a row all images relax about as quickly; on other lattices
-    /// the way down from a nucleus, which no barrier depends on, takes much longer than its top.
+    /// Whether the highest image is relaxed, all but |F⊥|²/c of its energy, and stays as high as it is. In a row all images relax about
+    /// as quickly; on other lattices the way down from a nucleus, which no barrier depends on, takes much longer than its top.
     fn top_stands(&self, band: &Band, enough: f64) -> bool {
         let Some(last) = self.history.last().filter(|last| last.images == band.images()) else { return false };
         let (e, top) = (band.energies_mev(), band.highest());
         let height = e[top] - e[0].max(e[e.len() - 1]);
         let moved = (e[top] - e[0] - last.highest_image_mev).abs();
-        !band.hamiltonian().lattice().is_row() && height > 0.0 && moved < STILL * height && band.force(top) < enough
+        let perpendicular = band.perpendicular(top);
+        let lowered = slab::dot(perpendicular, perpendicular) / self.scales.stiffness_mev;
+        let relaxed = band.force(top) < enough || lowered < LOWERED * height;
+        !band.hamiltonian().lattice().is_row() && height > 0.0 && moved < STILL * height && relaxed
     }
 
     fn align(&self, band: &mut Band) {

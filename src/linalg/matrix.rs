@@ -108,7 +108,8 @@ impl Matrix {
         match self {
             Matrix::Band(band, places) => band.add_block(places.of(i), places.of(j), block),
             Matrix::Dense(dense) => dense.add_block(i, j, block),
-            _ => {
+            Matrix::Sparse(sparse) => sparse.add_block(i, j, block),
+            Matrix::Tail(_) => {
                 for (k, v) in block.into_iter().flatten().enumerate() {
                     self.add(2 * i + k / 2, 2 * j + k % 2, v);
                 }

@@ -37,7 +37,7 @@ const SMALLEST: f64 = 1.0;
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Skyrmion {
-    /// Where it is; in the middle if absent.
+    /// Where it is; in the middle if absent, on a film that is periodic both ways at the site nearest to that.
     #[serde(default)]
     pub center: Option<Place>,
     /// R in spacings, where the spins are across core and background; that of the energy if absent.

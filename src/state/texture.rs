@@ -10,7 +10,7 @@ use super::StateContext;
 use super::sense::Sense;
 use crate::error::{Error, Result};
 use crate::geometry::{Direction, Quaternion, Vector, vector};
-use crate::lattice::shortest;
+use crate::lattice::{Lattice, shortest};
 use crate::units::{Angle, Place};
 use serde::de::{self, Deserialize, Deserializer, IntoDeserializer, Visitor};
 use std::fmt;
@@ -41,7 +41,7 @@ impl Texture<'_> {
         let lattice = context.lattice;
         let center = match self.center {
             Some(place) => lattice.point(place).map_err(|e| e.within("center"))?,
-            None => lattice.middle(),
+            None => middle(lattice),
         };
         let periods = lattice.periods();
         let of = |i: usize| {
@@ -94,6 +94,19 @@ impl Texture<'_> {
         };
         places.iter().map(spin).collect()
     }
+}
+
+/// The middle of a lattice; where it is periodic across the line, and no place is its middle more than another, the site nearest to
+/// that: halfway between two sites a state may rest where it is lowest neither there nor beside a site.
+fn middle(lattice: &Lattice) -> Vector {
+    let middle = lattice.middle();
+    let periodic = (0..2).all(|d| lattice.grid.periodic[d] && lattice.grid.size[d] > 1);
+    let away = |i: &usize| {
+        let [x, y, _] = vector::sub(lattice.place(*i), middle);
+        (x * x + y * y).sqrt()
+    };
+    let nearer = |i: usize, j: usize| if away(&j) < away(&i) - ON_THE_LINE { j } else { i };
+    if periodic { lattice.place((1..lattice.sites).fold(0, nearer)) } else { middle }
 }
 
 /// Reads `"auto"`, which is nothing, or an angle.

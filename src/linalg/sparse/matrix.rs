@@ -81,6 +81,17 @@ impl SparseMatrix {
         }
     }
 
+    /// Adds a block to the rows of site i and the columns of another site j, and to its mirror image. The sites must be coupled.
+    ///
+    /// # Panics
+    /// Where the graph has no such bond.
+    #[inline]
+    pub fn add_block(&mut self, i: usize, j: usize, [[a, b], [c, d]]: [[f64; 2]; 2]) {
+        let (row, column, block) = if i >= j { (i, j, [a, b, c, d]) } else { (j, i, [a, c, b, d]) };
+        let Some(own) = self.block_mut(row, column) else { panic!("no bond of sites {column} and {row}") };
+        own.iter_mut().zip(block).for_each(|(own, v)| *own += v);
+    }
+
     /// The block of site i's rows and site j's columns, row by row, if j ≤ i and the sites are the same or coupled. One on the
     /// diagonal must stay symmetric.
     pub fn block_mut(&mut self, i: usize, j: usize) -> Option<&mut [f64; 4]> {
@@ -186,6 +197,14 @@ mod tests {
         assert!(a.block_mut(2, 0).is_none() && a.block_mut(0, 1).is_none());
         *a.block_mut(3, 0).expect("a ring") = [1.0, 2.0, 3.0, 4.0];
         assert_eq!([a.get(6, 0), a.get(6, 1), a.get(7, 0), a.get(1, 7)], [1.0, 2.0, 3.0, 4.0]);
+        let before = samples::dense(&a);
+        let mut by_entries = a.clone();
+        for (i, j) in [(3, 0), (1, 2)] {
+            a.add_block(i, j, [[0.1, 0.2], [0.3, 0.4]]);
+            [0.1, 0.2, 0.3, 0.4].iter().enumerate().for_each(|(k, v)| by_entries.add(2 * i + k / 2, 2 * j + k % 2, *v));
+        }
+        assert_eq!(samples::dense(&a), samples::dense(&by_entries));
+        assert!(samples::dense(&a) != before);
         a.clear();
         assert!(samples::dense(&a).iter().all(|v| *v == 0.0));
     }
