@@ -282,7 +282,7 @@ def main():
         vacant = {"disc": {"center": [4, 4], "radius": 1}}
         pages["film"] = lattice("film", {"triangular": {"cells": [18, 16], "spacing": "0.3 nm", "vacant": vacant}})
         pages["crystal"] = lattice("crystal", {"cubic": {"cells": [7, 6, 4]}})
-        pages["large_film"] = lattice("large_film", {"square": {"cells": [80, 80]}})
+        pages["large_film"] = lattice("large_film", {"square": {"cells": [320, 20]}})
         first = pages["wall_nucleation"]
         with Browser(CHROMIUM) as browser:
             checks = [(draws, pages), (slides, first), (numbers, first), (steers, first), (plays, first), (is_for_all, first),
