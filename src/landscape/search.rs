@@ -1,13 +1,13 @@
 //! The search for lower passes: rivals by turns, until they bring no news.
 //!
-//! Or for all there is below an energy: then T is that, and the search ends after so many without news as there are states to look
-//! from.
-//!
 //! T is the highest saddle of the best route known. A rival names a state from which a saddle below T may be reached; from there a
 //! climb goes to one, descents from it to its two minima, and both go into the landscape: the route may then have a lower T.
 //! News is a lower T, or a saddle of an energy that none had before; the search ends after so many searches in a row without any.
 //! Searches are made in batches, each batch from what is known before it, its searches side by side: what is found does not depend
 //! on how many threads there are.
+//!
+//! Where all passes below an energy are looked for, T is that, every new saddle is news, and the number of searches without any
+//! grows with the number of states to search from.
 
 use super::rivals::{Cut, rivals, scouts};
 use super::{Landscape, Pass, Saddle};
@@ -180,7 +180,7 @@ pub fn search(land: &mut Landscape, aim: Aim, settings: &Settings) -> Result<Sea
             starts.par_iter().map(|start| climb(land, start, below, settings.c)).collect()
         })?;
         for Caught(pass) in caught {
-            let news = pass.is_some_and(|pass| bring(land, *pass, below));
+            let news = pass.is_some_and(|pass| bring(land, *pass, below, aim));
             done.searches += 1;
             done.quiet = if news { 0 } else { done.quiet + 1 };
         }
@@ -188,13 +188,13 @@ pub fn search(land: &mut Landscape, aim: Aim, settings: &Settings) -> Result<Sea
     Ok(done)
 }
 
-/// Puts a pass in; whether that is news. One as high as another is most likely an image of it by a symmetry.
-fn bring(land: &mut Landscape, pass: Pass, below: f64) -> bool {
+/// Puts a pass in; whether that is news. For a route, one as high as another is most likely of no more use than that.
+fn bring(land: &mut Landscape, pass: Pass, below: f64, aim: Aim) -> bool {
     let height = land.height_mev(pass.saddle.spins());
     if height >= below || pass.doubt(land.evaluator()).is_some() {
         return false;
     }
-    let new = !land.has_height(height);
+    let new = aim.ends().is_none() || !land.has_height(height);
     land.add(pass) && new
 }
 

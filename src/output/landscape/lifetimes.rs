@@ -4,7 +4,7 @@
 use super::LandscapeReport;
 use crate::drive::survey::Lifetime;
 use crate::error::Result;
-use crate::output::canvas::{Canvas, LinePlot, Marker, Series};
+use crate::output::canvas::{Canvas, LinePlot, Marker, Series, turns};
 
 /// Times that are drawn (s).
 const DRAWN_S: std::ops::RangeInclusive<f64> = 1e-15..=1e25;
@@ -40,5 +40,12 @@ pub(super) fn draw(report: &LandscapeReport) -> Result<Option<Canvas>> {
         let marker = (points.len() <= 12).then_some(Marker::Disc);
         plot.series.push(Series { marker, ..Series::line(points).label(words) });
     }
-    if plot.series.is_empty() { Ok(None) } else { plot.draw().map(Some) }
+    if plot.series.is_empty() {
+        return Ok(None);
+    }
+    // up and down may be alike
+    let lines: Vec<Vec<(f64, f64)>> = plot.series.iter().map(|s| s.points.clone()).collect();
+    let turns = turns(&lines.iter().map(Vec::as_slice).collect::<Vec<_>>());
+    plot.series = plot.series.into_iter().zip(turns).map(|(series, turn)| series.in_turn(turn, None)).collect();
+    plot.draw().map(Some)
 }
