@@ -9,7 +9,7 @@
 //! Where all passes below an energy are looked for, T is that, every new saddle is news, and the number of searches without any
 //! grows with the number of states to search from.
 
-use super::rivals::{Cut, rivals, scouts};
+use super::rivals::{Cut, Rival, rivals, scouts};
 use super::{Landscape, Pass, Saddle};
 use crate::energy::{Evaluator, Stored, recorded};
 use crate::error::Result;
@@ -141,9 +141,7 @@ pub fn search(land: &mut Landscape, aim: Aim, settings: &Settings) -> Result<Sea
     let h = land.evaluator();
     land.unfold();
     let mut done = Searched::default();
-    let mut random = ChaCha8Rng::seed_from_u64(SEED);
-    let mut rivals = if aim.ends().is_some() { rivals() } else { scouts() };
-    let mut turn = 0;
+    let mut turns = Turns::of(if aim.ends().is_some() { rivals() } else { scouts() });
     let passes = land.edges().len();
     let mut lowest = f64::INFINITY;
     let before = h.evaluated();
@@ -163,14 +161,7 @@ pub fn search(land: &mut Landscape, aim: Aim, settings: &Settings) -> Result<Sea
         }
         let cut = Cut::of(land, aim.ends(), aim.below_mev(land, top_mev), settings.context);
         let count = BATCH.min(wanted - done.quiet);
-        let mut next = || {
-            let count = rivals.len();
-            let mut by_turns = (turn..turn + count).map(|k| k % count);
-            let (by, start) = by_turns.find_map(|k| Some((k, rivals[k].start(&cut, &mut random)?)))?;
-            turn = by + 1;
-            Some(start)
-        };
-        let starts: Vec<Vec<f64>> = (0..count).map_while(|_| next()).collect();
+        let (starts, count_as_quiet): (Vec<Vec<f64>>, Vec<bool>) = (0..count).map_while(|_| turns.next(&cut)).unzip();
         if starts.is_empty() {
             break;
         }
@@ -179,13 +170,40 @@ pub fn search(land: &mut Landscape, aim: Aim, settings: &Settings) -> Result<Sea
         let caught: Vec<Caught> = recorded(h, "searches", &input, || {
             starts.par_iter().map(|start| climb(land, start, below, settings.c)).collect()
         })?;
-        for Caught(pass) in caught {
+        for (Caught(pass), counts) in caught.into_iter().zip(count_as_quiet) {
             let news = pass.is_some_and(|pass| bring(land, *pass, below, aim));
             done.searches += 1;
-            done.quiet = if news { 0 } else { done.quiet + 1 };
+            done.quiet = if news { 0 } else { done.quiet + usize::from(counts) };
         }
     }
     Ok(done)
+}
+
+/// Whose turn it is to name a start.
+struct Turns {
+    rivals: Vec<Box<dyn Rival>>,
+    turn: usize,
+    random: ChaCha8Rng,
+}
+
+impl Turns {
+    fn of(rivals: Vec<Box<dyn Rival>>) -> Turns {
+        Turns { rivals, turn: 0, random: ChaCha8Rng::seed_from_u64(SEED) }
+    }
+
+    /// The next start, and whether a search from there that brings no news counts as quiet.
+    fn next(&mut self, cut: &Cut) -> Option<(Vec<f64>, bool)> {
+        let count = self.rivals.len();
+        if let Some(k) = (0..count).find(|k| self.rivals[*k].goes_first())
+            && let Some(start) = self.rivals[k].start(cut, &mut self.random)
+        {
+            return Some((start, false));
+        }
+        let mut by_turns = (self.turn..self.turn + count).map(|k| k % count);
+        let (by, start) = by_turns.find_map(|k| Some((k, self.rivals[k].start(cut, &mut self.random)?)))?;
+        self.turn = by + 1;
+        Some((start, true))
+    }
 }
 
 /// Puts a pass in; whether that is news. For a route, one as high as another is most likely of no more use than that.

@@ -24,6 +24,11 @@ pub(super) fn scouts() -> Vec<Box<dyn Rival>> {
 pub trait Rival: Debug {
     /// The next one (3N); nothing if there is none to try.
     fn start(&mut self, cut: &Cut, random: &mut ChaCha8Rng) -> Option<Vec<f64>>;
+
+    /// Whether it goes through a list of starts, before all others' turns; that one of these brings no news says little.
+    fn goes_first(&self) -> bool {
+        false
+    }
 }
 
 /// The landscape as the height T cuts it.

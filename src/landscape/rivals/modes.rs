@@ -36,4 +36,8 @@ impl Rival for Modes {
         }
         self.next.pop_front()
     }
+
+    fn goes_first(&self) -> bool {
+        true
+    }
 }
