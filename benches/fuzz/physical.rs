@@ -9,7 +9,7 @@ use std::path::Path;
 /// The longest chain; most are much shorter.
 const MOST_SITES: usize = 30;
 
-/// Small editions of the shipped configs, their materials written out.
+/// Small editions of the shipped configs of chains, their materials written out.
 pub struct Physical {
     seeds: Vec<Value>,
 }
@@ -20,7 +20,10 @@ impl Physical {
         let mut paths: Vec<_> = fs::read_dir(configs).expect("configs").map(|e| e.expect("an entry").path()).collect();
         paths.retain(|p| p.extension().is_some_and(|e| e == "json"));
         paths.sort();
-        Physical { seeds: paths.iter().map(|p| with_material(&read(p), configs)).collect() }
+        // what is changed below speaks of chains
+        let is_chain = |config: &Value| config["lattice"]["chain"].is_object();
+        let seeds = paths.iter().map(|p| with_material(&read(p), configs)).filter(is_chain).collect();
+        Physical { seeds }
     }
 
     /// A config of at most 30 sites: one of the shipped ones made smaller, with up to six changes.

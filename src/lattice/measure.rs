@@ -12,6 +12,9 @@ use crate::units::{Extent, Length, Place};
 
 /// A way over a border is shorter if it is so by more than this part.
 const SHORTER: f64 = 1e-9;
+/// So many turns round are walked one by one; of longer ways whole turns are taken off, so many times at most.
+const FEW_TURNS: f64 = 2.0;
+const MOST_TURNS: usize = 1000;
 
 impl Lattice {
     /// Whether its places are the numbers of its sites: that of a chain.
@@ -153,7 +156,7 @@ pub fn shortest(way: Vector, periods: &[Vector]) -> Vector {
         let turns = (0..periods.len()).map(|d| vector::scale((k / 3usize.pow(d as u32) % 3) as f64 - 1.0, periods[d]));
         turns.fold([0.0; 3], vector::add)
     };
-    let mut way = way;
+    let mut way = by_whole_turns(way, periods);
     loop {
         let mut best = way;
         for image in (0..images).map(|k| vector::add(way, shift(k))) {
@@ -166,6 +169,23 @@ pub fn shortest(way: Vector, periods: &[Vector]) -> Vector {
         }
         way = best;
     }
+}
+
+/// A way less whole turns round, until few are left: what is a million times round is not walked round a million times.
+fn by_whole_turns(mut way: Vector, periods: &[Vector]) -> Vector {
+    for _ in 0..MOST_TURNS {
+        let before = way;
+        for p in periods {
+            let turns = (vector::dot(way, *p) / vector::dot(*p, *p)).round();
+            if turns.abs() > FEW_TURNS {
+                way = vector::sub(way, vector::scale(turns, *p));
+            }
+        }
+        if way == before {
+            break;
+        }
+    }
+    way
 }
 
 #[cfg(test)]
@@ -192,6 +212,17 @@ mod tests {
         assert_eq!((low, high[0]), ([0.0; 3], 7.0));
         let [a, b, c] = oblique(false).cell_vectors();
         assert!(vector::dot(a, c) == 0.0 && vector::dot(b, c).abs() < 1e-15 && vector::norm(c) == 1.0);
+    }
+
+    #[test]
+    fn a_place_any_number_of_times_round_is_found_at_once() {
+        let periods = oblique(true).periods();
+        for far in [1e3, 1e9, 1e15, 1e200, -1e300] {
+            let way = shortest([far, 0.7 * far, 0.0], &periods);
+            assert!(vector::norm(way) < 6.0, "{far}: {way:?}");
+        }
+        let far = vector::add([0.5, 0.25, 0.0], vector::scale(1e6, vector::add(periods[0], periods[1])));
+        assert!(vector::norm(vector::sub(shortest(far, &periods), [0.5, 0.25, 0.0])) < 1e-8);
     }
 
     #[test]

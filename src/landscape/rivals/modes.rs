@@ -1,6 +1,7 @@
-//! From each minimum along its softest modes, in both senses.
+//! From each minimum along its softest modes, in both senses, to where the energy begins to fall.
 
 use super::{Cut, Rival};
+use crate::energy::Evaluator;
 use crate::linalg::{lowest_modes, slab};
 use crate::sphere::rotation_of;
 use crate::stationary::State;
@@ -9,8 +10,9 @@ use std::collections::{BTreeSet, VecDeque};
 
 /// How many modes.
 const MODES: usize = 4;
-/// How far (rad, the spin that turns most).
-const STARTS: [f64; 2] = [0.6, 1.2];
+/// How far the energy is looked at (rad, the spin that turns most), and in how many steps.
+const FARTHEST: f64 = 3.0;
+const STEPS: usize = 20;
 
 /// Which minima were left, and the starts that wait.
 #[derive(Debug, Default)]
@@ -27,11 +29,8 @@ impl Rival for Modes {
             let state = State::at(cut.land.evaluator(), cut.land.minima()[minimum].spins.as_slice().to_vec());
             for mode in lowest_modes(&state.hessian, MODES, &state.zeros) {
                 let along = state.field(&mode.vector);
-                for far in STARTS.into_iter().flat_map(|far| [far, -far]) {
-                    let mut turn = along.clone();
-                    slab::scale(&mut turn, far / rotation_of(&along));
-                    self.next.push_back(state.moved(&turn));
-                }
+                let tops = [1.0, -1.0].map(|sense| top(cut.land.evaluator(), &state, &along, sense));
+                self.next.extend(tops.into_iter().flatten());
             }
         }
         self.next.pop_front()
@@ -40,4 +39,21 @@ impl Rival for Modes {
     fn goes_first(&self) -> bool {
         true
     }
+}
+
+/// Where the energy is highest on the way along a field from a state, if it falls from there on.
+fn top(h: Evaluator, state: &State, along: &[f64], sense: f64) -> Option<Vec<f64>> {
+    let size = rotation_of(along);
+    let mut before: Option<(f64, Vec<f64>)> = None;
+    for k in 1..=STEPS {
+        let mut turn = along.to_vec();
+        slab::scale(&mut turn, sense * FARTHEST * k as f64 / (STEPS as f64 * size));
+        let there = state.moved(&turn);
+        let height = h.difference_mev(&there, &state.m);
+        match before.take() {
+            Some((last, m)) if height < last => return Some(m),
+            _ => before = Some((height, there)),
+        }
+    }
+    None
 }
