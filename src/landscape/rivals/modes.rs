@@ -1,4 +1,4 @@
-//! From each minimum along its softest modes, in both senses, to where the energy begins to fall.
+//! From each minimum along its softest modes, in both senses, to where the energy begins to fall, a quarter turn at most.
 
 use super::{Cut, Rival};
 use crate::energy::Evaluator;
@@ -7,12 +7,13 @@ use crate::sphere::rotation_of;
 use crate::stationary::State;
 use rand_chacha::ChaCha8Rng;
 use std::collections::{BTreeSet, VecDeque};
+use std::f64::consts::FRAC_PI_2;
 
 /// How many modes.
 const MODES: usize = 4;
 /// How far the energy is looked at (rad, the spin that turns most), and in how many steps.
-const FARTHEST: f64 = 3.0;
-const STEPS: usize = 20;
+const FARTHEST: f64 = FRAC_PI_2;
+const STEPS: usize = 10;
 
 /// Which minima were left, and the starts that wait.
 #[derive(Debug, Default)]
@@ -29,8 +30,7 @@ impl Rival for Modes {
             let state = State::at(cut.land.evaluator(), cut.land.minima()[minimum].spins.as_slice().to_vec());
             for mode in lowest_modes(&state.hessian, MODES, &state.zeros) {
                 let along = state.field(&mode.vector);
-                let tops = [1.0, -1.0].map(|sense| top(cut.land.evaluator(), &state, &along, sense));
-                self.next.extend(tops.into_iter().flatten());
+                self.next.extend([1.0, -1.0].map(|sense| top(cut.land.evaluator(), &state, &along, sense)));
             }
         }
         self.next.pop_front()
@@ -41,19 +41,19 @@ impl Rival for Modes {
     }
 }
 
-/// Where the energy is highest on the way along a field from a state, if it falls from there on.
-fn top(h: Evaluator, state: &State, along: &[f64], sense: f64) -> Option<Vec<f64>> {
+/// Where the energy is highest on the way along a field from a state, or how far that is followed.
+fn top(h: Evaluator, state: &State, along: &[f64], sense: f64) -> Vec<f64> {
     let size = rotation_of(along);
-    let mut before: Option<(f64, Vec<f64>)> = None;
+    let (mut highest, mut there) = (f64::NEG_INFINITY, state.m.clone());
     for k in 1..=STEPS {
         let mut turn = along.to_vec();
         slab::scale(&mut turn, sense * FARTHEST * k as f64 / (STEPS as f64 * size));
-        let there = state.moved(&turn);
-        let height = h.difference_mev(&there, &state.m);
-        match before.take() {
-            Some((last, m)) if height < last => return Some(m),
-            _ => before = Some((height, there)),
+        let next = state.moved(&turn);
+        let height = h.difference_mev(&next, &state.m);
+        if height < highest {
+            break;
         }
+        (highest, there) = (height, next);
     }
-    None
+    there
 }
