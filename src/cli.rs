@@ -369,10 +369,10 @@ pub enum Looking {
 }
 
 impl Looking {
-    /// As `--set` has it.
-    pub fn setting(self) -> String {
+    /// As `--set` has it, in a block of the config.
+    pub fn setting(self, block: &str) -> String {
         let word = self.to_possible_value().map(|value| value.get_name().to_string()).unwrap_or_default();
-        format!("search.effort=\"{word}\"")
+        format!("{block}.effort=\"{word}\"")
     }
 }
 

@@ -85,6 +85,13 @@ impl Spins {
         (0..self.sites()).map(|i| self.get(i)).collect()
     }
 
+    /// Their mean, vacant sites left out.
+    pub fn mean(&self, vacant: &[bool]) -> Vector {
+        let there = || (0..self.sites()).filter(|i| !vacant[*i]);
+        let count = there().count().max(1) as f64;
+        [0, 1, 2].map(|c| there().map(|i| self.m[[c, i]]).sum::<f64>() / count)
+    }
+
     /// View of shape (xyz, site).
     pub fn view(&self) -> ArrayView2<'_, f64> {
         self.m.view()

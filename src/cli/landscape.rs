@@ -77,7 +77,7 @@ pub struct Arguments {
 /// Surveys a config into its folder, or says that it is done.
 pub fn landscape(arguments: &Arguments) -> Result<u8> {
     start_threads(arguments.threads)?;
-    let effort = arguments.effort.map(|effort| effort.setting().replacen("search", "landscape", 1));
+    let effort = arguments.effort.map(|effort| effort.setting("landscape"));
     let set: Vec<String> = arguments.set.iter().cloned().chain(effort).collect();
     let loaded = load_landscape(&arguments.config, &set)?;
     let name = &loaded.name;

@@ -4,7 +4,7 @@ pub(super) use super::progress::Progress;
 use super::signals::Signals;
 use super::threads::start_threads;
 use super::write::{Earlier, names, write};
-use super::{Interval, Looking, Run, UNFINISHED, USAGE, note, report, worse};
+use super::{Interval, Run, UNFINISHED, USAGE, note, report, worse};
 use anyhow::Result;
 use serde_json::{Value, json};
 use spinneb::config::{Loaded, load};
@@ -43,7 +43,8 @@ pub fn run(arguments: &Run) -> Result<u8> {
     start_threads(arguments.threads)?;
     let mut code = 0;
     let mut loaded = Vec::new();
-    let set: Vec<String> = arguments.set.iter().cloned().chain(arguments.effort.map(Looking::setting)).collect();
+    let set: Vec<String> =
+        arguments.set.iter().cloned().chain(arguments.effort.map(|effort| effort.setting("search"))).collect();
     for path in &arguments.configs {
         match load(path, &set) {
             Ok(one) => loaded.push(one),

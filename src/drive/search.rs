@@ -122,7 +122,7 @@ impl<'a> Run<'a, '_> {
         Ok(())
     }
 
-    pub(super) fn is_joined(&self, [a, b]: [usize; 2], below_mev: f64) -> bool {
+    fn is_joined(&self, [a, b]: [usize; 2], below_mev: f64) -> bool {
         let parts = self.land.parts_below(below_mev);
         parts[a] == parts[b]
     }

@@ -7,6 +7,7 @@
 use super::pairs::Pairs;
 use super::{Minimum, Pass, Saddle, is_same_state, turned, turns};
 use crate::energy::Evaluator;
+use crate::network::Parts;
 use crate::path::{Path, largest_angle};
 use crate::sphere::SAME;
 use crate::spins::Spins;
@@ -123,6 +124,11 @@ impl<'a> Landscape<'a> {
     /// Energies of the minima above the reference (meV).
     pub fn heights_mev(&self) -> &[f64] {
         &self.heights_mev
+    }
+
+    /// Energy of the lowest minimum above the reference (meV); ∞ where there is none.
+    pub fn lowest_mev(&self) -> f64 {
+        self.heights_mev.iter().copied().fold(f64::INFINITY, f64::min)
     }
 
     /// All passes, each once.
@@ -376,28 +382,6 @@ impl<'a> Landscape<'a> {
             pass
         };
         route.steps.iter().map(pass).collect()
-    }
-}
-
-/// Sets that are joined bit by bit.
-struct Parts(Vec<usize>);
-
-impl Parts {
-    fn of(count: usize) -> Parts {
-        Parts((0..count).collect())
-    }
-
-    fn root(&mut self, mut k: usize) -> usize {
-        while self.0[k] != k {
-            self.0[k] = self.0[self.0[k]];
-            k = self.0[k];
-        }
-        k
-    }
-
-    fn join(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.0[a.max(b)] = a.min(b);
     }
 }
 

@@ -84,7 +84,7 @@ impl Aim {
     fn top_mev(self, land: &Landscape) -> f64 {
         match self {
             Aim::Route([from, to], known_mev) => land.top_mev(from, to).unwrap_or(known_mev),
-            Aim::All(window_mev) => land.heights_mev().iter().copied().fold(f64::INFINITY, f64::min) + window_mev,
+            Aim::All(window_mev) => land.lowest_mev() + window_mev,
         }
     }
 

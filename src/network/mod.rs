@@ -4,8 +4,10 @@
 //! large for a double, and all that is subtracted is known as a sum of what remains.
 
 mod elimination;
+mod parts;
 mod tree;
 
+pub use parts::Parts;
 pub use tree::{Branch, Tree};
 
 use crate::linalg::log_sum;

@@ -3,6 +3,8 @@
 //! At an energy, minima that passes below it join are one branch. With falling energy branches part at saddles, until each is a
 //! minimum alone. O. M. Becker, M. Karplus, J. Chem. Phys. 106, 1495 (1997), doi:10.1063/1.473299.
 
+use super::Parts;
+
 /// A branch of the tree.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Branch {
@@ -46,11 +48,11 @@ impl Tree {
     pub fn of(minima: &[f64], passes: &[([usize; 2], f64)], alike: f64) -> Tree {
         let mut ascending: Vec<&([usize; 2], f64)> = passes.iter().collect();
         ascending.sort_by(|p, q| p.1.total_cmp(&q.1));
-        let mut root: Vec<usize> = (0..minima.len()).collect();
+        let mut together = Parts::of(minima.len());
         let mut branches: Vec<Option<Branch>> =
             minima.iter().enumerate().map(|(k, e)| Some(Branch::leaf(k, *e))).collect();
         for &&([a, b], energy) in &ascending {
-            let [a, b] = [a, b].map(|k| find(&mut root, k));
+            let [a, b] = [a, b].map(|k| together.root(k));
             if a == b {
                 continue;
             }
@@ -61,21 +63,13 @@ impl Tree {
                 false => vec![branch],
             };
             let joined = Branch::joined(energy, parts.flat_map(level).collect());
-            root[a.max(b)] = a.min(b);
+            together.join(a, b);
             branches[a.min(b)] = Some(joined);
         }
         let mut branches: Vec<Branch> = branches.into_iter().flatten().collect();
         branches.sort_by(|p, q| p.lowest.total_cmp(&q.lowest));
         Tree { branches }
     }
-}
-
-fn find(root: &mut [usize], mut k: usize) -> usize {
-    while root[k] != k {
-        root[k] = root[root[k]];
-        k = root[k];
-    }
-    k
 }
 
 #[cfg(test)]

@@ -81,8 +81,7 @@ impl Survey {
         searched: Searched,
         warnings: Vec<String>,
     ) -> Result<Survey> {
-        let heights = land.heights_mev();
-        let lowest = heights.iter().copied().fold(f64::INFINITY, f64::min);
+        let lowest = land.lowest_mev();
         let view = View { land, group, lowest, top: lowest + asked.window_mev };
         let (minimum_kinds, minima, number) = view.minima();
         let (saddle_kinds, saddles, passes) = view.saddles(&number);
@@ -106,6 +105,21 @@ impl Survey {
             survey.lifetimes = Some(lifetimes);
         }
         Ok(survey)
+    }
+
+    /// The kind of a minimum.
+    pub fn minimum_kind(&self, k: usize) -> &Kind {
+        &self.minimum_kinds[self.minima[k].kind]
+    }
+
+    /// The kind of a saddle.
+    pub fn saddle_kind(&self, k: usize) -> &Kind {
+        &self.saddle_kinds[self.saddles[k].kind]
+    }
+
+    /// The two minima beside each saddle, and its energy above the lowest minimum (meV).
+    pub fn passes(&self) -> impl Iterator<Item = ([usize; 2], f64)> {
+        self.saddles.iter().map(|saddle| (saddle.minima, self.saddle_kinds[saddle.kind].above_lowest_mev))
     }
 
     /// Whether every state that symmetry makes of the kinds is listed.

@@ -2,7 +2,7 @@
 
 use super::{Survey, SurveyProblem};
 use crate::landscape::{Landscape, Pass};
-use crate::network::Network;
+use crate::network::{Network, Parts};
 use crate::rates::{LEAST_BARRIER, RateSettings, SaddleRate, Theory, saddle_rates};
 use crate::symmetry::Group;
 use crate::units::K_B;
@@ -52,14 +52,11 @@ impl Lifetimes {
         let saddles = passes.iter().enumerate().map(|(k, pass)| over(land, group, pass, k, settings)).collect();
         let groups = groups(survey, asked);
         let mut found = Lifetimes { settings: settings.clone(), groups, saddles, rows: Vec::new() };
+        let transitions = transitions(survey, &found.groups);
         for t in &settings.temperatures_k {
             let networks = Theory::ALL.map(|theory| found.network(survey, theory, *t));
-            let mut rows = Vec::new();
-            for (from, states) in &found.groups {
-                let others = found.groups.iter().filter(|(name, _)| name != from);
-                let targets = std::iter::once(None).chain(others.map(Some));
-                rows.extend(targets.map(|to| found.row(survey, (from, states), to, *t, &networks)));
-            }
+            let rows: Vec<Lifetime> =
+                transitions.iter().map(|transition| found.row(survey, transition, *t, &networks)).collect();
             found.rows.extend(rows);
         }
         found
@@ -98,15 +95,13 @@ impl Lifetimes {
     fn row(
         &self,
         survey: &Survey,
-        (from, states): (&String, &Vec<usize>),
-        to: Option<&(String, Vec<usize>)>,
+        transition: &Transition,
         temperature_k: f64,
         networks: &[Option<Network>; 2],
     ) -> Lifetime {
-        let outside = || (0..survey.minima.len()).filter(|k| !states.contains(k)).collect();
-        let goal: Vec<usize> = to.map_or_else(outside, |(_, states)| states.clone());
-        let climb_mev = climb(survey, states, &goal);
-        let time = |network: &Option<Network>| network.as_ref()?.ln_passage_s(states, &goal);
+        let Transition { from, to, states, goal, climb_mev } = transition;
+        let climb_mev = *climb_mev;
+        let time = |network: &Option<Network>| network.as_ref()?.ln_passage_s(states, goal);
         let reason = if !survey.is_whole() {
             Some("not all states that symmetry makes are listed".to_string())
         } else if climb_mev == f64::INFINITY {
@@ -119,14 +114,7 @@ impl Lifetimes {
             None
         };
         let ln_time_s = if reason.is_some() { [None; 2] } else { networks.each_ref().map(time) };
-        Lifetime {
-            from: from.clone(),
-            to: to.map(|(name, _)| name.clone()),
-            temperature_k,
-            climb_mev,
-            ln_time_s,
-            reason,
-        }
+        Lifetime { from: from.clone(), to: to.clone(), temperature_k, climb_mev, ln_time_s, reason }
     }
 
     /// Why there is no network.
@@ -142,25 +130,49 @@ fn groups(survey: &Survey, asked: &SurveyProblem) -> Vec<(String, Vec<usize>)> {
     if asked.groups.is_empty() {
         return (0..survey.minima.len().min(LOWEST)).map(|k| (format!("minimum {k}"), vec![k])).collect();
     }
+    let vacant = &asked.problem.hamiltonian.lattice().vacant;
     let held = asked.groups.iter().map(|(name, label)| {
-        let states = (0..survey.minima.len()).filter(|k| label.holds(&survey.minima[*k].spins)).collect();
+        let states = (0..survey.minima.len()).filter(|k| label.holds(&survey.minima[*k].spins, vacant)).collect();
         (name.clone(), states)
     });
     held.filter(|(_, states): &(String, Vec<usize>)| !states.is_empty()).collect()
 }
 
-/// The highest saddle of the lowest way from some minima to others, above the lowest of the first (meV).
-fn climb(survey: &Survey, from: &[usize], to: &[usize]) -> f64 {
-    let mut saddles: Vec<(f64, [usize; 2])> =
-        survey.saddles.iter().map(|s| (survey.saddle_kinds[s.kind].above_lowest_mev, s.minima)).collect();
-    saddles.sort_by(|p, q| p.0.total_cmp(&q.0));
-    let lowest = from.iter().map(|k| survey.minimum_kinds[survey.minima[*k].kind].above_lowest_mev);
-    let lowest = lowest.fold(f64::INFINITY, f64::min);
-    let mut part: Vec<usize> = (0..survey.minima.len()).collect();
-    for (height, [a, b]) in saddles {
-        let (a, b) = (part[a], part[b]);
-        part.iter_mut().filter(|p| **p == b).for_each(|p| *p = a);
-        if from.iter().any(|i| to.iter().any(|j| part[*i] == part[*j])) {
+/// From one group of minima to another, or to any other minimum.
+struct Transition {
+    from: String,
+    to: Option<String>,
+    states: Vec<usize>,
+    goal: Vec<usize>,
+    /// The highest saddle of the lowest way, above the lowest minimum of the group (meV).
+    climb_mev: f64,
+}
+
+/// Out of each group, and from it to each other one.
+fn transitions(survey: &Survey, groups: &[(String, Vec<usize>)]) -> Vec<Transition> {
+    let mut ascending: Vec<([usize; 2], f64)> = survey.passes().collect();
+    ascending.sort_by(|p, q| p.1.total_cmp(&q.1));
+    let mut found = Vec::new();
+    for (from, states) in groups {
+        let outside: Vec<usize> = (0..survey.minima.len()).filter(|k| !states.contains(k)).collect();
+        let others =
+            groups.iter().filter(|(name, _)| name != from).map(|(name, goal)| (Some(name.clone()), goal.clone()));
+        for (to, goal) in std::iter::once((None, outside)).chain(others) {
+            let climb_mev = climb(survey, &ascending, states, &goal);
+            found.push(Transition { from: from.clone(), to, states: states.clone(), goal, climb_mev });
+        }
+    }
+    found
+}
+
+/// The highest saddle of the lowest way from some minima to others, above the lowest of the first (meV); passes by ascending energy.
+fn climb(survey: &Survey, ascending: &[([usize; 2], f64)], from: &[usize], to: &[usize]) -> f64 {
+    let lowest = from.iter().map(|k| survey.minimum_kind(*k).above_lowest_mev).fold(f64::INFINITY, f64::min);
+    let mut parts = Parts::of(survey.minima.len());
+    for &([a, b], height) in ascending {
+        parts.join(a, b);
+        let reached: Vec<usize> = from.iter().map(|k| parts.root(*k)).collect();
+        if to.iter().any(|k| reached.contains(&parts.root(*k))) {
             return height - lowest;
         }
     }

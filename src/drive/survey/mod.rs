@@ -14,7 +14,7 @@ use super::run::{END_TOLERANCE, Run};
 use super::{Observer, Problem};
 use crate::energy::recorded;
 use crate::error::Result;
-use crate::geometry::Direction;
+use crate::geometry::{Direction, vector};
 use crate::landscape::{Aim, Effort, Minimum, Searched, Settings, search};
 use crate::rates::RateSettings;
 use crate::record::Count;
@@ -60,11 +60,9 @@ pub struct MeanSpin {
 }
 
 impl MeanSpin {
-    /// Whether a state is one of them.
-    pub fn holds(&self, spins: &Spins) -> bool {
-        let n = spins.sites() as f64;
-        let mean = |c: usize| spins.as_slice()[c * spins.sites()..(c + 1) * spins.sites()].iter().sum::<f64>() / n;
-        let along: f64 = (0..3).map(|c| self.axis.vector()[c] * mean(c)).sum();
+    /// Whether a state is one of them; vacant sites do not count.
+    pub fn holds(&self, spins: &Spins, vacant: &[bool]) -> bool {
+        let along = vector::dot(self.axis.vector(), spins.mean(vacant));
         (self.from..=self.to).contains(&along)
     }
 }
@@ -132,9 +130,8 @@ impl Run<'_, '_> {
             Ok(Minimum::examine(h, &relaxed.spins))
         };
         let minima: Vec<Minimum> = recorded(h, "seeds", &input, || starts.par_iter().map(relaxed).collect())?;
-        let lowest = |heights: &[f64]| heights.iter().copied().fold(f64::INFINITY, f64::min);
         let heights: Vec<f64> = minima.iter().map(|m| self.land.height_mev(m.spins.as_slice())).collect();
-        let top = lowest(&heights).min(lowest(self.land.heights_mev())) + asked.window_mev;
+        let top = heights.iter().copied().fold(self.land.lowest_mev(), f64::min) + asked.window_mev;
         for (minimum, _) in minima.iter().zip(&heights).filter(|(m, height)| m.is_proven() && **height <= top) {
             self.land.add_minimum(minimum);
         }
@@ -169,8 +166,7 @@ impl Run<'_, '_> {
     /// Joins pairs of minima that no pass joins below the window's top, the nearest first, each kind with its nearest neighbour once.
     fn join(&mut self, asked: &SurveyProblem, before: Count, tried: &mut BTreeSet<usize>) -> Result<()> {
         loop {
-            let lowest = self.land.heights_mev().iter().copied().fold(f64::INFINITY, f64::min);
-            let top = lowest + asked.window_mev;
+            let top = self.land.lowest_mev() + asked.window_mev;
             let part = self.land.parts_below(top);
             let is_in = |k: usize| self.land.standing_for(k) == k && self.land.heights_mev()[k] <= top;
             let nodes: Vec<usize> = (0..part.len()).filter(|k| is_in(*k)).collect();

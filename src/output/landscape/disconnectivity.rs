@@ -20,9 +20,8 @@ pub(super) fn draw(report: &LandscapeReport) -> Result<Option<Canvas>> {
     if s.minima.is_empty() {
         return Ok(None);
     }
-    let minima: Vec<f64> = s.minima.iter().map(|m| s.minimum_kinds[m.kind].above_lowest_mev).collect();
-    let passes: Vec<([usize; 2], f64)> =
-        s.saddles.iter().map(|x| (x.minima, s.saddle_kinds[x.kind].above_lowest_mev)).collect();
+    let minima: Vec<f64> = (0..s.minima.len()).map(|k| s.minimum_kind(k).above_lowest_mev).collect();
+    let passes: Vec<([usize; 2], f64)> = s.passes().collect();
     let top = passes.iter().map(|p| p.1).chain(minima.iter().copied()).fold(0.0, f64::max);
     let tree = Tree::of(&minima, &passes, ALIKE * top);
     let high = tree.branches.iter().map(|b| b.energy).fold(0.0, f64::max);

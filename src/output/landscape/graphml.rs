@@ -18,13 +18,13 @@ pub(super) fn render(report: &LandscapeReport) -> Result<Vec<u8>> {
     let s = report.survey;
     let mut text = HEAD.to_string();
     for (k, minimum) in s.minima.iter().enumerate() {
-        let (kind, e) = (minimum.kind, s.minimum_kinds[minimum.kind].above_lowest_mev);
+        let (kind, e) = (minimum.kind, s.minimum_kind(k).above_lowest_mev);
         let data = format!(r#"<data key="kind">{kind}</data><data key="energy">{e:?}</data>"#);
         // writing into a string cannot fail
         let _ = writeln!(text, r#"    <node id="{k}">{data}</node>"#);
     }
     for (k, saddle) in s.saddles.iter().enumerate() {
-        let ([a, b], kind, e) = (saddle.minima, saddle.kind, s.saddle_kinds[saddle.kind].above_lowest_mev);
+        let ([a, b], kind, e) = (saddle.minima, saddle.kind, s.saddle_kind(k).above_lowest_mev);
         let data = format!(
             r#"<data key="saddle">{k}</data><data key="saddle_kind">{kind}</data><data key="height">{e:?}</data>"#
         );

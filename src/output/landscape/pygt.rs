@@ -10,51 +10,50 @@
 //! temperatures. Each part of the network that no pass joins with another has an S of its own to count from.
 
 use super::LandscapeReport;
+use crate::drive::survey::Survey;
 use crate::error::{Error, Result};
-use crate::rates::{SaddleRate, Theory};
+use crate::rates::SaddleRate;
 use std::f64::consts::PI;
 use std::fmt::Write;
 
 pub(super) fn minima(report: &LandscapeReport) -> Result<Vec<u8>> {
     let s = report.survey;
-    let entropies = entropies(report)?;
-    let row = |k: usize| (s.minimum_kinds[s.minima[k].kind].above_lowest_mev, entropies[k]);
-    let lines = (0..s.minima.len()).map(row).map(|(e, entropy)| format!("{e:?} {entropy:?} 1 1.0 1.0 1.0\n"));
-    Ok(lines.collect::<String>().into_bytes())
+    let row =
+        |(k, entropy): (usize, &f64)| format!("{:?} {entropy:?} 1 1.0 1.0 1.0\n", s.minimum_kind(k).above_lowest_mev);
+    Ok(entropies(s, &steps(s))?.iter().enumerate().map(row).collect::<String>().into_bytes())
 }
 
 pub(super) fn saddles(report: &LandscapeReport) -> Result<Vec<u8>> {
     let s = report.survey;
-    let entropies = entropies(report)?;
+    let steps = steps(s);
+    let entropies = entropies(s, &steps)?;
     let mut text = String::new();
-    for saddle in &s.saddles {
-        let ([a, b], e) = (saddle.minima, s.saddle_kinds[saddle.kind].above_lowest_mev);
-        let Some(step) = step(report, saddle.kind, 0) else { continue };
+    for (saddle, ([a, b], e)) in s.saddles.iter().zip(s.passes()) {
+        let Some([step, _]) = steps[saddle.kind] else { continue };
         // writing into a string cannot fail
         let _ = writeln!(text, "{e:?} {:?} 1 {} {} 1.0 1.0 1.0", entropies[a] - step, a + 1, b + 1);
     }
     Ok(text.into_bytes())
 }
 
-/// S_a − S_s from one of a saddle's minima; nothing where a rate was refused.
-fn step(report: &LandscapeReport, kind: usize, side: usize) -> Option<f64> {
-    let lifetimes = report.survey.lifetimes.as_ref()?;
-    let has = |theory: Theory| lifetimes.saddles.iter().flatten().all(|r| prefactor(r, theory).is_some());
-    let theory = if has(Theory::Langer) { Theory::Langer } else { Theory::Htst };
-    let prefactor = prefactor(&lifetimes.saddles[kind][side], theory)?;
-    Some(2.0 * (libm::log(2.0 * PI) + prefactor.ln_hz_at(lifetimes.settings.temperatures_k[0])))
-}
-
-fn prefactor(r: &SaddleRate, theory: Theory) -> Option<crate::rates::Prefactor> {
-    match theory {
-        Theory::Htst => r.htst,
-        Theory::Langer => r.langer,
-    }
+/// S_a − S_s of each kind of saddles, from the first of its two minima and from the second; nothing where a rate was refused.
+fn steps(s: &Survey) -> Vec<Option<[f64; 2]>> {
+    let Some(lifetimes) = &s.lifetimes else { return vec![None; s.saddle_kinds.len()] };
+    let kelvin = lifetimes.settings.temperatures_k[0];
+    let all_have_langer = lifetimes.saddles.iter().flatten().all(|r| r.langer.is_some());
+    let step = |r: &SaddleRate| {
+        let prefactor = if all_have_langer { r.langer } else { r.htst }?;
+        Some(2.0 * (libm::log(2.0 * PI) + prefactor.ln_hz_at(kelvin)))
+    };
+    lifetimes.saddles.iter().map(|[on, back]| Some([step(on)?, step(back)?])).collect()
 }
 
 /// S of each minimum: along saddles from the first of each part of the network, whose S is 0.
-fn entropies(report: &LandscapeReport) -> Result<Vec<f64>> {
-    let s = report.survey;
+fn entropies(s: &Survey, steps: &[Option<[f64; 2]>]) -> Result<Vec<f64>> {
+    let mut beside: Vec<Vec<usize>> = vec![Vec::new(); s.minima.len()];
+    for (k, saddle) in s.saddles.iter().enumerate() {
+        saddle.minima.iter().for_each(|minimum| beside[*minimum].push(k));
+    }
     let mut found = vec![f64::NAN; s.minima.len()];
     for start in 0..found.len() {
         if !found[start].is_nan() {
@@ -63,12 +62,11 @@ fn entropies(report: &LandscapeReport) -> Result<Vec<f64>> {
         found[start] = 0.0;
         let mut front = vec![start];
         while let Some(here) = front.pop() {
-            for saddle in s.saddles.iter().filter(|x| x.minima.contains(&here)) {
+            for saddle in beside[here].iter().map(|k| &s.saddles[*k]) {
                 let side = usize::from(saddle.minima[0] != here);
                 let there = saddle.minima[1 - side];
-                let steps = (step(report, saddle.kind, side), step(report, saddle.kind, 1 - side));
-                if let (true, (Some(up), Some(down))) = (found[there].is_nan(), steps) {
-                    found[there] = found[here] - up + down;
+                if let (true, Some(step)) = (found[there].is_nan(), steps[saddle.kind]) {
+                    found[there] = found[here] - step[side] + step[1 - side];
                     front.push(there);
                 }
             }

@@ -4,21 +4,23 @@ use super::LandscapeReport;
 use crate::drive::survey::Lifetime;
 use crate::error::Result;
 use crate::files::{self, Array};
+use crate::geometry::Vector;
 use crate::output::csv::{Cell, Table};
 use crate::spins::Spins;
 
 /// A row a minimum: number, kind (its `id` in `landscape.json`), energy and mean spin.
 pub(super) fn minima(report: &LandscapeReport) -> Result<Vec<u8>> {
     let s = report.survey;
-    let kind = |k: usize| &s.minimum_kinds[s.minima[k].kind];
+    let kind = |k: usize| s.minimum_kind(k);
     let all = || 0..s.minima.len();
     let mut table = Table::new("minima.csv");
     table.whole("minimum", all());
     table.whole("kind", all().map(|k| s.minima[k].kind));
     table.real("energy_meV", all().map(|k| kind(k).energy_mev));
     table.real("above_lowest_meV", all().map(|k| kind(k).above_lowest_mev));
+    let means: Vec<Vector> = s.minima.iter().map(|m| m.spins.mean(&report.lattice.vacant)).collect();
     for (c, name) in ["mean_spin_x", "mean_spin_y", "mean_spin_z"].into_iter().enumerate() {
-        table.real(name, all().map(|k| mean(&s.minima[k].spins, c)));
+        table.real(name, means.iter().map(|mean| mean[c]));
     }
     table.render()
 }
@@ -26,15 +28,15 @@ pub(super) fn minima(report: &LandscapeReport) -> Result<Vec<u8>> {
 /// A row a saddle: number, kind, energy, the two minima beside it and what the saddle is above them.
 pub(super) fn saddles(report: &LandscapeReport) -> Result<Vec<u8>> {
     let s = report.survey;
-    let above = |k: usize| s.saddle_kinds[s.saddles[k].kind].above_lowest_mev;
-    let of_minimum = |k: usize, side: usize| s.minimum_kinds[s.minima[s.saddles[k].minima[side]].kind].above_lowest_mev;
+    let above = |k: usize| s.saddle_kind(k).above_lowest_mev;
+    let of_minimum = |k: usize, side: usize| s.minimum_kind(s.saddles[k].minima[side]).above_lowest_mev;
     let all = || 0..s.saddles.len();
     let mut table = Table::new("saddles.csv");
     table.whole("saddle", all());
     table.whole("kind", all().map(|k| s.saddles[k].kind));
     table.whole("minimum_a", all().map(|k| s.saddles[k].minima[0]));
     table.whole("minimum_b", all().map(|k| s.saddles[k].minima[1]));
-    table.real("energy_meV", all().map(|k| s.saddle_kinds[s.saddles[k].kind].energy_mev));
+    table.real("energy_meV", all().map(|k| s.saddle_kind(k).energy_mev));
     table.real("above_lowest_meV", all().map(above));
     table.real("barrier_from_a_meV", all().map(|k| above(k) - of_minimum(k, 0)));
     table.real("barrier_from_b_meV", all().map(|k| above(k) - of_minimum(k, 1)));
@@ -82,9 +84,4 @@ pub(super) fn npz(report: &LandscapeReport) -> Result<Vec<u8>> {
         ("saddles_minima", Array { shape: vec![s.saddles.len(), 2], numbers: ends }),
     ];
     files::write_npz(&arrays.map(|(name, array)| (name.to_string(), array)))
-}
-
-fn mean(spins: &Spins, component: usize) -> f64 {
-    let n = spins.sites();
-    spins.as_slice()[component * n..(component + 1) * n].iter().sum::<f64>() / n as f64
 }
