@@ -19,7 +19,7 @@ use crate::stationary::{Relaxed, relax_to_minimum};
 /// Single states are evaluated until so many spins were, or so many times as often as for the first paths; and their Hessians until
 /// so many operations were spent on factorising them, or as many times as often.
 const SPINS: usize = 10_000_000;
-const FLOPS: f64 = 5e8;
+const FLOPS: f64 = 1e9;
 const PARTS: usize = 2;
 
 /// Domains with a spin that is further apart are two (rad).

@@ -8,7 +8,7 @@ use super::pairs::Pairs;
 use super::{Minimum, Pass, Saddle, is_same_state, turned, turns};
 use crate::energy::Evaluator;
 use crate::network::Parts;
-use crate::path::{Path, largest_angle};
+use crate::path::{Path, is_within, largest_angle};
 use crate::sphere::SAME;
 use crate::spins::Spins;
 use crate::symmetry::{Group, Operation};
@@ -154,7 +154,7 @@ impl<'a> Landscape<'a> {
     /// Whether a state of this height is so near to a known saddle that a climb from it would end there.
     pub fn is_beside_a_saddle(&self, m: &[f64], height_mev: f64) -> bool {
         let near = BESIDE * BESIDE * self.h.stiffness_mev() * self.h.sites() as f64;
-        let beside = |e: &Edge| (e.height_mev - height_mev).abs() < near && largest_angle(&e.saddle, m) < BESIDE;
+        let beside = |e: &Edge| (e.height_mev - height_mev).abs() < near && is_within(&e.saddle, m, BESIDE);
         self.edges.iter().any(beside)
     }
 

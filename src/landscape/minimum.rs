@@ -4,7 +4,7 @@ use super::turns::{turned, turns};
 use crate::energy::Evaluator;
 use crate::field::Components;
 use crate::geometry::vector;
-use crate::path::largest_angle;
+use crate::path::{is_within, largest_angle};
 use crate::sphere::SAME;
 use crate::spins::Spins;
 use crate::stationary::{Spectrum, State};
@@ -83,7 +83,7 @@ impl Minimum {
 /// Whether two states have the same spins, perhaps after a rotation about the symmetry axes.
 pub fn is_same_state(h: Evaluator, a: &[f64], b: &[f64]) -> bool {
     let (p, q) = (Components::new(a), Components::new(b));
-    if (0..h.sites()).all(|i| vector::norm(vector::sub(p.get(i), q.get(i))) < SAME) {
+    if is_within(a, b, SAME) {
         return true;
     }
     // what a rotation about the axis leaves as it is tells most states apart

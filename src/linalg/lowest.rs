@@ -1,4 +1,5 @@
-//! The lowest eigenvalues of a matrix: slice by slice, or by block Lanczos on the inverse.
+//! The lowest eigenvalues of a matrix: slice by slice, or by block Lanczos on the inverse; those of a matrix that is factorised
+//! already by the latter alone.
 
 use super::ritz::{APART, Mode, combination, rayleigh_ritz};
 use super::slices::sliced;
@@ -10,8 +11,9 @@ use rand_chacha::ChaCha8Rng;
 const BLOCKS: [usize; 2] = [2, 4];
 /// A vector with |A⁻¹v − θv| ≤ this part of θ is an eigenvector: its eigenvalue is right to the square of it.
 const RESIDUAL: f64 = 1e-6;
-/// Most vectors.
+/// Most vectors; most from the factors of the matrix itself, whose modes may be far from zero.
 const MOST: usize = 160;
+const MOST_AS_IT_IS: usize = 60;
 
 /// The `count` lowest modes of `matrix` in the space orthogonal to `known` (orthonormal vectors, invariant under it),
 /// ascending. Fewer where the space is smaller. Deterministic.
@@ -45,6 +47,32 @@ pub fn soft_modes(matrix: &Matrix, count: usize, known: &[Vec<f64>], below: f64)
     found.unwrap_or_else(|| lanczos(matrix, count, known, below).0)
 }
 
+/// The vectors of all negative modes of a factorised matrix, or, where there are none, of the lowest mode; ascending, in the space
+/// orthogonal to `known` (orthonormal, invariant). From `starts`, which should have something of them, by block Lanczos on the
+/// inverse: as many as the inertia counts, each with |A⁻¹v − v/λ| ≤ `part`/|λ|. Nothing where so many are not found soon.
+pub fn modes_by_factors(
+    factors: &Factors,
+    known: &[Vec<f64>],
+    starts: Vec<Vec<f64>>,
+    part: f64,
+) -> Option<Vec<Vec<f64>>> {
+    let negatives = factors.negatives();
+    let mut krylov = Krylov::new(factors, known, 1);
+    (krylov.starts, krylov.passes) = (starts, 1);
+    let room = factors.order() - known.len();
+    let mut look = 2 * negatives + 4;
+    loop {
+        let last = !krylov.grow(room) || krylov.basis.len() >= MOST_AS_IT_IS;
+        if last || krylov.basis.len() >= look {
+            let found = krylov.negative(negatives, part);
+            if last || found.is_some() {
+                return found;
+            }
+            look += look / 2;
+        }
+    }
+}
+
 /// Some of the `count` lowest modes, at least one, by block Lanczos; and whether they are eigenvectors, none missed.
 fn lanczos(matrix: &Matrix, count: usize, known: &[Vec<f64>], below: f64) -> (Vec<Mode>, bool) {
     let room = matrix.order() - known.len();
@@ -52,16 +80,15 @@ fn lanczos(matrix: &Matrix, count: usize, known: &[Vec<f64>], below: f64) -> (Ve
     let shift = shift_below(matrix, scale);
     let mut shifted = matrix.clone();
     shifted.shift(shift);
-    let mut factors = shifted.factor();
+    let factors = shifted.factor();
     let mut modes = Vec::new();
     for block in BLOCKS {
-        let mut krylov = Krylov::new(factors, known, block);
+        let mut krylov = Krylov::new(&factors, known, block);
         let (space, settled) = krylov.largest(room, count, 1.0 / (below + shift));
         modes = rayleigh_ritz(matrix, &space);
         if none_is_missed(matrix, &modes, known, scale) {
             return (modes, settled);
         }
-        factors = krylov.factors;
     }
     (modes, false)
 }
@@ -76,11 +103,15 @@ fn none_is_missed(matrix: &Matrix, modes: &[Mode], known: &[Vec<f64>], scale: f6
     shifted.factor().negatives() <= counted
 }
 
-/// The space that the inverse spans from a random block, and the inverse within it.
+/// The space that the inverse spans from a block, and the inverse within it.
 struct Krylov<'a> {
-    factors: Factors,
+    factors: &'a Factors,
     known: &'a [Vec<f64>],
     block: usize,
+    /// What the block is made of first; where that is too few, of anything.
+    starts: Vec<Vec<f64>>,
+    /// How often a vector is made orthogonal to those before it.
+    passes: usize,
     random: ChaCha8Rng,
     /// Orthonormal.
     basis: Vec<Vec<f64>>,
@@ -91,9 +122,10 @@ struct Krylov<'a> {
 }
 
 impl<'a> Krylov<'a> {
-    fn new(factors: Factors, known: &'a [Vec<f64>], block: usize) -> Krylov<'a> {
-        let random = ChaCha8Rng::seed_from_u64(0x5eed);
-        Krylov { factors, known, block, random, basis: Vec::new(), images: Vec::new(), products: Vec::new() }
+    fn new(factors: &'a Factors, known: &'a [Vec<f64>], block: usize) -> Krylov<'a> {
+        let (starts, random) = (Vec::new(), ChaCha8Rng::seed_from_u64(0x5eed));
+        let (basis, images, products) = (Vec::new(), Vec::new(), Vec::new());
+        Krylov { factors, known, block, starts, passes: 2, random, basis, images, products }
     }
 
     /// The `count` eigenvectors to which the inverse is largest, orthonormal, but for the first only those to which it is more
@@ -123,7 +155,7 @@ impl<'a> Krylov<'a> {
         for k in 0..wanted {
             let next = match self.images.get(last + k) {
                 Some(image) if old > 0 => image.clone(),
-                _ => self.anything(),
+                _ => self.starts.pop().unwrap_or_else(|| self.anything()),
             };
             if let Some(v) = self.new_direction(next) {
                 self.basis.push(v);
@@ -147,7 +179,7 @@ impl<'a> Krylov<'a> {
         for _ in 0..4 {
             let size = slab::norm(&v);
             slab::scale(&mut v, 1.0 / size.max(f64::MIN_POSITIVE));
-            for _ in 0..2 {
+            for _ in 0..self.passes {
                 for space in [self.known, &self.basis] {
                     slab::without(&mut v, space);
                 }
@@ -177,17 +209,35 @@ impl<'a> Krylov<'a> {
                 break;
             }
             let v = combination(w, &self.basis);
-            if !last {
-                let mut rest = combination(w, &self.images);
-                slab::add_scaled(&mut rest, -theta, &v);
-                slab::without(&mut rest, self.known);
-                if slab::norm(&rest) > RESIDUAL * theta.abs() {
-                    return None;
-                }
+            if !last && !self.is_eigenvector(*theta, w, &v, RESIDUAL) {
+                return None;
             }
             vectors.push(v);
         }
         Some(vectors)
+    }
+
+    /// The `count` vectors to which the inverse is negative, nearest zero first, if they are eigenvectors to this part of their
+    /// values; where none are, the one to which it is largest.
+    fn negative(&self, count: usize, part: f64) -> Option<Vec<Vec<f64>>> {
+        let (values, weights) = eigen_symmetric(&self.projected(), self.basis.len());
+        let wanted = if count == 0 { values.len().checked_sub(1)?..values.len() } else { 0..count };
+        if wanted.end > values.len() || values[wanted.end - 1] > 0.0 && count > 0 {
+            return None;
+        }
+        let vector = |k: usize| {
+            let v = combination(&weights[k], &self.basis);
+            self.is_eigenvector(values[k], &weights[k], &v, part).then_some(v)
+        };
+        wanted.rev().map(vector).collect()
+    }
+
+    /// Whether v = Σ w_k b_k is an eigenvector of the inverse, to a part of its eigenvalue θ.
+    fn is_eigenvector(&self, theta: f64, w: &[f64], v: &[f64], part: f64) -> bool {
+        let mut rest = combination(w, &self.images);
+        slab::add_scaled(&mut rest, -theta, v);
+        slab::without(&mut rest, self.known);
+        slab::norm(&rest) <= part * theta.abs()
     }
 }
 

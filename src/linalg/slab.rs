@@ -53,6 +53,14 @@ pub fn norm(a: &[f64]) -> f64 {
     dot(a, a).sqrt()
 }
 
+/// Adds a vector of this length, roughly, that has a part of every mode: the multiples of the golden ratio, less their whole parts.
+pub fn stir(a: &mut [f64], length: f64) {
+    let each = length * (12.0 / a.len() as f64).sqrt();
+    for (k, a) in a.iter_mut().enumerate() {
+        *a += each * (((k + 1) as f64 * 0.618_033_988_749_894_9).fract() - 0.5);
+    }
+}
+
 /// The overlaps of `v` with all of `vectors`, tile by tile, so that v is read once.
 pub fn overlaps(vectors: &[Vec<f64>], v: &[f64]) -> Vec<f64> {
     let mut sums = vec![0.0; vectors.len()];

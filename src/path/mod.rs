@@ -9,6 +9,7 @@ mod resample;
 pub use resample::blend;
 
 use crate::field::Components;
+use crate::geometry::vector;
 use crate::sphere::angles_between;
 use crate::spins::{Spins, are_unit};
 use crate::threads::{READ, apiece};
@@ -116,6 +117,13 @@ pub fn distance(a: &[f64], b: &[f64]) -> f64 {
 pub fn largest_angle(a: &[f64], b: &[f64]) -> f64 {
     angles_between(Components::new(a), Components::new(b)).1
 }
+
+/// Whether no spin's place in one is farther than this from its place in the other (length of the chord); stops at the first that is.
+pub fn is_within(a: &[f64], b: &[f64], chord: f64) -> bool {
+    let (p, q) = (Components::new(a), Components::new(b));
+    (0..a.len() / 3).all(|i| vector::norm(vector::sub(p.get(i), q.get(i))) < chord)
+}
+
 impl Serialize for Path {
     /// The number of images, and all numbers, image after image.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {

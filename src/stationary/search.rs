@@ -5,7 +5,7 @@ use super::spectrum::Spectrum;
 use super::state::State;
 use super::step::{Region, Step, Wanted};
 use crate::energy::Evaluator;
-use crate::linalg::{Matrix, lowest_from};
+use crate::linalg::Matrix;
 use std::mem::swap;
 
 /// A torque of this part of the stiffness is rounding error. Below the other one, a search ends with a step that does not halve it.
@@ -189,9 +189,8 @@ impl<'a> Search<'a> {
             return Err(GaveUp::Stuck);
         }
         let state = State::of(self.h, self.here);
-        let mut u = Vec::new();
-        let curvature_mev = lowest_from(&state.hessian, self.h.stiffness_mev(), &state.zeros, 1e-8, &mut u, &mut room);
-        let mut mode = state.field(&u);
+        let lowest = state.lowest_mode().ok_or(GaveUp::Stuck)?;
+        let (mut mode, curvature_mev) = (state.field(&lowest.vector), lowest.value);
         self.h.hold_frozen(&mut mode);
         Ok(Saddle { point: state.point, mode, curvature_mev })
     }

@@ -13,15 +13,15 @@
 use super::border::pin;
 use super::point::Point;
 use crate::energy::Evaluator;
-use crate::linalg::{Factors, Matrix, lowest_from, remove, slab};
+use crate::linalg::{Factors, Matrix, lowest_modes, modes_by_factors, remove, slab};
 use crate::sphere::rotation_of;
 use std::mem::take;
 use std::ops::Range;
 
 /// More modes than this are not reversed one by one: the step is one to a minimum.
 const MODES: usize = 8;
-/// How sharp a mode must be to be reversed, in parts of the stiffness.
-const MODE: f64 = 1e-5;
+/// How sharp a mode must be to be reversed: |A⁻¹v − v/λ| in parts of 1/|λ|.
+const MODE: f64 = 0.3;
 /// The model's error, in parts of |g||s|, below which the radius is doubled, and above which it is half the step.
 const GOOD: f64 = 0.15;
 const POOR: f64 = 0.3;
@@ -85,7 +85,7 @@ impl<'a> Region<'a> {
     /// Newton's step from a point, in `v`, wherever it leads; its largest rotation of a spin (rad).
     pub fn plain(&mut self, here: &Point) -> f64 {
         here.write_hessian(self.h, 0.0, &mut self.hessian);
-        self.newton(here);
+        self.room = self.newton(here).into_memory();
         here.write_field(&self.x, &mut self.v);
         rotation_of(&self.v)
     }
@@ -93,12 +93,16 @@ impl<'a> Region<'a> {
     /// The step from a point, in `v`.
     pub fn step(&mut self, here: &Point) -> Step {
         here.write_hessian(self.h, 0.0, &mut self.hessian);
-        let negative = self.newton(here);
+        let factors = self.newton(here);
+        let negative = factors.negatives();
         match (self.wanted, negative) {
-            (Wanted::Minimum, 0) | (Wanted::Saddle, 1) => {}
-            (Wanted::Saddle, 0) => self.reverse(here, 0..1),
-            (Wanted::Saddle, 2..=MODES) => self.reverse(here, 1..negative),
-            _ => self.shifted(here),
+            (Wanted::Saddle, 0) => self.reverse(here, &factors, 0..1),
+            (Wanted::Saddle, 2..=MODES) => self.reverse(here, &factors, 1..negative),
+            _ => {}
+        }
+        self.room = factors.into_memory();
+        if negative > self.wanted.negative() && (self.wanted == Wanted::Minimum || negative > MODES) {
+            self.shifted(here);
         }
         here.write_field(&self.x, &mut self.v);
         self.h.hold_frozen(&mut self.v);
@@ -131,13 +135,15 @@ impl<'a> Region<'a> {
 
     /// A way along one of the lowest modes (rad, any spin), in `v`.
     pub fn along(&mut self, here: &Point, mode: usize, rotation: f64) {
-        self.reverse(here, mode..mode + 1);
-        self.v.clone_from(&self.modes[mode]);
-        slab::scale(&mut self.v, rotation / rotation_of(&self.modes[mode]));
+        let modes = lowest_modes(&self.hessian, mode + 1, &here.zeros);
+        here.write_field(&modes[mode.min(modes.len() - 1)].vector, &mut self.v);
+        self.h.hold_frozen(&mut self.v);
+        let size = rotation_of(&self.v);
+        slab::scale(&mut self.v, rotation / size);
     }
 
-    /// Newton's step in `x`; the negative directions.
-    fn newton(&mut self, here: &Point) -> usize {
+    /// Newton's step in `x`; the factors.
+    fn newton(&mut self, here: &Point) -> Factors {
         let mut matrix = take(&mut self.room);
         matrix.copy_from(&self.hessian);
         let mut used = Vec::new();
@@ -147,34 +153,31 @@ impl<'a> Region<'a> {
         self.solve(here, matrix)
     }
 
-    /// Solves A x = −g; the negative directions of A.
-    fn solve(&mut self, here: &Point, matrix: Matrix) -> usize {
+    /// Solves A x = −g; the factors of A.
+    fn solve(&mut self, here: &Point, matrix: Matrix) -> Factors {
         here.write_downhill(&mut self.x);
         let factors = Factors::solving_sized(matrix, self.h.stiffness_mev(), &mut self.x, 1);
         remove(&mut self.x, &here.zeros);
-        let negatives = factors.negatives();
-        self.room = factors.into_memory();
-        negatives
+        factors
     }
 
-    /// Reverses the parts of `x` along some of the lowest modes.
-    fn reverse(&mut self, here: &Point, which: Range<usize>) {
-        let mut known = here.zeros.clone();
-        self.modes.resize_with(self.modes.len().max(which.end), Vec::new);
-        for (k, mode) in self.modes.iter_mut().enumerate().take(which.end) {
-            let mut u = Vec::new();
-            if !mode.is_empty() {
-                here.basis.write_coordinates(mode, &mut u);
-            }
-            lowest_from(&self.hessian, self.h.stiffness_mev(), &known, MODE, &mut u, &mut self.room);
-            here.write_field(&u, mode);
-            self.h.hold_frozen(mode);
-            if which.contains(&k) {
-                let along = slab::dot(&u, &self.x);
-                slab::add_scaled(&mut self.x, -2.0 * along, &u);
-            }
-            known.push(u);
+    /// Reverses the parts of `x`, Newton's step, along some of the lowest modes, which are told by its factors.
+    fn reverse(&mut self, here: &Point, factors: &Factors, which: Range<usize>) {
+        let mut start = self.x.clone();
+        slab::stir(&mut start, 0.1 * slab::norm(&self.x));
+        let mut known = Vec::new();
+        for mode in &self.modes {
+            here.basis.write_coordinates(mode, &mut known);
+            slab::add_scaled(&mut start, slab::norm(&self.x), &known);
         }
+        let modes = modes_by_factors(factors, &here.zeros, vec![start], MODE).unwrap_or_else(|| {
+            lowest_modes(&self.hessian, which.end, &here.zeros).into_iter().map(|mode| mode.vector).collect()
+        });
+        for u in modes.get(which).unwrap_or_default() {
+            let along = slab::dot(u, &self.x);
+            slab::add_scaled(&mut self.x, -2.0 * along, u);
+        }
+        self.modes = modes.iter().map(|u| here.field(u)).collect();
     }
 
     /// The step of the least shift, in fours, that makes the Hessian positive definite.
@@ -185,7 +188,10 @@ impl<'a> Region<'a> {
             let mut matrix = take(&mut self.room);
             matrix.copy_from(&self.hessian);
             matrix.shift(shift);
-            if self.solve(here, matrix) == 0 {
+            let factors = self.solve(here, matrix);
+            let positive = factors.negatives() == 0;
+            self.room = factors.into_memory();
+            if positive {
                 break;
             }
             shift *= 4.0;
