@@ -78,7 +78,9 @@ fn a_spin_with_two_axes_has_two_minima_and_two_saddles() {
 #[test]
 fn lifetimes_between_up_and_down_are_those_of_a_run_between_them() {
     for sites in [1, 8] {
-        let (document, folder) = landscape(&chain(sites), &[]);
+        // below the wall through the harder axis, whose descents end on the other wall's ridge and go on to either side
+        let window = ["--set", r#"landscape.energy_window="3 meV""#];
+        let (document, folder) = landscape(&chain(sites), &window);
         let ends = [
             r#"initial={"uniform": {"direction": [0, 0, 1]}}"#,
             r#"final={"uniform": {"direction": [0, 0, -1]}}"#,
