@@ -198,13 +198,13 @@ fn generator(f: &Function, delta: f64, alpha: f64) -> Function {
 }
 
 /// Highest l that the slowest mode needs.
-fn harmonics(delta: f64) -> usize {
+pub fn harmonics(delta: f64) -> usize {
     30 + (2.5 * delta) as usize
 }
 
 /// The lowest eigenvalue of −L among functions that a half turn about z leaves as they are and one about x reverses: real
 /// combinations of Y_lm of even m, cos mφ with odd l and sin mφ with even l. It is the decay rate of m_z.
-fn slowest_decay(delta: f64, alpha: f64, top: usize) -> Option<f64> {
+pub fn slowest_decay(delta: f64, alpha: f64, top: usize) -> Option<f64> {
     let even = |l: usize| (usize::from(l.is_multiple_of(2)) * 2..=l).step_by(2);
     let basis: Vec<(usize, usize)> = (1..=top).flat_map(|l| even(l).map(move |m| (l, m))).collect();
     let number: std::collections::BTreeMap<(usize, usize), usize> =

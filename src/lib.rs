@@ -10,6 +10,7 @@
 //! | [`output`] | files and figures |
 //! | [`drive`] | a whole run: ends, first paths, band, saddles, proof |
 //! | [`rates`] | lifetimes of states |
+//! | [`network`], [`dynamics`] | networks of states and their times; spins in a bath |
 //! | [`band`], [`stationary`], [`symmetry`] | the force on a path; saddles and minima to machine precision; what leaves an energy as it is |
 //! | [`energy`], [`path`], [`optimise`] | energy terms; first paths; methods that move spins |
 //! | [`state`] | spin states |
@@ -22,6 +23,7 @@ mod base64;
 pub mod config;
 pub mod control;
 pub mod drive;
+pub mod dynamics;
 pub mod energy;
 pub mod error;
 pub mod field;

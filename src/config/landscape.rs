@@ -2,7 +2,7 @@
 
 use super::rates::{RatesConfig, Temperatures};
 use super::{Config, Loaded};
-use crate::drive::survey::{MeanSpin, SurveyProblem};
+use crate::drive::survey::{Label, SurveyProblem};
 use crate::error::{Error, Result};
 use crate::geometry::Direction;
 use crate::landscape::Effort;
@@ -29,12 +29,15 @@ pub struct LandscapeConfig {
     pub temperatures: Option<Temperatures>,
 }
 
-/// `{"axis": [0, 0, 1], "from": 0.5}`: states whose mean spin along the axis is at least and at most so large.
+/// `{"axis": [0, 0, 1], "from": 0.5}`: states whose mean spin along the axis is at least and at most so large; or `{"charge": -1}`: states
+/// of a film or crystal whose topological charge is nearest to that.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GroupConfig {
     /// Along this direction.
-    pub axis: Direction,
+    pub axis: Option<Direction>,
+    /// With this charge.
+    pub charge: Option<i32>,
     /// At least.
     #[serde(default = "lowest")]
     pub from: f64,
@@ -53,14 +56,23 @@ fn highest() -> f64 {
 
 impl GroupConfig {
     /// A hair wider than it is written: a uniform state's mean spin is 1 but for rounding.
-    fn label(self, name: &str) -> Result<MeanSpin> {
-        let GroupConfig { axis, from, to } = self;
+    fn label(self, name: &str) -> Result<Label> {
+        let GroupConfig { axis, charge, from, to } = self;
+        let path = || format!("landscape.groups.{name}");
+        let axis = match (axis, charge) {
+            (None, Some(charge)) if (from, to) == (lowest(), highest()) => return Ok(Label::Charge(charge)),
+            (Some(axis), None) => axis,
+            _ => {
+                let message = "a group takes an axis with from and to, or a charge, such as {\"charge\": -1}";
+                return Err(Error::invalid(path(), message));
+            }
+        };
         if from > to || !(-1.0..=1.0).contains(&from) || !(-1.0..=1.0).contains(&to) {
             let message =
                 format!("found {} to {}, but mean spins are from -1 to 1, the smaller first", number(from), number(to));
-            return Err(Error::invalid(format!("landscape.groups.{name}"), message));
+            return Err(Error::invalid(path(), message));
         }
-        Ok(MeanSpin { axis, from: from - 1e-9, to: to + 1e-9 })
+        Ok(Label::MeanSpin { axis, from: from - 1e-9, to: to + 1e-9 })
     }
 }
 
@@ -86,7 +98,13 @@ impl Loaded {
             let message = format!("found {window}, but a window reaches above the lowest minimum, such as \"20 meV\"");
             return Err(here(Error::invalid("landscape.energy_window", message)));
         }
-        let groups = own.groups.iter().map(|(name, group)| Ok((name.clone(), group.label(name)?)));
+        let groups = own.groups.iter().map(|(name, group)| match group.label(name)? {
+            Label::Charge(_) if self.lattice.triangles().corners.is_empty() => {
+                let message = "found a charge, but only films and crystals of layers have one";
+                Err(Error::invalid(format!("landscape.groups.{name}.charge"), message))
+            }
+            label => Ok((name.clone(), label)),
+        });
         let groups = groups.collect::<Result<Vec<_>>>().map_err(here)?;
         let rates = self.config.landscape_rates(&own);
         let (problem, seeds, rates) = self.seeded_problem(&own.states, rates.as_ref())?;

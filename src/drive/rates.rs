@@ -9,8 +9,8 @@ use crate::landscape::Saddle;
 use crate::landscape::{Minimum, Pass};
 use crate::linalg::slab;
 use crate::rates::{
-    Equivalents, Orbits, RateSettings, Rates, Refusal, SaddleRate, ZeroKind, equivalent_saddles, refused, saddle_rates,
-    transitions,
+    Equivalents, Orbits, RateSettings, Rates, Refusal, SaddleRate, ZeroKind, ZeroModes, equivalent_saddles, refused,
+    saddle_rates, transitions,
 };
 use crate::spins::Spins;
 use crate::stationary::{self, Refined, State};
@@ -66,11 +66,14 @@ fn orbits(known: &Known, group: Option<&Group>, rates: &[SaddleRate]) -> Orbits 
         return Orbits { saddles: Vec::new(), minima: Vec::new(), paths: alone("counted with the saddle") };
     }
     let ends = [first.before.spins.as_slice(), last.after.spins.as_slice()];
-    let slides = |k: usize| rates[2 * k].saddle_zeros.iter().any(|z| z.0 == ZeroKind::Translation);
-    let like = |m: &[f64], slides: bool| equivalent_saddles(h.lattice(), group, m, ends, slides);
+    let slides = |zeros: &[ZeroModes]| zeros.iter().any(|z| z.kind == ZeroKind::Translation);
+    let sliding = [&rates[0].minimum_zeros, &rates[rates.len() - 1].minimum_zeros].map(|zeros| slides(zeros));
+    let like = |m: &[f64], own: bool| equivalent_saddles(h.lattice(), group, m, ends, [own, sliding[0], sliding[1]]);
+    let inner = links.iter().zip(rates.iter().skip(1).step_by(2)).take(links.len() - 1);
     let between: Vec<Equivalents> =
-        links[..links.len() - 1].iter().map(|l| like(l.after.spins.as_slice(), false)).collect();
-    let saddles = links.iter().enumerate().map(|(k, l)| like(&l.saddle.refined.state.m, slides(k)).count).collect();
+        inner.map(|(l, back)| like(l.after.spins.as_slice(), slides(&back.minimum_zeros))).collect();
+    let tops = links.iter().zip(rates.iter().step_by(2));
+    let saddles = tops.map(|(l, on)| like(&l.saddle.refined.state.m, slides(&on.saddle_zeros)).count).collect();
     let minima = std::iter::once(1).chain(between.iter().map(|e| e.count)).chain([1]).collect();
     Orbits { saddles, minima, paths: between[0].clone() }
 }

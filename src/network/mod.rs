@@ -4,9 +4,11 @@
 //! large for a double, and all that is subtracted is known as a sum of what remains.
 
 mod elimination;
+mod layout;
 mod parts;
 mod tree;
 
+pub use layout::layout;
 pub use parts::Parts;
 pub use tree::{Branch, Tree};
 

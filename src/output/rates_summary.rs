@@ -1,10 +1,13 @@
 //! The entries of `rates` and `transition_rates` in `summary.json`.
 //!
 //! A rate too small for a double is 0 and its lifetime null; `log10_lifetime_s` is there for all. Where the barrier is below k_BT
-//! all of them are null, and `reason` says so. `known_within_factor`: a rate or time may be larger or smaller by that.
+//! all of them are null, and `reason` says so. `known_within_factor`: a rate or time may be larger or smaller by that. Of a
+//! translation `volume_rad` is by the derivative, which the rates are made of, and `hop_volume_rad` by the finite hop.
 
 use super::number::Number;
-use crate::rates::{Prefactor, Rates, Refusal, Row, SaddleRate, Theory, TransitionRate, TransitionRow, Way, ZeroKind};
+use crate::rates::{
+    Prefactor, Rates, Refusal, Row, SaddleRate, Theory, TransitionRate, TransitionRow, Way, ZeroKind, ZeroModes,
+};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -50,10 +53,15 @@ pub(super) struct TransitionEntry {
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
+#[allow(non_snake_case)]
 struct ZeroEntry {
     kind: ZeroKind,
     modes: usize,
     volume_rad: Number,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    hop_volume_rad: Option<Number>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pinning_meV: Vec<Number>,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -141,8 +149,14 @@ fn transition(t: &TransitionRate) -> TransitionEntry {
     }
 }
 
-fn zeros(modes: &[(ZeroKind, usize, f64)]) -> Vec<ZeroEntry> {
-    let entry = |&(kind, modes, volume): &(ZeroKind, usize, f64)| ZeroEntry { kind, modes, volume_rad: Number(volume) };
+fn zeros(modes: &[ZeroModes]) -> Vec<ZeroEntry> {
+    let entry = |z: &ZeroModes| ZeroEntry {
+        kind: z.kind,
+        modes: z.count,
+        volume_rad: Number(z.volume),
+        hop_volume_rad: z.hop_volume.map(Number),
+        pinning_meV: z.pinning_mev.iter().copied().map(Number).collect(),
+    };
     modes.iter().map(entry).collect()
 }
 

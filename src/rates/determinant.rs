@@ -6,7 +6,12 @@
 //! det(H + κ E Eᵀ) = κ^P det(EᵀZ)² det'H
 //! ```
 //! exactly: what is added makes the zero eigenvalues positive and of ordinary size, and its effect is divided out in closed form.
-//! The same limit as that of the bordered matrix [H Z; Zᵀ 0], whose determinant is (−1)^P det'H.
+//! The same limit as that of the bordered matrix [H Z; Zᵀ 0], whose determinant is (−1)^P det'H. That holds whatever the eigenvalues of
+//! the modes Z are, so soft ones that are left out because they are integrated otherwise are bordered, on top of their pins:
+//!
+//! ```text
+//! C = [Z, E],  S = diag(0, 1/κ) − Cᵀ(H + κ E Eᵀ)⁻¹C,    |det'H| = κ^P |det(H + κ E Eᵀ) det S|
+//! ```
 //!
 //! The descending mode t of a saddle is left out too. Its eigenvalue λ₁ is divided out if it is well above the rounding error; if it
 //! is all but flat, it is pinned as well, and the pin taken back through a second border column, so that no small number is
@@ -17,7 +22,7 @@
 //! ```
 
 use super::Unstable;
-use crate::linalg::{Factors, Matrix, remove};
+use crate::linalg::{Factors, Matrix, remove, slab};
 use crate::stationary::{Border, Pin, pin};
 
 /// A Hessian whose zero modes are pinned, factorised; without its descending mode, if it has one.
@@ -43,6 +48,7 @@ impl PinnedHessian {
         let pins: Vec<Pin> = zeros.iter().map(|z| pin(&mut matrix, z, &mut used, kappa)).collect();
         let overlaps: Vec<f64> = pins.iter().flat_map(|e| zeros.iter().map(|z| e.dot(z))).collect();
         let added = zeros.len() as f64 * libm::log(kappa) + 2.0 * libm::log(determinant(&overlaps, zeros.len()).abs());
+        let soft = !are_flat(hessian, zeros);
         let mut zeros = zeros.to_vec();
         let (factors, border, own) = match descending {
             Some(u) if -u.eigenvalue_mev < STIFF * hessian.norm1() => {
@@ -57,7 +63,13 @@ impl PinnedHessian {
             }
             None => (matrix.factor(), None, 0.0),
         };
-        let log_determinant = factors.log_abs_determinant() - added + own;
+        let mut log_determinant = factors.log_abs_determinant() - added + own;
+        if soft {
+            let bordered = zeros.iter().take(pins.len()).chain(border.as_ref().map(|b| &b.soft));
+            let all_pins = pins.iter().copied().chain(border.as_ref().map(Border::pin));
+            let own = if border.is_some() { 0.0 } else { own };
+            log_determinant = bordered_log_determinant(&factors, bordered.zip(all_pins).collect(), kappa) + own;
+        }
         PinnedHessian { factors, zeros, border, log_determinant }
     }
 
@@ -75,6 +87,33 @@ impl PinnedHessian {
         }
         remove(b, &self.zeros);
     }
+}
+
+/// Whether modes are zero modes to rounding.
+fn are_flat(hessian: &Matrix, modes: &[Vec<f64>]) -> bool {
+    let (noise, mut image) = (8.0 * f64::EPSILON * hessian.norm1(), vec![0.0; hessian.order()]);
+    modes.iter().all(|z| {
+        hessian.multiply(z, &mut image);
+        slab::dot(z, &image).abs() <= noise
+    })
+}
+
+/// ln|det'H| without modes, each with its pin, from the factors of the Hessian with all of these pins.
+fn bordered_log_determinant(factors: &Factors, bordered: Vec<(&Vec<f64>, Pin)>, kappa: f64) -> f64 {
+    let n = bordered.len();
+    let columns = bordered.iter().map(|(z, _)| z.to_vec()).chain(bordered.iter().map(|(z, e)| e.column(z.len())));
+    let solved: Vec<Vec<f64>> = columns
+        .map(|mut column| {
+            factors.solve(&mut column, 1);
+            column
+        })
+        .collect();
+    let entry = |r: usize, c: usize| {
+        let own = if r < n { slab::dot(bordered[r].0, &solved[c]) } else { bordered[r - n].1.dot(&solved[c]) };
+        if r == c && r >= n { 1.0 / kappa - own } else { -own }
+    };
+    let schur: Vec<f64> = (0..2 * n).flat_map(|r| (0..2 * n).map(move |c| (r, c))).map(|(r, c)| entry(r, c)).collect();
+    n as f64 * libm::log(kappa) + factors.log_abs_determinant() + libm::log(determinant(&schur, 2 * n).abs())
 }
 
 /// ln|det'H| (energies in meV) of a Hessian with these orthonormal zero modes; κ is any stiffness of the Hessian's size (meV).
@@ -107,7 +146,7 @@ fn determinant(matrix: &[f64], n: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linalg::{Banded, slab};
+    use crate::linalg::Banded;
     use rand::{RngExt, SeedableRng};
 
     #[test]
@@ -152,6 +191,31 @@ mod tests {
             slab::add_scaled(&mut x, 2.0, &axes[0]);
             pinned.solve(&mut x);
             assert!(x.iter().zip(&axes[1]).all(|(x, e)| (x - 0.5 * e).abs() < 1e-12), "{lambda}");
+        }
+    }
+
+    #[test]
+    fn modes_that_are_soft_or_stiff_are_left_out_to_the_last_digit() {
+        let n = 8;
+        let mut r = rand_chacha::ChaCha8Rng::seed_from_u64(9);
+        let random: Vec<Vec<f64>> = (0..n).map(|_| (0..n).map(|_| r.random_range(-1.0..1.0)).collect()).collect();
+        let axes = crate::linalg::orthonormal(random, 1e-3);
+        for (soft, falling) in [(1e-9, 1.0), (1e-4, 1e-9), (0.3, 1e-2), (2.0, 1e-12), (0.0, 1e-9)] {
+            let value = |k: usize| [-falling, soft, 0.7 * soft].get(k).copied().unwrap_or((k + 1) as f64);
+            let mut a = Matrix::from(Banded::zeros(n, n));
+            for i in 0..n {
+                for j in 0..=i {
+                    a.add(i, j, (0..n).map(|k| value(k) * axes[k][i] * axes[k][j]).sum());
+                }
+            }
+            let descending = Unstable { eigenvalue_mev: -falling, mode: axes[0].clone() };
+            let pinned = PinnedHessian::new(&a, &axes[1..3], Some(&descending), 3.0);
+            let expected = libm::log((4..=8).product::<usize>() as f64);
+            assert!(
+                (pinned.log_determinant() - expected).abs() < 1e-12,
+                "{soft} {falling}: {}",
+                pinned.log_determinant()
+            );
         }
     }
 

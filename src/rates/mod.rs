@@ -33,6 +33,7 @@ mod passage;
 mod rate;
 mod refusal;
 mod settings;
+mod sliding;
 mod symmetry;
 mod transition;
 mod unstable;
@@ -46,11 +47,12 @@ pub use passage::{TEN_YEARS_S, blocking_temperature, first_passage, passages};
 pub use rate::{Crossing, LEAST_BARRIER, Prefactor, Row, SaddleRate, Way, refused, saddle_rates};
 pub use refusal::{Refusal, UnknownModes};
 pub use settings::{RateSettings, Theory};
+pub use sliding::Sliding;
 pub use symmetry::{Equivalents, equivalent_saddles};
 pub use transition::{Orbits, TransitionRate, TransitionRow, transitions};
 pub use unstable::{Unstable, unstable_mode};
 pub use validity::{LOW_BARRIER, Validity, digits};
-pub use zero_modes::{ZeroKind, ZeroMode, zero_modes};
+pub use zero_modes::{ZeroKind, ZeroMode, ZeroModes, zero_modes};
 
 /// Everything about the rates of a path.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,10 +3,12 @@
 use super::determinant::PinnedHessian;
 use super::passage::{TEN_YEARS_S, blocking_temperature};
 use super::refusal::{conserved_moment, no_minimum, unfit};
+use super::sliding::{Sliding, ln_pinned};
+use super::symmetry::{free_shifts, places, states_on_the_way};
 use super::validity::{Fluctuations, Validity, warnings};
 use super::zero_modes::ZeroMode;
 use super::{
-    Equivalents, RateSettings, Refusal, Theory, Unstable, ZeroKind, crossover_temperature, equivalent_saddles,
+    Equivalents, RateSettings, Refusal, Theory, Unstable, ZeroModes, crossover_temperature, equivalent_saddles,
     growth_rate, unstable_mode, zero_modes,
 };
 use crate::energy::Evaluator;
@@ -72,17 +74,22 @@ pub struct Prefactor {
     pub frequency_per_s: f64,
     /// ln of the prefactor in Hz where 2πk_BT is 1 meV.
     pub ln_hz: f64,
-    /// It grows as T to this power.
+    /// It grows as T to this power, soft translations apart.
     pub exponent: f64,
+    /// By how much soft translations of the saddle and of the minimum are pinned (meV), 0 where there are none.
+    pub pinning_mev: [[f64; 3]; 2],
 }
 
 impl Prefactor {
     /// ln of the prefactor in Hz at a temperature (K).
     pub fn ln_hz_at(&self, temperature_k: f64) -> f64 {
-        match self.exponent {
+        let free = match self.exponent {
             0.0 => self.ln_hz,
             e => self.ln_hz + e * libm::log(2.0 * PI * K_B * temperature_k),
-        }
+        };
+        let pinned = |mev: &f64| if *mev > 0.0 { ln_pinned(*mev, K_B * temperature_k) } else { 0.0 };
+        let [saddle, minimum] = self.pinning_mev.each_ref().map(|all| all.iter().map(pinned).sum::<f64>());
+        free + saddle - minimum
     }
 
     /// The prefactor in Hz at a temperature (K).
@@ -140,12 +147,15 @@ pub struct SaddleRate {
     pub langer: Option<Prefactor>,
     /// ½ ln(det'H_m/|det'H_s|), energies in meV.
     pub entropy_factor: Option<f64>,
-    /// Zero modes of the minimum: kind, number, volume (rad to that number).
-    pub minimum_zeros: Vec<(ZeroKind, usize, f64)>,
-    /// Zero modes of the saddle, likewise.
-    pub saddle_zeros: Vec<(ZeroKind, usize, f64)>,
-    /// Saddles of the same kind out of the same minimum; the rates are over all of them.
+    /// Zero modes of the minimum.
+    pub minimum_zeros: Vec<ZeroModes>,
+    /// Zero modes of the saddle.
+    pub saddle_zeros: Vec<ZeroModes>,
+    /// Saddles of the same kind out of the same minimum; the rates are over all of them. Where something slides, the places of
+    /// a minimum are one state, which is left over the saddles at all places.
     pub equivalents: Equivalents,
+    /// Where something slides: ln of the states of the minimum that are places of one over those of the saddle.
+    pub ln_places: f64,
     /// Temperature (K) below which tunnelling takes over, see [`crossover_temperature`]; nothing where the spins do not precess
     /// over the saddle.
     pub crossover_k: Option<f64>,
@@ -171,6 +181,12 @@ impl SaddleRate {
         }?;
         let many = libm::log(self.equivalents.count as f64);
         Some(prefactor.ln_hz_at(temperature_k) + many - self.barrier_mev? / (K_B * temperature_k))
+    }
+
+    /// ln of the rate in 1/s by a theory at a temperature (K) over one of the equivalent saddles alone, out of one place of the minimum.
+    pub fn ln_rate_of_one_per_s(&self, theory: Theory, temperature_k: f64) -> Option<f64> {
+        let all = self.ln_rate_per_s(theory, temperature_k)?;
+        Some(all - libm::log(self.equivalents.count as f64) + self.ln_places)
     }
 
     /// ln of the factor within which the rate is known at a temperature (K).
@@ -223,6 +239,7 @@ pub fn refused(
         minimum_zeros: Vec::new(),
         saddle_zeros: Vec::new(),
         equivalents: Equivalents { count: 1, by: "not sought".into() },
+        ln_places: 0.0,
         crossover_k: None,
         validity: None,
         rows: Vec::new(),
@@ -243,6 +260,14 @@ pub fn saddle_rates(h: Evaluator, number: usize, crossing: &Crossing, settings: 
     rates
 }
 
+/// A stationary state, and how it slides.
+struct Place<'a> {
+    state: State,
+    spectrum: &'a Spectrum,
+    sliding: Sliding,
+    name: &'static str,
+}
+
 /// A stationary state, ready for its partition function.
 struct Well {
     state: State,
@@ -250,21 +275,30 @@ struct Well {
     /// The descending mode of a saddle.
     unstable: Option<Unstable>,
     pinned: PinnedHessian,
+    /// Where anything slides: ln of its places, if it does not slide itself.
+    ln_kept: f64,
+    /// Where anything slides: ln of the states alike that are its places.
+    ln_places: f64,
 }
 
 impl Well {
+    /// Of a place, where so many times each shift is free, if anything slides.
     fn new(
         h: Evaluator,
-        state: State,
+        place: Place,
         group: &Group,
-        settings: &RateSettings,
-        spectrum: &Spectrum,
+        free: Option<&[usize]>,
         valley: Option<&[f64]>,
-        name: &'static str,
     ) -> Result<Well, Refusal> {
-        let kelvin = || settings.temperatures_k.iter().copied();
-        let of_interest = [K_B * kelvin().fold(f64::INFINITY, f64::min), kelvin().fold(0.0, f64::max)];
-        let zeros = zero_modes(&h, &state, group, spectrum.flat, spectrum.floor_mev, of_interest)
+        let Place { state, spectrum, sliding, name } = place;
+        let held = free.filter(|_| !sliding.slides()).map_or(1, |steps| places(group, &state.m, steps));
+        let alike = match free {
+            Some(steps) if sliding.slides() => states_on_the_way(h.lattice(), group, &state.m, steps),
+            _ => held,
+        };
+        let steps = free.unwrap_or(&[]);
+        let count = if sliding.slides() { places(group, &state.m, steps) } else { 1 };
+        let zeros = zero_modes(&h, &state, &sliding.with_places(count), steps, spectrum)
             .map_err(|unknown| Refusal::Volume(name, unknown))?;
         let directions: Vec<Vec<f64>> = zeros.iter().flat_map(|z| z.modes.clone()).collect();
         let unstable = match valley {
@@ -272,7 +306,8 @@ impl Well {
             Some(valley) => Some(unstable_mode(&state, valley, &directions).ok_or(Refusal::LostMode)?),
         };
         let pinned = PinnedHessian::new(&state.hessian, &directions, unstable.as_ref(), h.stiffness_mev() / 3.0);
-        Ok(Well { state, zeros, unstable, pinned })
+        let [ln_kept, ln_places] = [held, alike].map(|n| libm::log(n as f64));
+        Ok(Well { state, zeros, unstable, pinned, ln_kept, ln_places })
     }
 
     /// ln|det'H|, the descending mode's |λ₁| included.
@@ -286,71 +321,87 @@ impl Well {
     }
 
     fn ln_volume(&self) -> f64 {
-        self.zeros.iter().map(|z| libm::log(z.volume)).sum()
+        self.zeros.iter().map(|z| libm::log(z.said.volume)).sum::<f64>() + self.ln_kept
     }
 
-    fn listed(&self) -> Vec<(ZeroKind, usize, f64)> {
-        self.zeros.iter().map(|z| (z.kind, z.modes.len(), z.volume)).collect()
+    fn listed(&self) -> Vec<ZeroModes> {
+        self.zeros.iter().map(|z| z.said.clone()).collect()
+    }
+
+    /// By how much its soft translations are pinned (meV).
+    fn pinning_mev(&self) -> [f64; 3] {
+        let all: Vec<f64> = self.zeros.iter().flat_map(|z| z.said.pinning_mev.iter().copied()).collect();
+        [0, 1, 2].map(|k| all.get(k).copied().unwrap_or(0.0))
     }
 }
 
-fn computed(
-    h: Evaluator,
-    number: usize,
-    crossing: &Crossing,
-    settings: &RateSettings,
-    barriers: [f64; 2],
-) -> Result<[SaddleRate; 2], Refusal> {
+/// A crossing, ready for its rates.
+struct Prepared {
+    top: Well,
+    unstable: Unstable,
+    wells: [Well; 2],
+    /// Whether the saddle and each minimum slide.
+    sliding: [bool; 3],
+}
+
+fn prepared(h: Evaluator, crossing: &Crossing, settings: &RateSettings) -> Result<Prepared, Refusal> {
     if let Some(reason) = unfit(crossing) {
         return Err(reason);
     }
-    let top = Well::new(
-        h,
-        crossing.saddle.clone(),
-        crossing.group,
-        settings,
-        crossing.spectrum,
-        Some(crossing.valley),
-        "the saddle",
-    )?;
-    let well = |side: usize| {
+    let (group, hottest) = (crossing.group, settings.temperatures_k.iter().copied().fold(0.0, f64::max));
+    let place = |state: State, spectrum, name| {
+        let sliding =
+            Sliding::of(&h, &state, group, spectrum, hottest).map_err(|unknown| Refusal::Volume(name, unknown))?;
+        Ok(Place { state, spectrum, sliding, name })
+    };
+    let top = place(crossing.saddle.clone(), crossing.spectrum, "the saddle")?;
+    let minimum = |side: usize| {
         let (state, spectrum) =
             (State::at(h, crossing.minima[side].as_slice().to_vec()), crossing.minima_spectra[side]);
         if let Some(reason) = no_minimum(spectrum, state.max_torque_mev(), ["before", "after"][side]) {
             return Err(reason);
         }
-        Well::new(
-            h,
-            state,
-            crossing.group,
-            settings,
-            spectrum,
-            None,
-            ["the minimum before it", "the minimum after it"][side],
-        )
+        place(state, spectrum, ["the minimum before it", "the minimum after it"][side])
     };
-    let wells = [well(0)?, well(1)?];
-    let Some(unstable) = top.unstable.clone() else {
-        return Err(Refusal::NoDescendingMode);
-    };
+    let minima = [minimum(0)?, minimum(1)?];
+    let sliding = [top.sliding.slides(), minima[0].sliding.slides(), minima[1].sliding.slides()];
+    let steps = free_shifts(group, crossing.minima.map(|m| m.as_slice()), [sliding[1], sliding[2]]);
+    let free = Some(&steps[..]).filter(|_| sliding.contains(&true));
+    let top = Well::new(h, top, group, free, Some(crossing.valley))?;
+    let [before, after] = minima;
+    let wells = [Well::new(h, before, group, free, None)?, Well::new(h, after, group, free, None)?];
+    let unstable = top.unstable.clone().ok_or(Refusal::NoDescendingMode)?;
+    Ok(Prepared { top, unstable, wells, sliding })
+}
+
+/// ω of both theories, λ₊ where there is one, and why there is none.
+struct Frequencies {
+    of: [Option<f64>; 2],
+    growth: Option<f64>,
+    conserved: bool,
+    refused: Vec<(Theory, Refusal)>,
+}
+
+fn frequencies(h: Evaluator, crossing: &Crossing, prepared: &Prepared, settings: &RateSettings) -> Frequencies {
+    let Prepared { top, unstable, .. } = prepared;
     let gyration = settings.gyration_per_s_mev();
-    let mut refusals = Vec::new();
+    let mut refused = Vec::new();
     let conserved = conserved_moment(&h, &top.state.m, crossing.minima, settings);
     let dense = h.coupling().pairs().is_some() && h.sites() > MOST_DENSE;
     let growth = match dense {
         true => None,
-        false => growth_rate(&h, &top.state, &unstable, &gyration, settings.damping),
+        false => growth_rate(&h, &top.state, unstable, &gyration, settings.damping),
     };
-    let mut frequency = |theory: Theory| -> Option<f64> {
+    let frequency = |theory: Theory| -> Option<f64> {
         if !settings.wants(theory) {
             return None;
         }
         if let Some(reason) = conserved.as_ref().filter(|_| theory == Theory::Htst || settings.damping == 0.0) {
-            refusals.push((theory, reason.clone()));
+            refused.push((theory, reason.clone()));
             return None;
         }
         if theory == Theory::Langer && dense {
-            refusals.push((theory, Refusal::Dense(MOST_DENSE)));
+            refused.push((theory, Refusal::Dense(MOST_DENSE)));
             return None;
         }
         let found = match theory {
@@ -362,17 +413,29 @@ fn computed(
         };
         let found = found.filter(|f| f.is_finite() && *f > 0.0);
         if found.is_none() {
-            refusals.push((theory, Refusal::NoFrequency));
+            refused.push((theory, Refusal::NoFrequency));
         }
         found
     };
-    let frequencies = Theory::ALL.map(&mut frequency);
-    let translating = top.zeros.iter().any(|z| z.kind == ZeroKind::Translation);
+    let of = Theory::ALL.map(frequency);
+    Frequencies { of, growth, conserved: conserved.is_some(), refused }
+}
+
+fn computed(
+    h: Evaluator,
+    number: usize,
+    crossing: &Crossing,
+    settings: &RateSettings,
+    barriers: [f64; 2],
+) -> Result<[SaddleRate; 2], Refusal> {
+    let prepared = prepared(h, crossing, settings)?;
+    let found = frequencies(h, crossing, &prepared, settings);
+    let Prepared { top, unstable, wells, sliding } = &prepared;
     let minima = crossing.minima.map(|m| m.as_slice());
-    let equivalents = equivalent_saddles(h.lattice(), crossing.group, &top.state.m, minima, translating);
-    let spread_top = Fluctuations::of_saddle(&h, &top.state, &top.pinned, &unstable);
+    let equivalents = equivalent_saddles(h.lattice(), crossing.group, &top.state.m, minima, *sliding);
+    let spread_top = Fluctuations::of_saddle(&h, &top.state, &top.pinned, unstable);
     let vague = crossing.spectrum.floor_mev / -unstable.eigenvalue_mev;
-    let crossover_k = growth.filter(|g| *g > 0.0 && conserved.is_none()).map(crossover_temperature);
+    let crossover_k = found.growth.filter(|g| *g > 0.0 && !found.conserved).map(crossover_temperature);
     Ok([0, 1].map(|side| {
         let bottom = &wells[side];
         let entropy = 0.5 * (bottom.log_determinant() - top.log_determinant());
@@ -382,9 +445,10 @@ fn computed(
             frequency_per_s,
             ln_hz: libm::log(frequency_per_s / (2.0 * PI)) + entropy + volumes,
             exponent,
+            pinning_mev: [top.pinning_mev(), bottom.pinning_mev()],
         };
-        let [htst, langer] = frequencies.map(|f| f.map(prefactor));
-        let spread = Fluctuations::of_minimum(&h, &bottom.state, &bottom.pinned, &unstable);
+        let [htst, langer] = found.of.map(|f| f.map(prefactor));
+        let spread = Fluctuations::of_minimum(&h, &bottom.state, &bottom.pinned, unstable);
         let validity = Validity {
             barrier_mev: barriers[side],
             damping: langer.map(|_| settings.damping),
@@ -403,11 +467,12 @@ fn computed(
             minimum_zeros: bottom.listed(),
             saddle_zeros: top.listed(),
             equivalents: equivalents.clone(),
+            ln_places: bottom.ln_places - top.ln_places,
             crossover_k,
             validity: htst.or(langer).map(|_| validity),
             rows: Vec::new(),
             blocking_k: [None, None],
-            refused: refusals.clone(),
+            refused: found.refused.clone(),
             warnings: warnings(settings, barriers[side], [htst, langer], &spread, &spread_top, vague),
         }
     }))

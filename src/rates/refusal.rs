@@ -1,6 +1,5 @@
 //! Where a saddle has no rate, and what would give it one.
 
-use super::zero_modes::PINNING;
 use super::{Crossing, RateSettings};
 use crate::energy::Hamiltonian;
 use crate::field::Components;
@@ -8,7 +7,6 @@ use crate::geometry::{Vector, vector};
 use crate::linalg::slab;
 use crate::spins::Spins;
 use crate::stationary::Spectrum;
-use crate::units::K_B;
 use thiserror::Error;
 
 /// A total moment that changes by less than this part of the sum of all is the same.
@@ -84,7 +82,7 @@ pub enum Refusal {
 pub enum UnknownModes {
     /// So many below this rounding error (meV) that are neither a rotation nor a translation.
     #[error(
-        "{modes} mode(s) flat to {floor_mev:.1e} meV that are no rotation and no translation of a ring: how far they reach is not \
+        "{modes} mode(s) flat to {floor_mev:.1e} meV that are no rotation and no translation of a periodic lattice: how far they reach is not \
          known; a term that gives them a stiffness, such as an anisotropy or a pinning site, would tell"
     )]
     Flat {
@@ -93,15 +91,14 @@ pub enum UnknownModes {
         /// The rounding error (meV).
         floor_mev: f64,
     },
-    /// A translation over a lattice that is no chain, all but free.
+    /// A translation over a lattice that does not repeat along it, all but free.
     #[error(
-        "a translation that is all but free: sliding from site to site changes its energy by about {pinning_mev:.1e} meV, less than a \
-         twentieth of k_BT at {kelvin} K; a rate with such a translation comes with a later version (below {:.2e} K, or where \
-         something pins the state, there is one now)", .pinning_mev / (PINNING * K_B)
+        "a translation that nothing holds: k_BT at {kelvin} K moves it by {cells:.1} cells along a direction in which the lattice does not \
+         repeat, so how far it reaches is not known; a periodic lattice, or something that pins the state, would tell"
     )]
-    Slides {
-        /// How much the energy changes (meV).
-        pinning_mev: f64,
+    Wanders {
+        /// How far (cells of the lattice, root mean square).
+        cells: f64,
         /// The highest temperature asked for (K).
         kelvin: f64,
     },

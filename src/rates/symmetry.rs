@@ -1,13 +1,13 @@
 //! Saddles that symmetry makes of one: each is a way out of its own.
 //!
-//! An operation of the group counts where it keeps both minima and moves the saddle, rotations about a symmetry axis (and shifts,
-//! where they are zero modes) apart: those are in the volume of zero modes.
+//! An operation of the group counts where it keeps both minima and moves the saddle, rotations about a symmetry axis (and shifts of
+//! states that slide) apart: those are in the volume of zero modes.
 
 use crate::field::Components;
 use crate::geometry::vector;
 use crate::lattice::Lattice;
 use crate::sphere::SAME;
-use crate::symmetry::{Group, Operation};
+use crate::symmetry::Group;
 
 /// How many saddles are alike, and by what.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -18,8 +18,8 @@ pub struct Equivalents {
     pub by: String,
 }
 
-/// The saddles (or other states) that the group makes of this one, beside the same two minima. `shifts_are_free`: shifts of the
-/// ring are a zero mode.
+/// The saddles (or other states) that the group makes of this one, beside the same two minima. `sliding`: whether the saddle and
+/// each of the minima slide over the lattice, so that what free shifts make of them is one.
 ///
 /// S: the shifts that keep both minima. Every operation that keeps them is one of S after one that is no further shifted than the
 /// shortest of S; so the states alike are those that S makes of the latter's images.
@@ -28,55 +28,77 @@ pub fn equivalent_saddles(
     group: &Group,
     saddle: &[f64],
     minima: [&[f64]; 2],
-    shifts_are_free: bool,
+    sliding: [bool; 3],
 ) -> Equivalents {
     if group.axes().len() > 1 {
         return Equivalents { count: 1, by: "not sought: the energy has no axis".into() };
     }
-    let once = vec![1; group.shifts().len()];
-    let shortest = group.periods(&minima, &once, SAME);
-    let off = if shifts_are_free { SAME + 0.6 * largest_step(lattice, saddle) } else { SAME };
-    let mut by = Vec::new();
-    let mut kept: Vec<Vec<f64>> = vec![saddle.to_vec()];
-    for operation in group.classes_within(&shortest).skip(1) {
-        if minima.iter().any(|m| !group.takes(&operation, m, m, SAME)) {
+    let steps = free_shifts(group, minima, [sliding[1], sliding[2]]);
+    let off = |m: &[f64], slides: bool| if slides { SAME + 0.6 * largest_steps(lattice, m) } else { SAME };
+    let within = [off(saddle, sliding[0]), off(minima[0], sliding[1]), off(minima[1], sliding[2])];
+    let (mut by, mut kept) = (Vec::new(), vec![saddle.to_vec()]);
+    for operation in group.classes_within(&steps).skip(1) {
+        let stays = |k: usize| match sliding[k + 1] {
+            true => slid(group, &steps, &operation.apply(minima[k]), minima[k], within[k + 1]),
+            false => group.takes(&operation, minima[k], minima[k], SAME),
+        };
+        if !(stays(0) && stays(1)) {
             continue;
         }
         let image = operation.apply(saddle);
-        let onto = |state: &Vec<f64>, shift: &Operation| group.takes(shift, &image, state, off);
-        let known = |state: &Vec<f64>| group.multiples(&shortest).any(|shift| onto(state, &shift));
-        if !kept.iter().any(known) {
+        if !kept.iter().any(|state| slid(group, &steps, &image, state, within[0])) {
             by.push(operation.to_string());
             kept.push(image);
         }
     }
-    let places = |m: &[f64]| if shifts_are_free { 1 } else { places(group, m, &shortest) };
-    if places(saddle) > 1 {
-        by.push(format!("{} shifts of the ring", places(saddle)));
+    // free shifts are in the volumes
+    let each = |m: &[f64]| if sliding.contains(&true) { 1 } else { places(group, m, &steps) };
+    if each(saddle) > 1 {
+        by.push(format!("{} shifts of the {}", each(saddle), if lattice.is_row() { "ring" } else { "lattice" }));
     }
-    let count = kept.iter().map(|m| places(m)).sum();
+    let count = kept.iter().map(|m| each(m)).sum();
     let by = if by.is_empty() { "none found".into() } else { by.join(", ") };
     Equivalents { count, by }
 }
 
+/// Of each shift the first multiple that keeps those of the minima that do not slide.
+pub(super) fn free_shifts(group: &Group, minima: [&[f64]; 2], slide: [bool; 2]) -> Vec<usize> {
+    let held: Vec<&[f64]> = minima.into_iter().zip(slide).filter(|(_, slides)| !slides).map(|(m, _)| m).collect();
+    group.periods(&held, &vec![1; group.shifts().len()], SAME)
+}
+
+/// How many of the states that the group makes of one are places of one that slides: those that multiples of free shifts make, and
+/// those between them.
+pub(super) fn states_on_the_way(lattice: &Lattice, group: &Group, m: &[f64], steps: &[usize]) -> usize {
+    let off = SAME + 0.6 * largest_steps(lattice, m);
+    let mut kept: Vec<Vec<f64>> = Vec::new();
+    for image in group.classes_within(steps).map(|operation| operation.apply(m)) {
+        let known = kept.iter().any(|state| slid(group, steps, &image, state, SAME));
+        if !known && slid(group, steps, &image, m, off) {
+            kept.push(image);
+        }
+    }
+    kept.len() * places(group, m, steps)
+}
+
+/// Whether a multiple of shifts takes state a to b: each spin to less than `off` beside it.
+fn slid(group: &Group, steps: &[usize], a: &[f64], b: &[f64], off: f64) -> bool {
+    group.multiples(steps).any(|shift| group.takes(&shift, a, b, off))
+}
+
 /// How many states multiples of these shifts make of one.
-fn places(group: &Group, m: &[f64], shortest: &[usize]) -> usize {
+pub(super) fn places(group: &Group, m: &[f64], shortest: &[usize]) -> usize {
     let periods = group.periods(&[m], shortest, SAME);
     let whole: usize = periods.iter().zip(shortest).map(|(p, s)| p / s).product();
     let keeping = group.products(shortest, &periods).filter(|shift| group.takes(shift, m, m, SAME));
     whole / keeping.count()
 }
 
-/// After how many sites a ring's state repeats; nothing where a shift by one does not leave the energy as it is.
-pub(super) fn period(group: &Group, m: &[f64]) -> Option<usize> {
-    let steps = |o: &Operation| o.motion.shifts_by() == Some([1, 0, 0]) && o.moves_sites_alone();
-    let first = group.shifts().first().filter(|s| steps(&s.operation));
-    first.map(|_| group.periods(&[m], &vec![1; group.shifts().len()], SAME)[0])
-}
-
-/// How much neighbours of a ring differ at most (rad): a state that slides freely may stand half a site beside its image.
-fn largest_step(ring: &Lattice, m: &[f64]) -> f64 {
+/// How much like sites of neighbouring cells differ at most (rad), over all directions: a state that slides freely may stand half a
+/// cell beside its image.
+fn largest_steps(lattice: &Lattice, m: &[f64]) -> f64 {
     let c = Components::new(m);
-    let n = c.sites();
-    (0..n).map(|i| vector::norm(vector::sub(c.get(ring.along_ring(i, 1)), c.get(i)))).fold(0.0, f64::max)
+    let step =
+        |d: usize, i: usize| lattice.step_from(i, d, 1).map_or(0.0, |j| vector::norm(vector::sub(c.get(j), c.get(i))));
+    (0..3).map(|d| (0..c.sites()).map(|i| step(d, i)).fold(0.0, f64::max)).sum()
 }

@@ -19,6 +19,13 @@ impl Pin {
     pub fn dot(&self, x: &[f64]) -> f64 {
         self.e[0] * x[2 * self.site] + self.e[1] * x[2 * self.site + 1]
     }
+
+    /// e as a vector of so many numbers.
+    pub fn column(&self, length: usize) -> Vec<f64> {
+        let mut column = vec![0.0; length];
+        column[2 * self.site..2 * self.site + 2].copy_from_slice(&self.e);
+        column
+    }
 }
 
 /// Adds κ e eᵀ on the site where `mode` is largest and no pin stands yet; returns e.
@@ -102,6 +109,11 @@ impl Border {
         };
         let off = -0.5 * (te + at_pin(0));
         self.schur = [[-tt, off], [off, 1.0 / kappa - at_pin(1)]];
+    }
+
+    /// e.
+    pub fn pin(&self) -> Pin {
+        self.pin
     }
 
     /// S: symmetric.

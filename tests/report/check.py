@@ -24,6 +24,15 @@ def page(folder, name, config, *sets):
     return os.path.join(out, "report.html")
 
 
+def landscape(folder, name):
+    """The page of a shipped landscape."""
+    out = os.path.join(folder, f"{name}_landscape")
+    command = [SPINNEB, "landscape", os.path.join(CONFIGS, "landscapes", f"{name}.json"), "--out", out, "--quiet"]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return os.path.join(out, "report.html")
+
+
 def keep(name):
     return os.path.join(PICTURES, f"{name}.png") if PICTURES else None
 
@@ -207,6 +216,43 @@ def shows_lattices(browser, film, crystal, large):
     quiet(browser)
 
 
+def shows_landscapes(browser, chain, film):
+    """A network whose discs and lines show their spins when they are clicked or chosen by keys; nothing too wide on a phone."""
+    for name, file in {"landscape_chain": chain, "landscape_film": film}.items():
+        for theme, width, height, phone in [("light", 1280, 900, False), ("dark", 400, 860, True)]:
+            browser.open(file, width, height, phone=phone, prefers_color_scheme=theme)
+            quiet(browser)
+            assert browser.picture("#frame").colours() > 100, f"{name}: the spins are not drawn"
+            assert browser.picture(keep=keep(f"{name}_{theme}_{width}"))
+            wide = browser.run("document.documentElement.scrollWidth - document.documentElement.clientWidth")
+            assert wide <= 0, f"{name}: {wide} pixels too wide"
+        browser.open(file)
+        first = browser.picture("#frame")
+        assert browser.run("document.querySelector('#where').textContent").startswith("Minimum 0"), name
+        discs, arcs = browser.run("[document.querySelectorAll('#network circle').length, document.querySelectorAll('#network .arc').length]")
+        counted = [int(n) for n in browser.run("[...document.querySelectorAll('#answer .big')].slice(0, 2).map(e => e.textContent)")]
+        assert discs == counted[0] and 0 < arcs <= counted[1], (name, discs, arcs, counted)
+        left, top, width, height = browser.box("#network g:last-of-type circle")
+        browser.mouse((left + width / 2, top + height / 2), (left + width / 2, top + height / 2))
+        browser.settle()
+        told = browser.run("document.querySelector('#where').textContent")
+        assert told.startswith("Minimum 0"), told
+        browser.run("document.querySelector('#beside button').click()")
+        browser.settle()
+        told = browser.run("document.querySelector('#where').textContent")
+        assert told.startswith("Saddle") and "above minimum" in told, told
+        assert browser.picture("#frame", keep=keep(f"{name}_saddle")).differs(first) > 0.001, name
+        assert browser.run("document.querySelectorAll('#network .chosen').length") == 1
+        browser.run("document.querySelector('#network g:has(.arc)').focus()")
+        browser.press("Enter")
+        browser.settle()
+        assert browser.run("document.querySelector('#network .chosen') === document.activeElement"), name
+        browser.run("document.querySelector('#spins-table').open = true")
+        browser.settle()
+        assert browser.run("document.querySelectorAll('#spins-table tbody tr').length") > 10, name
+        quiet(browser)
+
+
 def is_for_all(browser, file):
     """Every control has a name and can be reached by the Tab key, and what has the focus shows it."""
     browser.open(file)
@@ -284,9 +330,11 @@ def main():
         pages["crystal"] = lattice("crystal", {"cubic": {"cells": [7, 6, 4]}})
         pages["large_film"] = lattice("large_film", {"square": {"cells": [320, 20]}})
         first = pages["wall_nucleation"]
+        landscapes = [landscape(folder, name) for name in ("pinned_walls", "island")]
         with Browser(CHROMIUM) as browser:
             checks = [(draws, pages), (slides, first), (numbers, first), (steers, first), (plays, first), (is_for_all, first),
                       (is_unhurt, page(folder, "hostile", hostile)), (themes, first), (shows_lattices, [pages[n] for n in ("film", "crystal", "large_film")]),
+                      (shows_landscapes, landscapes),
                       (slides, pages["film"]), (steers, pages["crystal"])]
             for check, what in checks:
                 check(browser, *what) if isinstance(what, list) else check(browser, what)

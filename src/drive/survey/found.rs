@@ -1,7 +1,7 @@
 //! What a survey found: states by energy, those of a kind (that symmetry makes of one) side by side.
 
 use super::lifetimes::Lifetimes;
-use super::{Effort, SurveyProblem};
+use super::{Effort, SurveyProblem, Unseen};
 use crate::error::Result;
 use crate::landscape::{Landscape, Searched, is_same_state};
 use crate::spins::Spins;
@@ -64,6 +64,8 @@ pub struct Survey {
     pub searched: Searched,
     /// States that it started from.
     pub seeds: usize,
+    /// What the random ones of them say of minima that may be missing.
+    pub unseen: Unseen,
     /// Operations of the group that was found, the identity counted.
     pub symmetry_order: usize,
     /// Lifetimes, where they were asked for.
@@ -77,7 +79,7 @@ impl Survey {
         asked: &SurveyProblem,
         land: &Landscape,
         group: &Group,
-        seeds: usize,
+        (seeds, unseen): (usize, Unseen),
         searched: Searched,
         warnings: Vec<String>,
     ) -> Result<Survey> {
@@ -93,6 +95,7 @@ impl Survey {
             effort: asked.effort,
             searched,
             seeds,
+            unseen,
             symmetry_order: group.order(),
             lifetimes: None,
             warnings,
@@ -147,6 +150,14 @@ impl Survey {
                 "the search ended because it had done as much work as it may: more may be found with more effort"
                     .into(),
             );
+        }
+        let estimated = self.unseen.estimated_kinds();
+        if estimated >= self.minimum_kinds.len() as f64 + 1.0 {
+            self.warnings.push(format!(
+                "{} kinds of minima were found, and from how often random states led to each there are about {estimated:.0} at least \
+                 (Chao's estimate)",
+                self.minimum_kinds.len()
+            ));
         }
         let reached: Vec<usize> = self.saddles.iter().flat_map(|s| s.minima).collect();
         let alone = (0..self.minima.len()).filter(|k| !reached.contains(k)).count();

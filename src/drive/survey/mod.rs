@@ -6,16 +6,20 @@
 
 mod found;
 mod lifetimes;
+mod unseen;
 
 pub use found::{FoundMinimum, FoundSaddle, Kind, Survey};
 pub use lifetimes::{Lifetime, Lifetimes};
+pub use unseen::Unseen;
 
 use super::run::{END_TOLERANCE, Run};
 use super::{Observer, Problem};
 use crate::energy::recorded;
 use crate::error::Result;
+use crate::field::Components;
 use crate::geometry::{Direction, vector};
 use crate::landscape::{Aim, Effort, Minimum, Searched, Settings, search};
+use crate::lattice::Triangles;
 use crate::rates::RateSettings;
 use crate::record::Count;
 use crate::spins::Spins;
@@ -42,28 +46,35 @@ pub struct SurveyProblem {
     pub window_mev: f64,
     /// How long is looked.
     pub effort: Effort,
-    /// Groups of minima, by name: those whose mean spin along a direction is within a range.
-    pub groups: Vec<(String, MeanSpin)>,
+    /// Groups of minima, by name.
+    pub groups: Vec<(String, Label)>,
     /// Lifetimes; none if absent.
     pub rates: Option<RateSettings>,
 }
 
-/// States whose mean spin along a direction is from one number to another.
+/// What the states of a group have in common.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MeanSpin {
-    /// The direction.
-    pub axis: Direction,
-    /// At least.
-    pub from: f64,
-    /// At most.
-    pub to: f64,
+pub enum Label {
+    /// Their mean spin along a direction is from one number to another; vacant sites do not count.
+    MeanSpin {
+        /// The direction.
+        axis: Direction,
+        /// At least.
+        from: f64,
+        /// At most.
+        to: f64,
+    },
+    /// Their topological charge is nearest to this.
+    Charge(i32),
 }
 
-impl MeanSpin {
-    /// Whether a state is one of them; vacant sites do not count.
-    pub fn holds(&self, spins: &Spins, vacant: &[bool]) -> bool {
-        let along = vector::dot(self.axis.vector(), spins.mean(vacant));
-        (self.from..=self.to).contains(&along)
+impl Label {
+    /// Whether a state of a lattice with these vacant sites and triangles is one of them.
+    pub fn holds(&self, spins: &Spins, vacant: &[bool], triangles: &Triangles) -> bool {
+        match *self {
+            Label::MeanSpin { axis, from, to } => (from..=to).contains(&vector::dot(axis.vector(), spins.mean(vacant))),
+            Label::Charge(charge) => triangles.charge(Components::new(spins.as_slice())).round() == f64::from(charge),
+        }
     }
 }
 
@@ -86,9 +97,9 @@ pub fn survey(asked: &SurveyProblem, observer: &mut dyn Observer) -> Result<Surv
         let alike = asked.rates.as_ref().map_or(&[][..], |rates| &rates.moments_mub);
         let group = Group::of(&asked.problem.hamiltonian, run.ends[0].spins.as_slice(), alike);
         run.land.unfold_by(&group, IMAGES);
-        let seeds = run.plant(asked)?;
+        let planted = run.plant(asked)?;
         let searched = run.explore(asked)?;
-        Survey::of(asked, &run.land, &group, seeds, searched, run.warnings)
+        Survey::of(asked, &run.land, &group, planted, searched, run.warnings)
     })
 }
 
@@ -119,8 +130,8 @@ impl SurveyProblem {
 }
 
 impl Run<'_, '_> {
-    /// Relaxes all starts and puts the minima in; how many starts there were.
-    fn plant(&mut self, asked: &SurveyProblem) -> Result<usize> {
+    /// Relaxes all starts and puts the minima in; how many starts there were, and what the random ones say.
+    fn plant(&mut self, asked: &SurveyProblem) -> Result<(usize, Unseen)> {
         self.observer.stage("relaxing the seeds");
         let h = self.problem.evaluator();
         let starts = asked.starts();
@@ -132,10 +143,15 @@ impl Run<'_, '_> {
         let minima: Vec<Minimum> = recorded(h, "seeds", &input, || starts.par_iter().map(relaxed).collect())?;
         let heights: Vec<f64> = minima.iter().map(|m| self.land.height_mev(m.spins.as_slice())).collect();
         let top = heights.iter().copied().fold(self.land.lowest_mev(), f64::min) + asked.window_mev;
-        for (minimum, _) in minima.iter().zip(&heights).filter(|(m, height)| m.is_proven() && **height <= top) {
-            self.land.add_minimum(minimum);
+        let [random, _] = share(asked.effort);
+        let mut reached = Vec::new();
+        for (k, minimum) in minima.iter().enumerate().filter(|(k, m)| m.is_proven() && heights[*k] <= top) {
+            let node = self.land.add_minimum(minimum);
+            if k + random >= starts.len() {
+                reached.push(self.land.orbit(self.land.standing_for(node)));
+            }
         }
-        Ok(starts.len() + 1)
+        Ok((starts.len() + 1, Unseen::of(&reached)))
     }
 
     /// Searches, and joins what is not joined, by turns until neither brings news.

@@ -2,7 +2,7 @@
 
 use super::LandscapeReport;
 use super::json;
-use crate::drive::survey::{Kind, Lifetime};
+use crate::drive::survey::{Kind, Lifetime, Unseen};
 use crate::error::Result;
 use crate::landscape::Effort;
 use crate::output::number::Number;
@@ -34,6 +34,18 @@ struct Search {
     seeds: usize,
     searches: usize,
     quiet: usize,
+    random_starts: RandomStarts,
+}
+
+/// See `drive::survey::Unseen`.
+#[derive(Serialize)]
+struct RandomStarts {
+    reached_a_minimum: usize,
+    kinds_reached: usize,
+    reached_once: usize,
+    reached_twice: usize,
+    estimated_kinds: Number,
+    chance_of_another_kind: Option<Number>,
 }
 
 /// What minima and saddles share. `states`: their numbers in the tables.
@@ -87,7 +99,7 @@ struct LifetimeEntry<'a> {
     reason: Option<&'a str>,
 }
 
-pub(super) fn render(report: &LandscapeReport) -> Result<Vec<u8>> {
+pub fn render(report: &LandscapeReport) -> Result<Vec<u8>> {
     let s = report.survey;
     let lifetimes = s.lifetimes.as_ref();
     let document = Document {
@@ -97,7 +109,13 @@ pub(super) fn render(report: &LandscapeReport) -> Result<Vec<u8>> {
         finished: s.is_finished(),
         stop_reason: report.stop_reason(),
         symmetry_order: s.symmetry_order,
-        search: Search { effort: s.effort, seeds: s.seeds, searches: s.searched.searches, quiet: s.searched.quiet },
+        search: Search {
+            effort: s.effort,
+            seeds: s.seeds,
+            searches: s.searched.searches,
+            quiet: s.searched.quiet,
+            random_starts: random_starts(s.unseen),
+        },
         minima: s.minimum_kinds.iter().enumerate().map(|(id, k)| entry(id, k)).collect(),
         saddles: (0..s.saddle_kinds.len()).map(|id| saddle(report, id)).collect(),
         lifetimes: lifetimes.map(|l| l.rows.iter().map(lifetime).collect()),
@@ -105,6 +123,17 @@ pub(super) fn render(report: &LandscapeReport) -> Result<Vec<u8>> {
         warnings: &s.warnings,
     };
     json("landscape.json", &document)
+}
+
+fn random_starts(unseen: Unseen) -> RandomStarts {
+    RandomStarts {
+        reached_a_minimum: unseen.starts,
+        kinds_reached: unseen.kinds,
+        reached_once: unseen.once,
+        reached_twice: unseen.twice,
+        estimated_kinds: Number(unseen.estimated_kinds()),
+        chance_of_another_kind: unseen.chance().map(Number),
+    }
 }
 
 fn entry(id: usize, kind: &Kind) -> Entry {

@@ -1,11 +1,14 @@
 //! The files of a landscape: `landscape.json` (kinds of states), tables, arrays and graphs (all states), figures.
 
 mod disconnectivity;
-mod document;
+pub(super) mod document;
 mod graphml;
 mod lifetimes;
+mod network;
 mod pygt;
 mod tables;
+
+pub(super) use network::Network;
 
 use super::Picture;
 use super::canvas::{Canvas, Look};
@@ -39,7 +42,7 @@ pub struct LandscapeReport<'a> {
     pub survey: &'a Survey,
 }
 
-/// A data file.
+/// A file with numbers.
 struct DataFile {
     name: &'static str,
     /// Whether it needs rates.
@@ -54,6 +57,7 @@ static DATA: &[DataFile] = &[
     DataFile { name: "lifetimes.csv", of_rates: true, render: tables::lifetimes },
     DataFile { name: "landscape.npz", of_rates: false, render: tables::npz },
     DataFile { name: "landscape.graphml", of_rates: false, render: graphml::render },
+    DataFile { name: "report.html", of_rates: false, render: super::report::landscape_page },
     DataFile { name: "min.data", of_rates: true, render: pygt::minima },
     DataFile { name: "ts.data", of_rates: true, render: pygt::saddles },
 ];
@@ -66,6 +70,7 @@ struct Figure {
 
 static FIGURES: &[Figure] = &[
     Figure { name: "disconnectivity", draw: disconnectivity::draw },
+    Figure { name: "network", draw: network::draw },
     Figure { name: "lifetimes", draw: lifetimes::draw },
 ];
 

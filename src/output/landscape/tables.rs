@@ -3,12 +3,13 @@
 use super::LandscapeReport;
 use crate::drive::survey::Lifetime;
 use crate::error::Result;
+use crate::field::Components;
 use crate::files::{self, Array};
 use crate::geometry::Vector;
-use crate::output::csv::{Cell, Table};
+use crate::output::csv::{CHARGE, Cell, Table};
 use crate::spins::Spins;
 
-/// A row a minimum: number, kind (its `id` in `landscape.json`), energy and mean spin.
+/// A row a minimum: number, kind (its `id` in `landscape.json`), energy, mean spin, and the charge of films and crystals.
 pub(super) fn minima(report: &LandscapeReport) -> Result<Vec<u8>> {
     let s = report.survey;
     let kind = |k: usize| s.minimum_kind(k);
@@ -21,6 +22,10 @@ pub(super) fn minima(report: &LandscapeReport) -> Result<Vec<u8>> {
     let means: Vec<Vector> = s.minima.iter().map(|m| m.spins.mean(&report.lattice.vacant)).collect();
     for (c, name) in ["mean_spin_x", "mean_spin_y", "mean_spin_z"].into_iter().enumerate() {
         table.real(name, means.iter().map(|mean| mean[c]));
+    }
+    let triangles = report.lattice.triangles();
+    if !triangles.corners.is_empty() {
+        table.real(CHARGE, s.minima.iter().map(|m| triangles.charge(Components::new(m.spins.as_slice()))));
     }
     table.render()
 }

@@ -6,8 +6,11 @@
 //! run into the page as text only, so that nothing in a config becomes markup. A long path is [thinned](shown) and the page says so.
 //! Time and threads are left out: the page of a config is always the same, byte for byte.
 
+mod landscape;
 mod pack;
 mod shown;
+
+pub(super) use landscape::landscape_page;
 
 use super::csv::{CHARGE, path_columns};
 use super::summary::{J_PER_MEV, K_B_MEV};
@@ -16,6 +19,7 @@ use crate::base64::base64;
 use crate::drive::Outcome;
 use crate::error::{Error, Result};
 use crate::geometry::{Direction, vector};
+use crate::lattice::Lattice;
 use pack::{column, packed};
 use serde::Serialize;
 use serde_json::Value;
@@ -23,6 +27,8 @@ use sha2::{Digest, Sha256};
 use shown::{Shown, evenly};
 
 const PAGE: &str = include_str!("page.html");
+/// The picture of the spins, with its tools.
+const VIEW: &str = include_str!("view.html");
 const STYLE: &str = include_str!("page.css");
 /// One module; the order is that of use.
 const SCRIPT: &str = concat!(
@@ -36,6 +42,8 @@ const SCRIPT: &str = concat!(
     include_str!("chart.js"),
     include_str!("summary.js"),
     include_str!("page.js"),
+    include_str!("choices.js"),
+    include_str!("run.js"),
 );
 /// A longer config is not repeated in the page (bytes).
 const LONGEST_CONFIG: usize = 40_000;
@@ -52,22 +60,28 @@ impl Format for ReportPage {
     }
 
     fn render(&self, run: &RunReport) -> Result<Vec<u8>> {
-        let json = serde_json::to_string(&data(run)?).map_err(|e| Error::Numerical(format!("report.html: {e}")))?;
-        let policy = format!(
-            "default-src 'none'; img-src data: blob:; style-src {}; script-src {}; base-uri 'none'; form-action 'none'",
-            hash(STYLE),
-            hash(SCRIPT)
-        );
-        let content = |name: &str| match name {
-            "policy" => Some(policy.clone()),
-            "title" => Some(markup(run.name)),
-            "style" => Some(STYLE.into()),
-            "data" => Some(inert(&json)),
-            "script" => Some(SCRIPT.into()),
-            _ => None,
-        };
-        filled(PAGE, content).map(String::into_bytes)
+        page([PAGE, STYLE, SCRIPT], run.name, &data(run)?)
     }
+}
+
+/// A page of a template, a style and a script.
+fn page([template, style, script]: [&str; 3], title: &str, data: &impl Serialize) -> Result<Vec<u8>> {
+    let json = serde_json::to_string(data).map_err(|e| Error::Numerical(format!("report.html: {e}")))?;
+    let policy = format!(
+        "default-src 'none'; img-src data: blob:; style-src {}; script-src {}; base-uri 'none'; form-action 'none'",
+        hash(style),
+        hash(script)
+    );
+    let content = |name: &str| match name {
+        "policy" => Some(policy.clone()),
+        "title" => Some(markup(title)),
+        "style" => Some(style.into()),
+        "view" => Some(VIEW.into()),
+        "data" => Some(inert(&json)),
+        "script" => Some(script.into()),
+        _ => None,
+    };
+    filled(template, content).map(String::into_bytes)
 }
 
 /// What the scripts read; the names of numbers have their units.
@@ -178,19 +192,24 @@ fn data(run: &RunReport) -> Result<Data> {
 
 fn film(run: &RunReport, shown: &Shown) -> Result<Film> {
     let lattice = run.lattice;
-    let bonds = lattice.shell(1).into_iter().map(|family| vector::norm(family.along));
-    let nearest = bonds.fold(f64::INFINITY, f64::min);
-    let stride = if lattice.atoms.len() == 1 { shown.stride } else { 1 };
-    let apart = stride as f64 * if nearest.is_finite() { nearest } else { lattice.spacing_nm.unwrap_or(1.0) };
-    let middle = vector::scale(lattice.spacing_nm.unwrap_or(1.0), lattice.middle());
-    let place = |i: &usize| vector::scale(1.0 / apart, vector::sub(lattice.position(*i), middle));
     let columns = path_columns(run).into_iter().find(|(name, _)| name == CHARGE);
     let charge = columns.map(|(name, all)| column(&name, shown.images.iter().map(|k| all[*k])));
     Ok(Film {
         words: lattice.words(),
-        places: column("places", shown.sites.iter().flat_map(place))?,
+        places: places(lattice, &shown.sites, shown.stride)?,
         charge: charge.transpose()?,
     })
+}
+
+/// Where sites of a film or crystal are, of which every so manieth is shown, in distances of neighbours from the middle.
+fn places(lattice: &Lattice, sites: &[usize], stride: usize) -> Result<String> {
+    let bonds = lattice.shell(1).into_iter().map(|family| vector::norm(family.along));
+    let nearest = bonds.fold(f64::INFINITY, f64::min);
+    let stride = if lattice.atoms.len() == 1 { stride } else { 1 };
+    let apart = stride as f64 * if nearest.is_finite() { nearest } else { lattice.spacing_nm.unwrap_or(1.0) };
+    let middle = vector::scale(lattice.spacing_nm.unwrap_or(1.0), lattice.middle());
+    let place = |i: &usize| vector::scale(1.0 / apart, vector::sub(lattice.position(*i), middle));
+    column("places", sites.iter().flat_map(place))
 }
 
 fn told(outcome: &Outcome) -> Option<Told> {
@@ -288,7 +307,7 @@ mod tests {
 
     #[test]
     fn the_template_asks_for_nothing_from_elsewhere() {
-        for text in [PAGE, STYLE, SCRIPT] {
+        for text in [PAGE, STYLE, SCRIPT, VIEW].into_iter().chain(landscape::PARTS) {
             for load in [
                 "http:",
                 "https:",
@@ -305,7 +324,9 @@ mod tests {
                 assert!(!text.contains(load), "{load}");
             }
         }
-        assert!(!SCRIPT.contains("innerHTML") && !SCRIPT.contains("</script") && !SCRIPT.contains("eval("));
+        for script in [SCRIPT, landscape::PARTS[2]] {
+            assert!(!script.contains("innerHTML") && !script.contains("</script") && !script.contains("eval("));
+        }
         assert!(!STYLE.contains("</style"));
     }
 

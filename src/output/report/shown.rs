@@ -42,17 +42,22 @@ impl Shown {
         images.extend(at_rest.filter(|k| *k < path.images()));
         images.sort_unstable();
         images.dedup();
-        let most = |sites: usize, spins: usize| sites.min(spins / images.len().max(1)).max(2);
-        if lattice.is_row() {
-            return Shown { sites: alternating(path.sites(), most(SITES, SPINS)), stride: 1, images };
-        }
-        let (sites, stride) = by_cells(lattice, most(LATTICE_SITES, LATTICE_SPINS));
+        let (sites, stride) = sites_shown(lattice, images.len());
         Shown { sites, stride, images }
     }
 
     /// Those of these sites that are shown.
     pub(super) fn among(&self, sites: impl Iterator<Item = usize>) -> Vec<usize> {
         sites.filter(|i| self.sites.binary_search(i).is_ok()).collect()
+    }
+}
+
+/// The sites that are shown in so many images, and from a cell that is shown to the next.
+pub(super) fn sites_shown(lattice: &Lattice, images: usize) -> (Vec<usize>, usize) {
+    let most = |sites: usize, spins: usize| sites.min(spins / images.max(1)).max(2);
+    match lattice.is_row() {
+        true => (alternating(lattice.sites, most(SITES, SPINS)), 1),
+        false => by_cells(lattice, most(LATTICE_SITES, LATTICE_SPINS)),
     }
 }
 
