@@ -70,7 +70,16 @@ fn a_spin_with_two_axes_has_two_minima_and_two_saddles() {
         let head = usize::from(file.ends_with("csv"));
         assert!(text.lines().count() - head >= rows, "{file}: {text}");
     }
-    for file in ["landscape.npz", "landscape.graphml", "disconnectivity.svg", "disconnectivity.png", "lifetimes.svg"] {
+    for file in [
+        "landscape.npz",
+        "landscape.graphml",
+        "disconnectivity.svg",
+        "disconnectivity.png",
+        "network.svg",
+        "network.png",
+        "lifetimes.svg",
+        "report.html",
+    ] {
         assert!(fs::metadata(folder.path().join("found").join(file)).unwrap().len() > 200, "{file}");
     }
 }
@@ -168,6 +177,12 @@ fn what_a_landscape_cannot_be_is_said_with_its_place() {
         (r#"landscape.energy_window=20"#, "landscape.energy_window"),
         (r#"landscape.groups={"up": {"axis": [0, 0, 1], "from": 0.5, "to": 0.2}}"#, "landscape.groups.up"),
         (r#"landscape.effrt="quick""#, "effort"),
+        (r#"landscape.groups={"all": {}}"#, "landscape.groups.all: a group takes an axis"),
+        (
+            r#"landscape.groups={"both": {"axis": [0, 0, 1], "charge": 0}}"#,
+            "landscape.groups.both: a group takes an axis",
+        ),
+        (r#"landscape.groups={"one": {"charge": -1}}"#, "landscape.groups.one.charge: found a charge, but only films"),
         (r#"landscape.states=[{"file": {"path": "nowhere.ovf"}}]"#, "landscape.states[0].file"),
     ] {
         let folder = folder(&chain(3));
@@ -175,6 +190,34 @@ fn what_a_landscape_cannot_be_is_said_with_its_place() {
         assert!(code == Some(2) && said.contains(words), "{set}: {code:?} {said}");
         assert!(!folder.path().join("results").exists(), "{set}");
     }
+}
+
+#[test]
+fn a_saddle_without_a_rate_has_no_part_in_times_that_others_give() {
+    // at 30 K a wall along the film wanders over a third of its length
+    let film = r#"{"material": {"name": "toy", "moment": "2 mu_B", "energy": [{"exchange": {"J": ["10 meV"]}},
+        {"dmi": {"D": "5 meV", "kind": "interfacial"}}, {"anisotropy": {"K": "3 meV", "axis": [0, 0, 1]}}]},
+        "lattice": {"square": {"cells": [16, 9]}}, "landscape": {"effort": "quick", "energy_window": "60 meV", "temperatures": ["30 K"],
+        "groups": {"up": {"axis": [0, 0, 1], "from": 0.5}, "down": {"axis": [0, 0, 1], "to": -0.5}}}}"#;
+    let (document, _folder) = landscape(film, &[]);
+    let warnings: Vec<&str> = document["warnings"].as_array().unwrap().iter().map(|w| w.as_str().unwrap()).collect();
+    assert!(warnings.iter().any(|w| w.contains("have no rate by langer and no part in its times")), "{warnings:?}");
+    let rates = document["saddles"].as_array().unwrap().iter().map(|s| s["rates"][0]["langer_prefactor_Hz"].is_null());
+    let without = rates.clone().filter(|refused| *refused).count();
+    assert!(without > 0 && without < rates.count(), "{document}");
+    let over =
+        document["lifetimes"].as_array().unwrap().iter().find(|l| l["from"] == "up" && l["to"] == "down").unwrap();
+    assert!(number(&over["langer_time_s"]) > 0.0 && over["reason"].is_null(), "{over}");
+}
+
+#[test]
+fn what_random_starts_reached_says_what_may_be_missing() {
+    let (document, _folder) = landscape(&chain(5), &[]);
+    let starts = &document["search"]["random_starts"];
+    let count = |key: &str| starts[key].as_u64().unwrap_or_else(|| panic!("{key}: {starts}"));
+    assert!(count("reached_a_minimum") == 32 && count("kinds_reached") >= 1, "{starts}");
+    assert!(number(&starts["estimated_kinds"]) >= count("kinds_reached") as f64, "{starts}");
+    assert_eq!(number(&starts["chance_of_another_kind"]), count("reached_once") as f64 / 32.0);
 }
 
 #[test]
