@@ -1,30 +1,31 @@
-//! The command line: what can be said, and the help about it.
+//! The command line: what can be said, and the help about it. [`main`] is the whole program, for whoever starts it.
 
-pub mod check;
-pub mod collect;
+mod check;
+mod collect;
 mod drawing;
 mod jobs;
-pub mod landscape;
-pub mod list;
-pub mod plot;
+mod landscape;
+mod list;
+mod plot;
 mod points;
-pub mod progress;
-pub mod rate;
-pub mod relax;
-pub mod run;
-pub mod signals;
-pub mod start;
-pub mod sweep;
+mod progress;
+mod rate;
+mod relax;
+mod run;
+mod signals;
+mod start;
+mod sweep;
 mod threads;
 mod write;
 
+use crate::config::rates;
+use crate::error::Error;
+use crate::output::Picture;
+use crate::output::canvas::Style;
+use crate::rates::Theory;
+use crate::units::{Temperature, Time};
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use spinneb::config::rates;
-use spinneb::error::Error;
-use spinneb::output::Picture;
-use spinneb::output::canvas::Style;
-use spinneb::rates::Theory;
-use spinneb::units::{Temperature, Time};
+use std::ffi::OsString;
 use std::io::{self, ErrorKind, Write};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -34,6 +35,36 @@ use std::time::Duration;
 pub const USAGE: u8 = 2;
 /// Exit code of a run that finished without a converged result.
 pub const UNFINISHED: u8 = 3;
+
+/// Arguments → configs → runs → results: does what a command line asks for, without the name of the program, and returns its exit
+/// code. `program` is the command, with the arguments that come first, that starts this program again.
+pub fn main(program: &[OsString], arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    let name = OsString::from("spinneb");
+    let command = match Cli::try_parse_from([name].into_iter().chain(arguments)) {
+        Ok(line) => line.command,
+        Err(words) => {
+            // help is no error; there is nowhere to say that it cannot be printed
+            let _ = words.print();
+            return u8::try_from(words.exit_code()).unwrap_or(USAGE);
+        }
+    };
+    let done = match command {
+        Command::Run(arguments) => run::run(&arguments),
+        Command::Relax(arguments) => relax::relax(&arguments),
+        Command::Landscape(arguments) => landscape::landscape(&arguments),
+        Command::Sweep(arguments) => sweep::sweep(&arguments, program),
+        Command::Collect(arguments) => collect::collect(&arguments),
+        Command::Check(arguments) => check::check(&arguments),
+        Command::List(arguments) => list::list(&arguments),
+        Command::Rate(arguments) => rate::rate(&arguments),
+        Command::Plot(arguments) => plot::plot(&arguments),
+        Command::Init(arguments) => start::init(&arguments),
+        Command::Schema => start::print_schema(),
+        Command::Completions(arguments) => start::completions(&arguments),
+        Command::Man(arguments) => start::man(&arguments),
+    };
+    done.unwrap_or_else(|error| report(&error))
+}
 
 /// Minimum-energy paths, barriers and saddles of spin chains
 #[derive(Debug, Parser)]

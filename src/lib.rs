@@ -6,6 +6,7 @@
 //!
 //! | | |
 //! |---|---|
+//! | `cli` | the program `spinneb`; the feature `cli`, which is on unless default features are off |
 //! | [`config`] | the JSON of a run |
 //! | [`output`] | files and figures |
 //! | [`drive`] | a whole run: ends, first paths, band, saddles, proof |
@@ -20,6 +21,8 @@
 
 pub mod band;
 mod base64;
+#[cfg(feature = "cli")]
+pub mod cli;
 pub mod config;
 pub mod control;
 pub mod drive;

@@ -2,15 +2,15 @@
 
 use super::drawing::drawing;
 use super::{Check, USAGE, report, worse};
+use crate::config::estimate::Estimate;
+use crate::config::neighbours::{Shell, shells};
+use crate::config::physics::Physics;
+use crate::config::{Loaded, PartMaterial, expected_images, load, memory, needed_bytes};
+use crate::drive::{Images, Problem, Scales};
+use crate::lattice::Lattice;
+use crate::rates::RateSettings;
+use crate::units::Length;
 use anyhow::Result;
-use spinneb::config::estimate::Estimate;
-use spinneb::config::neighbours::{Shell, shells};
-use spinneb::config::physics::Physics;
-use spinneb::config::{Loaded, PartMaterial, expected_images, load, memory, needed_bytes};
-use spinneb::drive::{Images, Problem, Scales};
-use spinneb::lattice::Lattice;
-use spinneb::rates::RateSettings;
-use spinneb::units::Length;
 use std::io::{self, Write};
 
 /// Checks all configs and prints what each would run.

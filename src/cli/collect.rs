@@ -2,13 +2,13 @@
 
 use super::points::{checked, folder};
 use super::{UNFINISHED, USAGE, note};
+use crate::config::sweep::Sweep;
+use crate::files::disk::File;
+use crate::output::Picture;
+use crate::output::sweep::{Found, POINTS, PointState, SweepIndex, draw_sweep, look, sweep_table};
 use anyhow::Result;
 use clap::Args;
 use serde_json::{Value, json};
-use spinneb::config::sweep::Sweep;
-use spinneb::files::disk::File;
-use spinneb::output::Picture;
-use spinneb::output::sweep::{Found, POINTS, PointState, SweepIndex, draw_sweep, look, sweep_table};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 

@@ -1,6 +1,6 @@
 //! A lattice as letters: seen from above, x to the right and y upwards, sites behind each other as one.
 
-use spinneb::lattice::Lattice;
+use crate::lattice::Lattice;
 use std::collections::BTreeMap;
 
 /// Most letters a line, and lines.
@@ -107,7 +107,7 @@ fn scales(places: &[[f64; 3]]) -> [(f64, f64); 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use spinneb::lattice::LatticeSpec;
+    use crate::lattice::LatticeSpec;
 
     fn drawn(text: &str) -> Vec<String> {
         drawing(&serde_json::from_str::<LatticeSpec>(text).unwrap().resolve().unwrap())

@@ -5,16 +5,16 @@ use super::run::{Keeping, checkpoint, discard_leftovers, reserve, source};
 use super::signals::Signals;
 use super::threads::start_threads;
 use super::{EVERY, Interval, Looking, UNFINISHED, interval, note, report};
+use crate::config::{Loaded, load_landscape};
+use crate::drive::survey::survey;
+use crate::error::Error;
+use crate::files::disk;
+use crate::output::folder::{self, NewResult};
+use crate::output::{LandscapeReport, landscape_file_names};
+use crate::record::Checkpoint;
 use anyhow::Result;
 use clap::Args;
 use serde_json::{Value, json};
-use spinneb::config::{Loaded, load_landscape};
-use spinneb::drive::survey::survey;
-use spinneb::error::Error;
-use spinneb::files::disk;
-use spinneb::output::folder::{self, NewResult};
-use spinneb::output::{LandscapeReport, landscape_file_names};
-use spinneb::record::Checkpoint;
 use std::fs;
 use std::io::{self, Write};
 use std::num::NonZeroUsize;
@@ -147,7 +147,7 @@ fn names(loaded: &Loaded) -> Vec<String> {
     own.into_iter().chain(loaded.inputs.iter().map(|file| file.name.clone())).collect()
 }
 
-fn files(loaded: &Loaded, found: &spinneb::drive::survey::Survey) -> Result<Vec<disk::File>> {
+fn files(loaded: &Loaded, found: &crate::drive::survey::Survey) -> Result<Vec<disk::File>> {
     let report = LandscapeReport {
         name: &loaded.name,
         version: env!("CARGO_PKG_VERSION"),

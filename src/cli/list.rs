@@ -1,19 +1,19 @@
 //! `list`: what a config can ask for, from the registries that the code itself uses.
 
 use super::{List, USAGE, What, note};
+use crate::config::library::{self, LibraryMaterial};
+use crate::config::{MaterialScales, keys};
+use crate::energy::TermSpec;
+use crate::files::FORMATS;
+use crate::lattice::LatticeSpec;
+use crate::optimise::OptimiserSpec;
+use crate::output::{Group, KINDS};
+use crate::path::guess::GuessSpec;
+use crate::registry::Entry;
+use crate::state::StateSpec;
+use crate::words::{nearest, quoted};
 use anyhow::Result;
 use clap::ValueEnum;
-use spinneb::config::library::{self, LibraryMaterial};
-use spinneb::config::{MaterialScales, keys};
-use spinneb::energy::TermSpec;
-use spinneb::files::FORMATS;
-use spinneb::lattice::LatticeSpec;
-use spinneb::optimise::OptimiserSpec;
-use spinneb::output::{Group, KINDS};
-use spinneb::path::guess::GuessSpec;
-use spinneb::registry::Entry;
-use spinneb::state::StateSpec;
-use spinneb::words::{nearest, quoted};
 use std::io::{self, Write};
 
 /// Prints the lists asked for.

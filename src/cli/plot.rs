@@ -1,17 +1,17 @@
 //! `plot`: figures of results that are there already, from their files alone.
 
 use super::{Plot, USAGE, note, report, worse};
-use anyhow::Result;
-use rayon::prelude::*;
-use spinneb::config::{Config, Loaded, load};
-use spinneb::error::Error;
-use spinneb::files::disk::File;
-use spinneb::output::canvas::{Look, Style, description};
-use spinneb::output::folder;
-use spinneb::output::{
+use crate::config::{Config, Loaded, load};
+use crate::error::Error;
+use crate::files::disk::File;
+use crate::output::canvas::{Look, Style, description};
+use crate::output::folder;
+use crate::output::{
     EnergyPath, PLOTS, Picture, PlotData, PlotFile, PlotTable, StoredRun, describe, draw_energy_paths,
 };
-use spinneb::units::Length;
+use crate::units::Length;
+use anyhow::Result;
+use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
 /// All figures of one result, or one figure of several.
@@ -55,7 +55,7 @@ fn figures(arguments: &Plot, data: &PlotData, look: &Look) -> Result<Vec<File>> 
         .flat_map(|plot| pictures.iter().map(|picture| PlotFile { plot: *plot, picture: *picture }))
         .collect();
     let drawn = wanted.par_iter().map(|file| Ok(File { name: file.name(), bytes: file.bytes(data, look)? }));
-    let mut files = drawn.collect::<spinneb::error::Result<Vec<File>>>()?;
+    let mut files = drawn.collect::<crate::error::Result<Vec<File>>>()?;
     for table in PlotTable::all() {
         files.extend(table.bytes(data)?.map(|bytes| File { name: table.name(), bytes }));
     }
@@ -74,7 +74,7 @@ fn several(arguments: &Plot) -> Result<u8> {
         return Ok(code);
     }
     let Some(labels) = labels(arguments, &stored) else { return Ok(USAGE) };
-    if let Some((label, c)) = labels.iter().find_map(|l| spinneb::output::canvas::unknown_letter(l).map(|c| (l, c))) {
+    if let Some((label, c)) = labels.iter().find_map(|l| crate::output::canvas::unknown_letter(l).map(|c| (l, c))) {
         note(&format!("error: --labels: the figures' font has no {c:?}, found in {label:?}; give another label"));
         return Ok(USAGE);
     }
@@ -85,10 +85,10 @@ fn several(arguments: &Plot) -> Result<u8> {
     let names: Vec<&str> = stored.iter().map(StoredRun::name).collect();
     let canvas = draw_energy_paths(&paths, &look)?.describe(describe("energy_paths", &names));
     let (out, stem, pictures) = place(arguments);
-    let file = |picture: &Picture| -> spinneb::error::Result<File> {
+    let file = |picture: &Picture| -> crate::error::Result<File> {
         Ok(File { name: format!("{stem}.{}", picture.extension()), bytes: picture.render(&canvas)? })
     };
-    let files = pictures.iter().map(file).collect::<spinneb::error::Result<Vec<File>>>()?;
+    let files = pictures.iter().map(file).collect::<crate::error::Result<Vec<File>>>()?;
     folder::add(&out, &files, same_file, arguments.force)?;
     if !arguments.quiet {
         for (one, label) in stored.iter().zip(&labels) {

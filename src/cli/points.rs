@@ -1,11 +1,11 @@
 //! The points of a sweep, checked, and where their results are.
 
 use super::{note, report};
+use crate::config::sweep::Sweep;
+use crate::error::Error;
+use crate::output::sweep::SweepIndex;
 use anyhow::Result;
 use rayon::prelude::*;
-use spinneb::config::sweep::Sweep;
-use spinneb::error::Error;
-use spinneb::output::sweep::SweepIndex;
 use std::path::{Path, PathBuf};
 
 /// Most errors that are told one by one.
@@ -19,7 +19,7 @@ pub(super) fn folder(out: Option<&Path>, sweep: &Sweep) -> PathBuf {
 /// What the sweep consists of, with all points checked; nothing if one of them is wrong, which is said. The physics of each is
 /// built too where it is about to run.
 pub(super) fn checked(sweep: &Sweep, build: bool) -> Result<Option<SweepIndex>> {
-    let hash = |point: usize| -> spinneb::error::Result<String> {
+    let hash = |point: usize| -> crate::error::Result<String> {
         let loaded = sweep.load_point(point)?;
         if build {
             sweep.problem(point, &loaded)?;

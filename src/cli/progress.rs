@@ -1,9 +1,9 @@
 //! How a run gets on: a bar on a terminal, plain lines now and then elsewhere.
 
 use super::note;
+use crate::drive::{Goal, HistoryRow, Observer, Partial};
+use crate::path::Path;
 use indicatif::{ProgressBar, ProgressStyle};
-use spinneb::drive::{Goal, HistoryRow, Observer, Partial};
-use spinneb::path::Path;
 use std::collections::VecDeque;
 use std::io::{self, IsTerminal};
 use std::time::{Duration, Instant};

@@ -2,13 +2,13 @@
 
 use super::threads::start_threads;
 use super::{UNFINISHED, note, report, worse};
+use crate::config::{Loaded, load_states};
+use crate::drive::{RelaxedState, relaxed_state};
+use crate::error::Error;
+use crate::files::disk;
+use crate::output::{RelaxReport, relaxed_file_names};
 use anyhow::Result;
 use clap::Args;
-use spinneb::config::{Loaded, load_states};
-use spinneb::drive::{RelaxedState, relaxed_state};
-use spinneb::error::Error;
-use spinneb::files::disk;
-use spinneb::output::{RelaxReport, relaxed_file_names};
 use std::fs;
 use std::io::{self, ErrorKind, Write};
 use std::num::NonZeroUsize;

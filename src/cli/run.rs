@@ -5,17 +5,15 @@ use super::signals::Signals;
 use super::threads::start_threads;
 use super::write::{Earlier, names, write};
 use super::{Interval, Run, UNFINISHED, USAGE, note, report, worse};
+use crate::config::{Loaded, load};
+use crate::drive;
+use crate::error::Error;
+use crate::files::disk::{self, File};
+use crate::output::folder::{self, Destination, Intent};
+use crate::output::{StoppedRun, Summary, discard_partial, file_names, is_partial_left, partial_files, write_partial};
+use crate::record::{Checkpoint, Lock};
 use anyhow::Result;
 use serde_json::{Value, json};
-use spinneb::config::{Loaded, load};
-use spinneb::drive;
-use spinneb::error::Error;
-use spinneb::files::disk::{self, File};
-use spinneb::output::folder::{self, Destination, Intent};
-use spinneb::output::{
-    StoppedRun, Summary, discard_partial, file_names, is_partial_left, partial_files, write_partial,
-};
-use spinneb::record::{Checkpoint, Lock};
 use std::collections::HashMap;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};

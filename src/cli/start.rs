@@ -1,11 +1,11 @@
 //! What helps to start: starter configs, the schema, completions of the command line, man pages.
 
 use super::{Cli, Completions, Init, Man, USAGE, note};
+use crate::config::{SCHEMA_FILE, schema};
+use crate::files::disk;
 use anyhow::Result;
 use clap::{CommandFactory, ValueEnum};
 use serde_json::Value;
-use spinneb::config::{SCHEMA_FILE, schema};
-use spinneb::files::disk;
 use std::io::{self, Write};
 use std::path::PathBuf;
 

@@ -10,13 +10,14 @@ use super::run::run_one;
 use super::signals::Signals;
 use super::threads::{check_threads, start_threads};
 use super::{Run, UNFINISHED, USAGE, note, worse};
+use crate::config::Loaded;
+use crate::config::sweep::Sweep;
+use crate::landscape::Doubt;
+use crate::output::sweep::{IndexedPoint, PointState, SweepIndex, look};
 use anyhow::{Context, Result};
 use clap::Args;
 use rayon::prelude::*;
-use spinneb::config::Loaded;
-use spinneb::config::sweep::Sweep;
-use spinneb::landscape::Doubt;
-use spinneb::output::sweep::{IndexedPoint, PointState, SweepIndex, look};
+use std::ffi::OsString;
 use std::io::{self, Write};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -100,7 +101,7 @@ impl Arguments {
 }
 
 /// Runs a sweep, or the part that is asked for.
-pub fn sweep(arguments: &Arguments) -> Result<u8> {
+pub fn sweep(arguments: &Arguments, program: &[OsString]) -> Result<u8> {
     let sweep = Sweep::load(&arguments.file)?;
     let dir = folder(arguments.out.as_deref(), &sweep);
     if arguments.count {
@@ -119,7 +120,7 @@ pub fn sweep(arguments: &Arguments) -> Result<u8> {
     if !arguments.force && occupied(&dir, &index, &before) {
         return Ok(USAGE);
     }
-    all(arguments, &index, &dir, &before)
+    all(arguments, &index, &dir, &before, program)
 }
 
 /// One point, as `run` runs a config.
@@ -210,7 +211,13 @@ fn occupied(dir: &Path, index: &SweepIndex, before: &[PointState]) -> bool {
 }
 
 /// All points that are not done, several at a time.
-fn all(arguments: &Arguments, index: &SweepIndex, dir: &Path, before: &[PointState]) -> Result<u8> {
+fn all(
+    arguments: &Arguments,
+    index: &SweepIndex,
+    dir: &Path,
+    before: &[PointState],
+    program: &[OsString],
+) -> Result<u8> {
     SweepIndex::is_free(dir, arguments.force)?;
     index.write(dir)?;
     let todo: Vec<usize> = (0..before.len()).filter(|k| arguments.force || before[*k].found().is_none()).collect();
@@ -221,10 +228,10 @@ fn all(arguments: &Arguments, index: &SweepIndex, dir: &Path, before: &[PointSta
     if total < before.len() {
         arguments.say(&format!("{name}: {} of {} points are done already", before.len() - total, before.len()));
     }
-    let program = std::env::current_exe().context("the program does not know where it is")?;
+    let (program, first) = program.split_first().context("the program does not know where it is")?;
     let start = |point: usize| {
-        let mut command = Command::new(&program);
-        command.arg("sweep").arg(&arguments.file).arg("--out").arg(dir);
+        let mut command = Command::new(program);
+        command.args(first).arg("sweep").arg(&arguments.file).arg("--out").arg(dir);
         command.args(["--index", &point.to_string(), "--threads", &threads.to_string(), "--quiet", "--leashed"]);
         if arguments.force {
             command.arg("--force");

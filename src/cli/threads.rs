@@ -1,7 +1,7 @@
 //! How many threads a command may have.
 
+use crate::error::Error;
 use anyhow::{Context, Result};
-use spinneb::error::Error;
 use std::num::NonZeroUsize;
 use std::thread::available_parallelism;
 

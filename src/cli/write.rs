@@ -1,9 +1,9 @@
 //! Writes the files of a result.
 
-use spinneb::config::Loaded;
-use spinneb::drive::Outcome;
-use spinneb::output::folder::{self, NewResult};
-use spinneb::output::{Group, INPUTS, Kind, file_names, render_files};
+use crate::config::Loaded;
+use crate::drive::Outcome;
+use crate::output::folder::{self, NewResult};
+use crate::output::{Group, INPUTS, Kind, file_names, render_files};
 use std::path::{Path, PathBuf};
 
 /// What happens with an earlier result, and the source of the new one.
@@ -22,7 +22,7 @@ pub(super) fn write(
     directory: &Path,
     earlier: Earlier,
     force: bool,
-) -> spinneb::error::Result<Option<PathBuf>> {
+) -> crate::error::Result<Option<PathBuf>> {
     let files = render_files(&loaded.report(outcome)?, wanted(loaded))?;
     let (Earlier::IsKept(source) | Earlier::GivesWay(source)) = earlier;
     let keep_earlier = matches!(earlier, Earlier::IsKept(_));
