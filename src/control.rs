@@ -5,8 +5,8 @@ use crate::error::{Error, Result};
 use crate::record::{Count, Fingerprint, Keep, Recorder, Ticket};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, OnceLock};
 
 /// Counts the gradients of a run, can stop it from any thread, and records what it computes.
 #[derive(Debug, Default)]
@@ -14,6 +14,7 @@ pub struct Control {
     evaluations: AtomicUsize,
     hessians: AtomicUsize,
     stop: Arc<AtomicBool>,
+    fault: OnceLock<String>,
     recorder: Recorder,
 }
 
@@ -31,7 +32,29 @@ impl Control {
 
     /// Whether what it watches over is to stop.
     pub fn is_stopped(&self) -> bool {
-        self.stop.load(Ordering::Relaxed)
+        self.stop.load(Ordering::Relaxed) || self.fault.get().is_some()
+    }
+
+    /// Stops what it watches over, for it cannot go on; of several reasons the first is kept.
+    pub fn give_up(&self, reason: impl FnOnce() -> String) {
+        self.fault.get_or_init(reason);
+    }
+
+    /// An error where what it watches over is to stop: why it cannot go on, if it cannot.
+    pub fn check(&self) -> Result<()> {
+        match self.fault.get() {
+            Some(reason) => Err(Error::Numerical(reason.clone())),
+            None if self.is_stopped() => Err(Error::Stopped),
+            None => Ok(()),
+        }
+    }
+
+    /// What was found, unless something on the way cannot be relied on; a run that is stopped at its very end is finished.
+    pub fn relied_on<T>(&self, found: Result<T>) -> Result<T> {
+        match self.fault.get() {
+            Some(_) => self.check().and(found),
+            None => found,
+        }
     }
 
     /// Records in `keep`, and takes what an interrupted run has recorded there: a run goes on to the outcome that that would
@@ -114,13 +137,11 @@ impl<'a> Call<'a> {
     /// An error if the run is to stop; all that is recorded is saved then, with where this call stands if it can go on from
     /// there.
     pub fn obey<T: Serialize>(&self, state: impl FnOnce() -> Option<T>) -> Result<()> {
-        if !self.control.is_some_and(Control::is_stopped) {
-            return Ok(());
-        }
-        if let Some((recorder, ticket)) = self.record {
+        let stopped = self.control.map_or(Ok(()), Control::check);
+        if let (Err(Error::Stopped), Some((recorder, ticket))) = (&stopped, self.record) {
             recorder.save_with(|| state().map(|state| ticket.sealed(self.count(), &state)));
         }
-        Err(Error::Stopped)
+        stopped
     }
 
     /// Saves where it stands, if it is time to.

@@ -1,8 +1,8 @@
 //! From a config to the problem that the drive is given, with every check on the way.
 
-use super::{Loaded, RatesConfig, Text, memory, physics};
+use super::{Loaded, Name, RatesConfig, Text, memory, physics};
 use crate::drive::{FEWEST_IMAGES, Images, Outcome, Problem, Scales};
-use crate::energy::{EnergyTerm, Hamiltonian, Medium, Part, TermSpec, symmetry_axes};
+use crate::energy::{Custom, CustomEnergy, EnergyTerm, Hamiltonian, Medium, Part, TermSpec, symmetry_axes};
 use crate::error::{Error, Result, both};
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, angle};
@@ -16,6 +16,8 @@ use crate::rates::RateSettings;
 use crate::sphere::{IDENTICAL, SAME};
 use crate::spins::Spins;
 use crate::state::{Sense, StateContext, StateSpec};
+use crate::words::quoted;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// Largest torque on a site (meV) that is taken for meant: 1e20 meV is 16 mJ.
@@ -37,6 +39,11 @@ pub struct States {
 }
 
 impl Loaded {
+    /// With terms of the program's own beside those of the config, whose `custom_terms` are to name them.
+    pub fn with_terms(self, custom: Vec<Arc<dyn CustomEnergy>>) -> Loaded {
+        Loaded { custom, ..self }
+    }
+
     /// How figures look.
     pub fn look(&self) -> Result<Look> {
         self.config.output.look().map_err(|e| self.text.locate(e.within("output")))
@@ -207,6 +214,16 @@ impl Loaded {
                 Err(e) => wrong.push(text.locate(e.within(&place))),
             }
         }
+        for (k, name) in self.config.custom_terms.iter().enumerate() {
+            let built = self.custom_term(lattice, name).and_then(|term| {
+                largest = largest.max(torque(&term, lattice.sites)?);
+                Ok(term)
+            });
+            match built {
+                Ok(term) => terms.push(Box::new(term) as Box<dyn EnergyTerm>),
+                Err(e) => wrong.push(self.text.locate(e.within(&format!("custom_terms[{k}]")))),
+            }
+        }
         if !wrong.is_empty() {
             return Err(Error::several(wrong));
         }
@@ -220,6 +237,26 @@ impl Loaded {
         Err(self
             .text
             .locate(Error::invalid(if self.config.energy.is_empty() { "material" } else { "energy" }, nothing)))
+    }
+
+    fn custom_term(&self, lattice: &Lattice, name: &Name) -> Result<Custom> {
+        let taken = TermSpec::ENTRIES.iter().any(|entry| entry.name == name.as_str()) || name.as_str() == "energy";
+        let own = self.custom.iter().find(|term| term.name() == name.as_str());
+        match own {
+            _ if taken => {
+                let message =
+                    format!("{} is the name of something else in tables: give it another", quoted(name.as_str()));
+                Err(Error::invalid("", message))
+            }
+            Some(own) => Custom::new(lattice, own.clone()),
+            None => {
+                let message = format!(
+                    "{} is a term of the program that wrote this config, which alone can run it (in Python, a `Term` of the system)",
+                    quoted(name.as_str())
+                );
+                Err(Error::invalid("", message))
+            }
+        }
     }
 
     /// Refuses what no memory can hold; `images` are the path's, where it has come to them.

@@ -5,20 +5,18 @@ use super::library;
 use super::material::{DEFAULT, MaterialChoice};
 use super::parts::PartMaterial;
 use super::pictures::with_images;
+use super::source::{Source, bytes, known_file};
 use super::text::{Text, apply_set, decode, nearest};
 use super::{Config, Name, memory};
+use crate::energy::CustomEnergy;
 use crate::error::{Error, Result, both};
-use crate::files::open_file;
 use crate::lattice::Lattice;
 use crate::words::quoted;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
-use std::fs;
-use std::io::{self, Read};
+use std::io;
 use std::path::{Path, PathBuf};
-
-/// Longest text that is read (bytes).
-const LONGEST: u64 = 1 << 30;
+use std::sync::Arc;
 
 /// A config with everything it names.
 #[derive(Clone, Debug)]
@@ -41,62 +39,63 @@ pub struct Loaded {
     pub inputs: Vec<crate::files::disk::File>,
     /// What the user should know of these files.
     pub warnings: Vec<String>,
+    /// The terms of the program that its `custom_terms` name.
+    pub custom: Vec<Arc<dyn CustomEnergy>>,
     /// The config's file as the system knows it; nothing if it came from standard input.
     pub source: Option<PathBuf>,
     /// All files that it was made from, as the system knows them.
     pub made_from: Vec<PathBuf>,
 }
 
-/// What stands on a command line for a config from standard input, and what that is called.
-const STDIN: [&str; 2] = ["-", "stdin"];
-
 /// Reads a config, changed by `sets` (`KEY.PATH=JSON`), and the material it names. The path `-` stands for standard input; a
 /// config from there names files from the working directory on.
 pub fn load(path: &Path, sets: &[String]) -> Result<Loaded> {
-    load_from(shown(path), read(path)?.set(sets)?, known_file(path))
-}
-
-fn is_stdin(path: &Path) -> bool {
-    path == Path::new(STDIN[0])
-}
-
-/// What messages call a config.
-fn shown(path: &Path) -> &Path {
-    if is_stdin(path) { Path::new(STDIN[1]) } else { path }
-}
-
-/// A file as the system knows it.
-fn known_file(path: &Path) -> Option<PathBuf> {
-    if is_stdin(path) { None } else { fs::canonicalize(path).ok() }
+    Source::file(path)?.set(sets)?.load()
 }
 
 /// Reads a config whose states alone are wanted; whether it has a `final` one, which it need not.
 pub fn load_states(path: &Path, sets: &[String]) -> Result<(Loaded, bool)> {
-    let (loaded, [given]) = load_without(path, sets, ["final"])?;
-    Ok((loaded, given))
+    Source::file(path)?.set(sets)?.load_states()
 }
 
 /// Reads a config whose ends are but states to start from, and need not be there.
 pub fn load_landscape(path: &Path, sets: &[String]) -> Result<Loaded> {
-    Ok(load_without(path, sets, ["initial", "final"])?.0)
-}
-
-/// Reads a config that may lack some states; whether it has each.
-fn load_without<const N: usize>(path: &Path, sets: &[String], states: [&str; N]) -> Result<(Loaded, [bool; N])> {
-    let mut text = read(path)?.set(sets)?;
-    let value: Value = text.parse()?;
-    let given = states.map(|key| !value.is_object() || value.get(key).is_some());
-    for (key, _) in states.iter().zip(given).filter(|(_, given)| !given) {
-        // it stands at the end and moves nothing else
-        let any = format!(r#"{key}={{"uniform": {{"direction": [0, 0, 1]}}}}"#);
-        text.text = apply_set(&text.file, &text.text, &[any])?;
-    }
-    Ok((load_from(shown(path), text, known_file(path))?, given))
+    Source::file(path)?.set(sets)?.load_landscape()
 }
 
 /// A config's text as if it were read from `path`, and what it names.
 pub fn load_text(path: &Path, text: String) -> Result<Loaded> {
-    load_from(path, Text::new(path.display().to_string(), text), known_file(path))
+    Source::text(path, text).load()
+}
+
+impl Source {
+    /// The config, with all that it names.
+    pub fn load(self) -> Result<Loaded> {
+        load_from(&self.path, self.text, self.known)
+    }
+
+    /// The same of a config whose states alone are wanted; whether it has a `final` one, which it need not.
+    pub fn load_states(self) -> Result<(Loaded, bool)> {
+        let (source, [given]) = self.with_states(["final"])?;
+        Ok((source.load()?, given))
+    }
+
+    /// The same of a config whose ends are but states to start from, and need not be there.
+    pub fn load_landscape(self) -> Result<Loaded> {
+        self.with_states(["initial", "final"])?.0.load()
+    }
+
+    /// With some state where it lacks one of these; whether it has each.
+    fn with_states<const N: usize>(mut self, states: [&str; N]) -> Result<(Source, [bool; N])> {
+        let value: Value = self.text.parse()?;
+        let given = states.map(|key| !value.is_object() || value.get(key).is_some());
+        for (key, _) in states.iter().zip(given).filter(|(_, given)| !given) {
+            // it stands at the end and moves nothing else
+            let any = format!(r#"{key}={{"uniform": {{"direction": [0, 0, 1]}}}}"#);
+            self.text.text = apply_set(&self.text.file, &self.text.text, &[any])?;
+        }
+        Ok((self, given))
+    }
 }
 
 fn load_from(path: &Path, text: Text, source: Option<PathBuf>) -> Result<Loaded> {
@@ -123,7 +122,8 @@ fn load_from(path: &Path, text: Text, source: Option<PathBuf>) -> Result<Loaded>
         .chain(inputs.read.iter().chain(&images).map(PathBuf::as_path));
     let made_from = source.iter().cloned().chain(own.filter_map(known_file)).collect();
     let Inputs { files: inputs, warnings, .. } = inputs;
-    Ok(Loaded { text, config, name, parts, lattice, as_run, sha256, inputs, warnings, source, made_from })
+    let custom = Vec::new();
+    Ok(Loaded { text, config, name, parts, lattice, as_run, sha256, inputs, warnings, custom, source, made_from })
 }
 
 /// The error, unless the text is another kind of file than the wanted one: then what that is and what takes it.
@@ -191,32 +191,6 @@ fn material(
     let part = PartMaterial { region, material, text: own, key };
     part.material.validate().map_err(|e| part.locate(text, e))?;
     Ok(part)
-}
-
-/// The text of a file, for messages named as it was given.
-pub(super) fn read(path: &Path) -> Result<Text> {
-    let bytes = match is_stdin(path) {
-        true => whole(io::stdin()),
-        false => bytes(path),
-    };
-    let bytes = bytes.map_err(|source| Error::Io { path: shown(path).into(), source })?;
-    let file = shown(path).display().to_string();
-    decode(&file, bytes).map(|text| Text::new(file, text))
-}
-
-fn bytes(path: &Path) -> io::Result<Vec<u8>> {
-    whole(open_file(path)?)
-}
-
-fn whole(source: impl Read) -> io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    source.take(LONGEST + 1).read_to_end(&mut bytes)?;
-    match bytes.len() as u64 > LONGEST {
-        true => {
-            Err(io::Error::new(io::ErrorKind::FileTooLarge, "the file is larger than 1 GiB, too large for a config"))
-        }
-        false => Ok(bytes),
-    }
 }
 
 /// The name given, or the file's without its ending.

@@ -26,6 +26,7 @@ mod refusals;
 mod schema;
 mod search;
 mod set;
+mod source;
 mod strict;
 pub mod sweep;
 pub mod text;
@@ -43,6 +44,7 @@ pub use path::{ImageCount, PathConfig};
 pub use rates::{RatesConfig, Temperatures};
 pub use schema::{Key, SCHEMA_FILE, keys, schema};
 pub use search::SearchConfig;
+pub use source::Source;
 pub use text::Text;
 
 use crate::energy::TermSpec;
@@ -71,6 +73,9 @@ pub struct Config {
     /// Terms added to the material's.
     #[serde(default)]
     pub energy: Vec<TermSpec>,
+    /// Terms of the program that runs the config, by name; the command line has none.
+    #[serde(default)]
+    pub custom_terms: Vec<Name>,
     /// Where the path starts.
     pub initial: StateSpec,
     /// Where it ends.

@@ -33,7 +33,7 @@ pub struct Physics {
     /// Smallest and largest barrier that a single site has of itself (meV).
     pub site_barriers_mev: [f64; 2],
     /// The terms by the torque of a site whose neighbours point elsewhere (meV, middle one of all sites), largest first.
-    pub terms_mev: Vec<(&'static str, f64)>,
+    pub terms_mev: Vec<(String, f64)>,
     /// What may be too coarse, in words.
     pub warnings: Vec<String>,
 }
@@ -126,7 +126,7 @@ fn site_barriers(h: &Hamiltonian) -> [f64; 2] {
 }
 
 /// The terms by the middle torque of all sites where no two neighbours are alike, those of one name together.
-fn by_torque(h: &Hamiltonian) -> Vec<(&'static str, f64)> {
+fn by_torque(h: &Hamiltonian) -> Vec<(String, f64)> {
     let directions: [Vector; 3] = [[0.8, 0.48, 0.36], [-0.48, 0.36, 0.8], [0.36, -0.8, -0.48]];
     let n = h.sites();
     let step = |i: usize| {
@@ -134,7 +134,7 @@ fn by_torque(h: &Hamiltonian) -> Vec<(&'static str, f64)> {
         (atom + cell[0] + cell[1] + cell[2]) % 3
     };
     let m: Vec<f64> = (0..3).flat_map(|c| (0..n).map(move |i| directions[step(i)][c])).collect();
-    let mut gradients: Vec<(&'static str, Vec<f64>)> = Vec::new();
+    let mut gradients: Vec<(&str, Vec<f64>)> = Vec::new();
     for term in h.terms() {
         let place = gradients.iter().position(|(name, _)| *name == term.name());
         let k = place.unwrap_or_else(|| {
@@ -150,7 +150,7 @@ fn by_torque(h: &Hamiltonian) -> Vec<(&'static str, f64)> {
         torques.sort_by(f64::total_cmp);
         torques[n / 2]
     };
-    let mut terms: Vec<(&'static str, f64)> = gradients.iter().map(|(name, g)| (*name, middle(g))).collect();
+    let mut terms: Vec<(String, f64)> = gradients.iter().map(|(name, g)| (name.to_string(), middle(g))).collect();
     terms.sort_by(|a, b| b.1.total_cmp(&a.1));
     terms
 }

@@ -17,7 +17,7 @@ pub use crate::words::nearest;
 /// A text and the file it is from, for messages.
 #[derive(Clone, Debug)]
 pub struct Text {
-    /// The file as messages name it.
+    /// The file as messages name it; empty where a program has made the text, of which messages then tell the key alone.
     pub file: String,
     /// Its content, with `--set` carried out.
     pub text: String,
@@ -104,6 +104,9 @@ impl Text {
             }
             None => root.descend(steps).0.start,
         });
+        if self.file.is_empty() {
+            return Error::invalid(if place == "." { String::new() } else { place }, message);
+        }
         let (line, column) = position(own, start);
         Error::Config { file: self.file.clone(), line, column, place, message }
     }

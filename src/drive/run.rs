@@ -35,11 +35,12 @@ const AS_LOW: f64 = 1e-3;
 pub(super) const END_TOLERANCE: f64 = 1e-14;
 
 /// Finds the minimum-energy path of a problem, taking what its [`Control`](crate::control::Control) finds on record from there, and
-/// recording what it computes. A run that its control stops ends with [`Error::Stopped`](crate::error::Error::Stopped).
+/// recording what it computes. A run that its control stops ends with [`Error::Stopped`](crate::error::Error::Stopped), one that meets an
+/// energy that is no finite number with [`Error::Numerical`](crate::error::Error::Numerical).
 pub fn run(problem: &Problem, observer: &mut dyn Observer) -> Result<Outcome> {
     problem.control.recorder().begin(|| problem.fingerprint());
     // on a thread of the pool, so that it is not left and entered again for every band
-    rayon::scope(|_| Run::prepare(problem, observer)?.finish())
+    problem.control.relied_on(rayon::scope(|_| Run::prepare(problem, observer)?.finish()))
 }
 
 pub(super) struct Run<'a, 'o> {

@@ -274,6 +274,10 @@ impl EnergyTerm for Dmi {
         self.families.iter().map(|c| &c.family).collect()
     }
 
+    fn is_quadratic(&self) -> bool {
+        true
+    }
+
     fn axes(&self) -> Vec<Vector> {
         self.directions.clone()
     }

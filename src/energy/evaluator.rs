@@ -4,6 +4,7 @@ use super::Hamiltonian;
 use crate::control::{Call, Control};
 use crate::field::Components;
 use crate::record::{Count, Fingerprint};
+use crate::words::quoted;
 use std::ops::{Deref, Range};
 
 /// A [`Hamiltonian`] whose gradients are counted by a [`Control`], if there is one.
@@ -27,7 +28,7 @@ impl<'a> Evaluator<'a> {
     /// [`Hamiltonian::energy_gradient`], counted.
     pub fn energy_gradient(&self, m: &[f64], g: &mut [f64]) -> f64 {
         self.count();
-        self.hamiltonian.energy_gradient(m, g)
+        self.finite(m, self.hamiltonian.energy_gradient(m, g))
     }
 
     /// [`Hamiltonian::density_gradient`], counted.
@@ -40,7 +41,7 @@ impl<'a> Evaluator<'a> {
         each: impl Fn(Range<usize>, Components, R) + Sync,
     ) -> f64 {
         self.count();
-        self.hamiltonian.density_gradient(m, g, density, rows, each)
+        self.finite(m, self.hamiltonian.density_gradient(m, g, density, rows, each))
     }
 
     /// What was counted so far.
@@ -63,6 +64,18 @@ impl<'a> Evaluator<'a> {
     /// A computation of a kind, with its input, to be recorded or answered from the record.
     pub fn call(&self, kind: &str, input: impl FnOnce(Fingerprint) -> Fingerprint) -> Call<'a> {
         Call::begin(self.control, kind, input)
+    }
+
+    /// An energy; one that is not finite ends what uses it.
+    fn finite(&self, m: &[f64], energy: f64) -> f64 {
+        if let (false, Some(control)) = (energy.is_finite(), self.control) {
+            control.give_up(|| {
+                let terms = self.hamiltonian.energies_mev(m).into_iter().filter(|(_, e)| !e.is_finite());
+                let names: Vec<String> = terms.map(|(name, _)| quoted(name)).collect();
+                format!("an energy on the way is not a finite number, that of {}", names.join(" and of "))
+            });
+        }
+        energy
     }
 
     fn count(&self) {

@@ -227,6 +227,10 @@ impl EnergyTerm for Exchange {
         self.families.iter().map(|c| &c.family).collect()
     }
 
+    fn is_quadratic(&self) -> bool {
+        true
+    }
+
     fn axes(&self) -> Vec<Vector> {
         Vec::new()
     }

@@ -28,6 +28,8 @@ pub struct Hamiltonian {
     terms: Vec<Box<dyn EnergyTerm>>,
     /// The term that joins all pairs of sites.
     long: Option<usize>,
+    /// Which terms are asked for all sites together.
+    whole: Vec<bool>,
     blocks: Blocks,
     layout: Layout,
     reach: usize,
@@ -54,6 +56,7 @@ impl Hamiltonian {
             axes: symmetry_axes(&terms, sites),
             layout: lattice.layout(&blocks.bond.iter().map(|bonds| &bonds.family).collect::<Vec<_>>()),
             blocks,
+            whole: terms.iter().map(|t| t.is_whole()).collect(),
             terms,
             long,
             reach,
@@ -117,6 +120,11 @@ impl Hamiltonian {
     /// The largest stiffness or torque that a site can feel (meV), roughly; also the stiffness given to frozen sites.
     pub fn stiffness_mev(&self) -> f64 {
         self.stiffness
+    }
+
+    /// What the Hessian is uncertain by (meV), rounding apart: what long-ranged and custom terms leave out.
+    pub fn hessian_error_mev(&self) -> f64 {
+        self.coupling().error_mev(true) + self.terms.iter().map(|t| t.hessian_error_mev()).sum::<f64>()
     }
 
     /// What the energy of a configuration is uncertain by (meV): a site's share of it by some ulp of the largest stiffness.
@@ -191,26 +199,33 @@ impl Hamiltonian {
         slab::sum(&sums)
     }
 
-    /// What a long-ranged term adds: its gradient in `g`, and its density.
+    /// The terms that are asked for all sites together.
+    fn whole_terms(&self) -> impl Iterator<Item = &dyn EnergyTerm> {
+        self.terms.iter().zip(&self.whole).filter(|(_, whole)| **whole).map(|(t, _)| &**t)
+    }
+
+    /// What the terms that are asked for all sites together add: their gradient in `g`, and their density.
     fn add_far(&self, m: &[f64], g: &mut [f64]) -> Option<Vec<f64>> {
-        self.long.map(|k| {
+        self.whole.contains(&true).then(|| {
             g.fill(0.0);
             let mut density = vec![0.0; self.sites];
-            self.terms[k].add_gradient(Components::new(m), ComponentsMut::new(g), &mut density, 0..self.sites);
+            for t in self.whole_terms() {
+                t.add_gradient(Components::new(m), ComponentsMut::new(g), &mut density, 0..self.sites);
+            }
             density
         })
     }
 
-    /// The other terms on the sites from `first` on: their gradient, added to that of a long-ranged one, and their densities,
+    /// The other terms on the sites from `first` on: their gradient, added to that of the whole ones, and their densities,
     /// added to `density`.
     fn near_tile(&self, m: &[f64], first: usize, mut g: ComponentsMut, density: &mut [f64]) {
         let range = first..first + g.x.len();
-        if self.long.is_none() {
+        if !self.whole.contains(&true) {
             g.x.fill(0.0);
             g.y.fill(0.0);
             g.z.fill(0.0);
         }
-        for (_, t) in self.terms.iter().enumerate().filter(|(k, _)| self.long != Some(*k)) {
+        for (t, _) in self.terms.iter().zip(&self.whole).filter(|(_, whole)| !**whole) {
             t.add_gradient(Components::new(m), g.reborrow(), density, range.clone());
         }
     }
@@ -252,15 +267,13 @@ impl Hamiltonian {
             let gradient = ComponentsMut::new(&mut gradient[..3 * density.len()]);
             self.near_tile(m, k * ROW, gradient, density);
         }
-        if let Some(k) = self.long {
-            super::add_density(self.terms[k].as_ref(), m, &mut density);
-        }
+        self.whole_terms().for_each(|t| super::add_density(t, m, &mut density));
         density
     }
 
     /// Total energy by name of term (meV); terms of one name are added up.
-    pub fn energies_mev(&self, m: &[f64]) -> Vec<(&'static str, f64)> {
-        let mut sums: Vec<(&'static str, f64)> = Vec::new();
+    pub fn energies_mev(&self, m: &[f64]) -> Vec<(&str, f64)> {
+        let mut sums: Vec<(&str, f64)> = Vec::new();
         for t in &self.terms {
             let e = t.reference_mev() + slab::sum(&super::density_of(t.as_ref(), m));
             match sums.iter_mut().find(|(name, _)| *name == t.name()) {

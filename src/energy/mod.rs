@@ -15,6 +15,7 @@ mod choice;
 mod coupling;
 mod couplings;
 mod cubic_anisotropy;
+mod custom;
 mod demag;
 mod dipolar;
 mod dmi;
@@ -38,6 +39,7 @@ pub use choice::Choice;
 pub use coupling::{AllPairs, Coupling};
 pub use couplings::Couplings;
 pub use cubic_anisotropy::{CubicAnisotropy, CubicAnisotropySpec};
+pub use custom::{Custom, CustomEnergy, Reach, check_term};
 pub use demag::DemagSpec;
 pub use dipolar::DipolarSpec;
 pub use dmi::{Dmi, DmiKind, DmiSpec};
@@ -78,7 +80,7 @@ fn add_density(term: &dyn EnergyTerm, m: &[f64], density: &mut [f64]) {
 /// not differences of large ones.
 pub trait EnergyTerm: Debug + Send + Sync {
     /// The name it has in configs and results.
-    fn name(&self) -> &'static str;
+    fn name(&self) -> &str;
 
     /// Energy of the reference state (meV), a constant.
     fn reference_mev(&self) -> f64;
@@ -103,16 +105,24 @@ pub trait EnergyTerm: Debug + Send + Sync {
         self.families().into_iter().map(|family| family.hop.shift[0].unsigned_abs()).max().unwrap_or(0)
     }
 
-    /// Whether ∂²E/∂m∂m does not depend on m.
-    fn is_quadratic(&self) -> bool {
-        true
-    }
+    /// Whether ∂²E/∂m∂m does not depend on m: its blocks are then asked for once.
+    fn is_quadratic(&self) -> bool;
 
     /// Axes that the term itself singles out: the candidates for an axis of symmetry that are tried first.
     fn axes(&self) -> Vec<Vector>;
 
-    /// Which sites it couples. Where it joins all pairs, its gradient is asked for once a configuration, for all sites together, and
-    /// its [`reach`](Self::reach) is that of the blocks it adds, which are not all.
+    /// Whether its gradient is asked for once a configuration, for all sites together.
+    fn is_whole(&self) -> bool {
+        self.coupling().pairs().is_some()
+    }
+
+    /// What its Hessian is uncertain by (meV), rounding apart.
+    fn hessian_error_mev(&self) -> f64 {
+        0.0
+    }
+
+    /// Which sites it couples. Where it joins all pairs, its
+    /// [`reach`](Self::reach) is that of the blocks it adds, which are not all.
     fn coupling(&self) -> Coupling<'_> {
         Coupling::Local
     }

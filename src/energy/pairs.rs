@@ -353,6 +353,10 @@ impl EnergyTerm for Pairs {
         self.exchange.families()
     }
 
+    fn is_quadratic(&self) -> bool {
+        true
+    }
+
     fn axes(&self) -> Vec<Vector> {
         self.dmi.axes()
     }

@@ -99,6 +99,10 @@ impl EnergyTerm for Zeeman {
 
     fn add_blocks(&self, _: Components, _: &mut Blocks) {}
 
+    fn is_quadratic(&self) -> bool {
+        true
+    }
+
     fn axes(&self) -> Vec<Vector> {
         vec![self.direction]
     }

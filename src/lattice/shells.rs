@@ -134,6 +134,20 @@ impl Lattice {
         atoms.clone().flat_map(|a| atoms.clone().map(move |b| [a, b])).map(|[a, b]| apart(a, b)).fold(0.0, f64::max)
     }
 
+    /// Hops no longer than so many lattice constants (in a row, sites), with their lengths, the shortest first; none that leads out
+    /// of the lattice, or from a site to itself.
+    pub fn hops_within(&self, reach: f64) -> Vec<(f64, Hop)> {
+        if self.is_row() {
+            let most = if self.grid.periodic[0] { self.sites / 2 } else { self.sites.saturating_sub(1) };
+            let near = (reach * (1.0 + SAME)).min(most as f64) as usize;
+            return (1..=near).map(|n| (n as f64, Hop::ahead(n))).collect();
+        }
+        let diagonal: f64 = (0..3).map(|d| self.steps[d].0 * (self.grid.size[d] + 1) as f64).sum();
+        let a = self.spacing_nm.unwrap_or(1.0);
+        let held = |(_, hop): &(f64, Hop)| self.grid.holds(hop.shift) && !self.closes(*hop);
+        self.hops((reach * a).min(diagonal)).into_iter().filter(held).map(|(r, hop)| (r / a, hop)).collect()
+    }
+
     /// All hops that lead up and are no longer than that, with their lengths, the shortest first.
     fn hops(&self, radius: f64) -> Vec<(f64, Hop)> {
         let most = self.cells_within(radius);

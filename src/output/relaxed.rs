@@ -44,7 +44,7 @@ pub struct StateReport<'a> {
     minimum: bool,
     converged: bool,
     energy_meV: Number,
-    energies_meV: BTreeMap<&'static str, Number>,
+    energies_meV: BTreeMap<&'a str, Number>,
     max_torque_meV: Number,
     negative_modes: usize,
     zero_modes: usize,

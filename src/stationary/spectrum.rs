@@ -74,8 +74,7 @@ fn pinned(h: Evaluator, mut matrix: Matrix, zeros: &[Vec<f64>], shift: f64) -> F
     matrix.factor()
 }
 
-/// What an eigenvalue must exceed in size to have a sign (meV): the rounding error, or what a long-ranged Hessian leaves out.
+/// What an eigenvalue must exceed in size to have a sign (meV): the rounding error, or what the Hessian leaves out.
 fn floor_mev(h: Evaluator, norm_mev: f64) -> f64 {
-    let left_out = h.coupling().error_mev(true);
-    (8.0 * f64::EPSILON * norm_mev).max(left_out)
+    (8.0 * f64::EPSILON * norm_mev).max(h.hessian_error_mev())
 }

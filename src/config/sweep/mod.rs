@@ -19,7 +19,8 @@ mod names;
 mod range;
 
 use super::json::{Holds, Step, steps};
-use super::load::{Loaded, load_text, not_a, read};
+use super::load::{Loaded, load_text, not_a};
+use super::source::read;
 use super::text::{Text, apply_set, at, tree};
 use super::{Comment, Name};
 use crate::drive::Problem;

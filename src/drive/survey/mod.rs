@@ -92,7 +92,7 @@ fn share(effort: Effort) -> [usize; 2] {
 /// [`Error::Stopped`](crate::error::Error::Stopped).
 pub fn survey(asked: &SurveyProblem, observer: &mut dyn Observer) -> Result<Survey> {
     asked.problem.control.recorder().begin(|| asked.fingerprint());
-    rayon::scope(|_| {
+    asked.problem.control.relied_on(rayon::scope(|_| {
         let mut run = Run::prepare(&asked.problem, observer)?;
         let alike = asked.rates.as_ref().map_or(&[][..], |rates| &rates.moments_mub);
         let group = Group::of(&asked.problem.hamiltonian, run.ends[0].spins.as_slice(), alike);
@@ -100,7 +100,7 @@ pub fn survey(asked: &SurveyProblem, observer: &mut dyn Observer) -> Result<Surv
         let planted = run.plant(asked)?;
         let searched = run.explore(asked)?;
         Survey::of(asked, &run.land, &group, planted, searched, run.warnings)
-    })
+    }))
 }
 
 impl SurveyProblem {

@@ -262,6 +262,10 @@ impl EnergyTerm for Magnetostatics {
         self.coupling().tail(true).map_or(0, |e| e.shells)
     }
 
+    fn is_quadratic(&self) -> bool {
+        true
+    }
+
     fn axes(&self) -> Vec<Vector> {
         self.frame.to_vec()
     }
