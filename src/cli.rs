@@ -18,6 +18,9 @@ mod sweep;
 mod threads;
 mod write;
 
+pub use check::report_of;
+pub use threads::check_threads;
+
 use crate::config::rates;
 use crate::error::Error;
 use crate::output::Picture;

@@ -27,52 +27,58 @@ pub fn check(arguments: &Check) -> Result<u8> {
 }
 
 fn print(out: &mut impl Write, loaded: &Loaded, problem: &Problem) -> io::Result<()> {
+    writeln!(out, "{}: valid", loaded.text.file)?;
+    report_of(loaded, problem).iter().try_for_each(|(key, value)| writeln!(out, "  {key:<13}{value}"))
+}
+
+/// What a config would run, as rows of a key and a value; a row without a key goes on with the one before.
+pub fn report_of(loaded: &Loaded, problem: &Problem) -> Vec<(&'static str, String)> {
     let h = &problem.hamiltonian;
     let scales = Scales::of_terms(h);
-    writeln!(out, "{}: valid", loaded.text.file)?;
-    let mut row = |key: &str, value: String| writeln!(out, "  {key:<13}{value}");
-    row("name", loaded.name.clone())?;
-    row("material", material(loaded))?;
-    row("lattice", lattice(loaded))?;
+    let mut rows = Vec::new();
+    let mut row = |key: &'static str, value: String| rows.push((key, value));
+    row("name", loaded.name.clone());
+    row("material", material(loaded));
+    row("lattice", lattice(loaded));
     for (k, line) in drawing(&loaded.lattice).into_iter().enumerate() {
-        row(if k == 0 { "geometry" } else { "" }, line)?;
+        row(if k == 0 { "geometry" } else { "" }, line);
     }
     for (k, shell) in shells(h).iter().enumerate() {
-        row(if k == 0 { "shells" } else { "" }, neighbours(h.lattice(), shell))?;
+        row(if k == 0 { "shells" } else { "" }, neighbours(h.lattice(), shell));
     }
     let states = [problem.initial.as_slice(), problem.final_state.as_slice()].map(|m| h.energies_mev(m));
     let numbers = |x: f64| format!("{x:>16.6}");
-    row("energies", format!("{:<20}{:>16}{:>16}", "as given (meV)", "initial", "final"))?;
+    row("energies", format!("{:<20}{:>16}{:>16}", "as given (meV)", "initial", "final"));
     for ((term, a), (_, b)) in states[0].iter().zip(&states[1]) {
-        row("", format!("{term:<20}{}{}", numbers(*a), numbers(*b)))?;
+        row("", format!("{term:<20}{}{}", numbers(*a), numbers(*b)));
     }
     let total = |k: usize| numbers(states[k].iter().map(|(_, e)| e).sum());
-    row("", format!("{:<20}{}{}", "total", total(0), total(1)))?;
+    row("", format!("{:<20}{}{}", "total", total(0), total(1)));
     let physics = Physics::of(loaded, problem, &scales);
-    row("stiffness", format!("{:.6} meV (softest mode of a stable spin)", scales.stiffness_mev))?;
-    row("exchange", format!("{:.6} meV {}", scales.exchange_mev, stiffness_of(h.lattice())))?;
+    row("stiffness", format!("{:.6} meV (softest mode of a stable spin)", scales.stiffness_mev));
+    row("exchange", format!("{:.6} meV {}", scales.exchange_mev, stiffness_of(h.lattice())));
     if let Some(length) = physics.exchange_length_nm {
-        row("l_ex", format!("{length:.4} nm (exchange length √(2A/μ₀Ms²))"))?;
+        row("l_ex", format!("{length:.4} nm (exchange length √(2A/μ₀Ms²))"));
     }
-    row("wall width", wall_width(&physics, h.lattice()))?;
-    row("wall energy", wall_energy(&physics))?;
-    row("site barrier", site_barrier(&physics))?;
-    row("dominant", dominant(&physics))?;
-    row("ends", if problem.relax_ends { "relaxed to minima first" } else { "kept as given" }.into())?;
-    row("guess", problem.guess.as_ref().map_or("all natural ones".into(), |g| g.name().into()))?;
-    row("images", images(problem, &scales))?;
-    row("optimiser", format!("{} to {:e} rad", problem.neb.optimiser.name(), problem.neb.tolerance))?;
+    row("wall width", wall_width(&physics, h.lattice()));
+    row("wall energy", wall_energy(&physics));
+    row("site barrier", site_barrier(&physics));
+    row("dominant", dominant(&physics));
+    row("ends", if problem.relax_ends { "relaxed to minima first" } else { "kept as given" }.into());
+    row("guess", problem.guess.as_ref().map_or("all natural ones".into(), |g| g.name().into()));
+    row("images", images(problem, &scales));
+    row("optimiser", format!("{} to {:e} rad", problem.neb.optimiser.name(), problem.neb.tolerance));
     if let Some(rates) = &problem.rates {
-        row("rates", asked_for(rates))?;
+        row("rates", asked_for(rates));
     }
-    row("memory", format!("about {}", memory::shown(needed_bytes(problem, &scales))))?;
+    row("memory", format!("about {}", memory::shown(needed_bytes(problem, &scales))));
     let estimate = Estimate::of(problem, &scales);
     let seconds = estimate.processor_seconds(loaded, problem, &scales);
-    row("time", format!("about {} of one processor, by a measured step", duration(seconds)))?;
+    row("time", format!("about {} of one processor, by a measured step", duration(seconds)));
     for warning in physics.warnings.iter().chain(&loaded.warnings) {
-        row("warning", warning.clone())?;
+        row("warning", warning.clone());
     }
-    Ok(())
+    rows
 }
 
 fn asked_for(rates: &RateSettings) -> String {

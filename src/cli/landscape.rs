@@ -1,16 +1,15 @@
 //! `landscape`: all minima and saddles of a config below an energy.
 
 use super::progress::Progress;
-use super::run::{Keeping, checkpoint, discard_leftovers, reserve, source};
+use super::run::{Keeping, checkpoint};
 use super::signals::Signals;
 use super::threads::start_threads;
 use super::{EVERY, Interval, Looking, UNFINISHED, interval, note, report};
-use crate::config::{Loaded, load_landscape};
+use crate::config::{discard_leftovers, load_landscape};
 use crate::drive::survey::survey;
 use crate::error::Error;
 use crate::files::disk;
 use crate::output::folder::{self, NewResult};
-use crate::output::{LandscapeReport, landscape_file_names};
 use crate::record::Checkpoint;
 use anyhow::Result;
 use clap::Args;
@@ -90,7 +89,7 @@ pub fn landscape(arguments: &Arguments) -> Result<u8> {
     let mut asked = loaded.survey()?;
     let signals = Signals::watch()?;
     asked.problem.control.obey(signals.switch());
-    let Some(lock) = reserve(&loaded, &directory, &names(&loaded), arguments.force)? else {
+    let Some(lock) = loaded.reserve(&directory, &loaded.survey_file_names(), arguments.force)? else {
         say(&format!(
             "{name}: {} holds the finished result of this config already; --force makes it again",
             directory.display()
@@ -125,8 +124,8 @@ pub fn landscape(arguments: &Arguments) -> Result<u8> {
         },
     };
     drop(progress);
-    let files = files(&loaded, &found)?;
-    let source = source(&loaded);
+    let files = loaded.survey_report(&found)?.files()?;
+    let source = loaded.source_name();
     let new =
         NewResult { files: &files, source: source.as_deref(), keep_earlier: !arguments.force, force: arguments.force };
     if let Err(error) = folder::write_result(&directory, &new) {
@@ -136,30 +135,10 @@ pub fn landscape(arguments: &Arguments) -> Result<u8> {
     }
     drop(asked);
     if let Err(error) = discard_leftovers(&directory) {
-        report(&error);
+        report(&error.into());
     }
     found.warnings.iter().for_each(|warning| say(&format!("{name}: warning: {warning}")));
     print(arguments, name, &directory)
-}
-
-fn names(loaded: &Loaded) -> Vec<String> {
-    let own = landscape_file_names(&loaded.config.output.plots);
-    own.into_iter().chain(loaded.inputs.iter().map(|file| file.name.clone())).collect()
-}
-
-fn files(loaded: &Loaded, found: &crate::drive::survey::Survey) -> Result<Vec<disk::File>> {
-    let report = LandscapeReport {
-        name: &loaded.name,
-        version: env!("CARGO_PKG_VERSION"),
-        config_sha256: &loaded.sha256,
-        config_text: &loaded.as_run,
-        inputs: &loaded.inputs,
-        lattice: &loaded.lattice,
-        look: loaded.look()?,
-        plots: &loaded.config.output.plots,
-        survey: found,
-    };
-    Ok(report.files()?)
 }
 
 /// The line about a result on standard output; the exit code.

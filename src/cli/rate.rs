@@ -2,10 +2,10 @@
 
 use super::progress::Progress;
 use super::threads::start_threads;
-use super::write::{Earlier, names, write};
+use super::write::{Earlier, write};
 use super::{Rate, UNFINISHED, USAGE, note, report, worse};
 use crate::config::{Loaded, RatesConfig, load};
-use crate::drive::{self, Outcome, Problem, is_said_of_rates, rates_warnings, stored_rates};
+use crate::drive::{self, Outcome, Problem};
 use crate::output::{StoredOutcome, folder};
 use crate::rates::{Row, Theory, TransitionRow, Way, digits};
 use crate::record::Lock;
@@ -41,7 +41,7 @@ fn rate_one(arguments: &Rate, directory: &Path) -> Result<u8> {
         note(&format!("error: {place}: the result of version {} {words}", stored.head.version));
         return Ok(USAGE);
     };
-    folder::are_free(directory, &names(&loaded))?;
+    folder::are_free(directory, &loaded.file_names())?;
     let _lock = Lock::of(directory)?;
     loaded.config.rates = Some(asked(arguments));
     let problem = loaded.problem()?;
@@ -71,18 +71,7 @@ fn from_files(loaded: &Loaded, problem: &Problem, directory: &Path) -> Result<st
         Ok(stored) => stored,
         Err(why) => return Ok(Err(why)),
     };
-    let Some(settings) = problem.rates.as_ref().filter(|_| outcome.certified && problem.relax_ends) else {
-        return Ok(Err("only those of a certified result between relaxed ends are taken from its files".into()));
-    };
-    let rates = match stored_rates(problem.evaluator(), &outcome.saddles, &minima, settings) {
-        Ok(rates) => rates,
-        Err(why) => return Ok(Err(format!("the states in its files do not prove themselves: {why}"))),
-    };
-    // in the place that a run gives them
-    let own = |w: &&String| is_said_of_rates(w) || loaded.warnings.contains(w);
-    let others = outcome.warnings.iter().filter(|w| !own(w)).cloned();
-    let warnings = others.chain(rates_warnings(&rates)).chain(loaded.warnings.iter().cloned()).collect();
-    Ok(Ok(Outcome { warnings, rates: Some(rates), ..outcome }))
+    Ok(outcome.with_rates(problem, &minima, &loaded.warnings))
 }
 
 /// The `rates` that the command line stands for.

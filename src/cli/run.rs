@@ -3,22 +3,18 @@
 pub(super) use super::progress::Progress;
 use super::signals::Signals;
 use super::threads::start_threads;
-use super::write::{Earlier, names, write};
+use super::write::{Earlier, write};
 use super::{Interval, Run, UNFINISHED, USAGE, note, report, worse};
-use crate::config::{Loaded, load};
+use crate::config::{Loaded, VERSION, discard_leftovers, load};
 use crate::drive;
 use crate::error::Error;
-use crate::files::disk::{self, File};
-use crate::output::folder::{self, Destination, Intent};
-use crate::output::{StoppedRun, Summary, discard_partial, file_names, is_partial_left, partial_files, write_partial};
-use crate::record::{Checkpoint, Lock};
+use crate::output::{StoppedRun, Summary, partial_files, write_partial};
+use crate::record::Checkpoint;
 use anyhow::Result;
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-
-const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// How a run is recorded.
 pub(super) struct Keeping {
@@ -112,7 +108,7 @@ pub(super) fn run_one(arguments: &Run, signals: &Signals, loaded: &Loaded, direc
     let mut problem = loaded.problem()?;
     problem.control.obey(signals.switch());
     let (name, place) = (&loaded.name, directory.display());
-    let Some(lock) = reserve(loaded, directory, &names(loaded), arguments.force)? else {
+    let Some(lock) = loaded.reserve(directory, &loaded.file_names(), arguments.force)? else {
         say(&format!("{name}: {place} holds the finished result of this config already; --force runs it again"));
         return print(arguments, name, directory);
     };
@@ -144,7 +140,7 @@ pub(super) fn run_one(arguments: &Run, signals: &Signals, loaded: &Loaded, direc
     };
     drop(progress);
     let earlier = if arguments.force { Earlier::GivesWay } else { Earlier::IsKept };
-    match write(loaded, &outcome, directory, earlier(source(loaded).as_deref()), arguments.force) {
+    match write(loaded, &outcome, directory, earlier(loaded.source_name().as_deref()), arguments.force) {
         Ok(Some(kept)) => say(&format!("{name}: the earlier result is kept in {}", kept.display())),
         Ok(None) => {}
         Err(error) => {
@@ -169,60 +165,6 @@ pub(super) fn run_one(arguments: &Run, signals: &Signals, loaded: &Loaded, direc
         say(&format!("{name}: {line}"));
     }
     print(arguments, name, directory)
-}
-
-/// Sees that the results can be written, and that nobody else writes there; nothing if they are there already.
-pub(super) fn reserve(loaded: &Loaded, directory: &Path, names: &[String], force: bool) -> Result<Option<Lock>> {
-    let source = source(loaded);
-    let known = known_files(loaded);
-    let intent = Intent {
-        version: VERSION,
-        config_sha256: &loaded.sha256,
-        source: source.as_deref(),
-        names,
-        known: &known,
-        made_from: &loaded.made_from,
-        force,
-    };
-    let finished = || -> Result<bool> { Ok(matches!(folder::prepare(directory, &intent)?, Destination::Finished(_))) };
-    if finished()? {
-        // a run that was killed between its last file and the end leaves some
-        let left = Checkpoint::is_left(directory) || Lock::is_left(directory) || is_partial_left(directory);
-        if (left || folder::is_note_left(directory))
-            && let Ok(_lock) = Lock::of(directory)
-        {
-            discard_leftovers(directory)?;
-        }
-        return Ok(None);
-    }
-    Checkpoint::check(directory, force)?;
-    let lock = Lock::of(directory)?;
-    // who held the lock may have finished meanwhile
-    if finished()? {
-        return Ok(None);
-    }
-    disk::clean(directory)?;
-    let all = file_names(|_| true);
-    all.iter().filter_map(|name| name.strip_suffix('/')).try_for_each(|name| disk::clean(&directory.join(name)))?;
-    Ok(Some(lock))
-}
-
-/// The config's file, as the manifest of its result names it.
-pub(super) fn source(loaded: &Loaded) -> Option<String> {
-    loaded.source.as_ref().map(|path| path.to_string_lossy().into_owned())
-}
-
-/// The files of the result that are known before the work.
-fn known_files(loaded: &Loaded) -> Vec<File> {
-    let config = File { name: "config.json".into(), bytes: loaded.as_run.clone().into_bytes() };
-    loaded.inputs.iter().cloned().chain([config]).collect()
-}
-
-/// What only an unfinished run needs.
-pub(super) fn discard_leftovers(directory: &Path) -> Result<()> {
-    folder::discard_note(directory)?;
-    Checkpoint::discard(directory)?;
-    Ok(discard_partial(directory)?)
 }
 
 /// Where the run is recorded, if that is asked for, with what it goes on from.

@@ -9,7 +9,7 @@ use std::thread::available_parallelism;
 const MOST_THREADS: usize = 16;
 
 /// Refuses more threads, so many at a time in each of so many processes, than the machine's cores can be of use to.
-pub(super) fn check_threads(jobs: usize, threads: usize) -> Result<()> {
+pub fn check_threads(jobs: usize, threads: usize) -> Result<(), Error> {
     let cores = available_parallelism().map_or(1, NonZeroUsize::get);
     let most = MOST_THREADS * cores;
     if jobs.saturating_mul(threads) <= most {
@@ -20,7 +20,7 @@ pub(super) fn check_threads(jobs: usize, threads: usize) -> Result<()> {
         "found {found}, but this machine has {cores} cores: at most {MOST_THREADS} threads a core, {most} in all, are started; \
          leave it out for one thread a core"
     );
-    Err(Error::invalid("--threads", words).into())
+    Err(Error::invalid("--threads", words))
 }
 
 /// As many threads as asked for, else one for each core. This one is among them: it does not wait for the others to begin.

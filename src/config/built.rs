@@ -1,15 +1,13 @@
 //! From a config to the problem that the drive is given, with every check on the way.
 
 use super::{Loaded, Name, RatesConfig, Text, memory, physics};
-use crate::drive::{FEWEST_IMAGES, Images, Outcome, Problem, Scales};
+use crate::drive::{FEWEST_IMAGES, Images, Problem, Scales};
 use crate::energy::{Custom, CustomEnergy, EnergyTerm, Hamiltonian, Medium, Part, TermSpec, symmetry_axes};
 use crate::error::{Error, Result, both};
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, angle};
 use crate::lattice::Lattice;
 use crate::linalg::slab;
-use crate::output::RunReport;
-use crate::output::canvas::Look;
 use crate::path::guess::{GuessContext, moving_sites};
 use crate::path::largest_angle;
 use crate::rates::RateSettings;
@@ -42,25 +40,6 @@ impl Loaded {
     /// With terms of the program's own beside those of the config, whose `custom_terms` are to name them.
     pub fn with_terms(self, custom: Vec<Arc<dyn CustomEnergy>>) -> Loaded {
         Loaded { custom, ..self }
-    }
-
-    /// How figures look.
-    pub fn look(&self) -> Result<Look> {
-        self.config.output.look().map_err(|e| self.text.locate(e.within("output")))
-    }
-
-    /// What of a run goes into files.
-    pub fn report<'a>(&'a self, outcome: &'a Outcome) -> Result<RunReport<'a>> {
-        Ok(RunReport {
-            name: &self.name,
-            version: env!("CARGO_PKG_VERSION"),
-            config_sha256: &self.sha256,
-            config_text: &self.as_run,
-            inputs: &self.inputs,
-            lattice: &self.lattice,
-            look: self.look()?,
-            outcome,
-        })
     }
 
     /// The problem that the config states; an error, with its place, where something cannot be.

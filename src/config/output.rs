@@ -2,7 +2,7 @@
 
 use super::schema::names_schema;
 use crate::output::canvas::{Look, Style};
-use crate::output::{Group, KINDS};
+use crate::output::{Group, KINDS, Kind};
 use crate::units::Length;
 use crate::words::{nearest, quoted};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
@@ -31,6 +31,18 @@ impl OutputConfig {
     /// Style and width of figures; an error where they do not fit each other.
     pub fn look(&self) -> crate::error::Result<Look> {
         Look::new(self.style, self.width.map(|w| w.0 / NM_PER_MM))
+    }
+}
+
+impl OutputConfig {
+    /// Whether files of a kind are to be written.
+    pub fn wants(&self, kind: &Kind) -> bool {
+        let named = |list: &[String]| list.iter().any(|name| name == kind.name);
+        match kind.group {
+            Group::Always => true,
+            Group::Formats | Group::OnRequest => named(&self.formats),
+            Group::Plots => named(&self.plots),
+        }
     }
 }
 

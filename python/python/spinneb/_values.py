@@ -1,0 +1,111 @@
+"""What the builders make: pieces of a config, which are dictionaries."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from typing import Any, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["Direction", "Energy", "Extent", "Guess", "Lattice", "Optimiser", "Piece", "Selection", "Shape", "State", "Values"]
+
+#: x, y and z of a direction, of any length, or the name of an axis: "z", "-x"
+Direction = Union[str, Sequence[float], NDArray[np.floating[Any]]]
+#: a length in lattice constants (in a chain, sites; in a grid, cells), or a string with its unit: "12 nm"
+Extent = Union[float, str]
+#: a string with its unit, a list of them, or a ramp or random values as a config has them
+Values = Union[str, Sequence[Any], Mapping[str, Any]]
+#: indices of sites, a range {"from": 3, "to": 9}, a shape, or the name of a region
+Selection = Union[Sequence[int], NDArray[np.integer[Any]], Mapping[str, Any], str]
+
+_AXES = {"x": [1, 0, 0], "y": [0, 1, 0], "z": [0, 0, 1]}
+
+
+def direction(value: Any) -> Any:
+    """[0, 0, 1] for "z", [-1, 0, 0] for "-x"; anything else as it is."""
+    if isinstance(value, str) and value.lstrip("+-") in _AXES and len(value) <= 2:
+        sign = -1 if value.startswith("-") else 1
+        return [sign * number for number in _AXES[value[-1]]]
+    return value
+
+
+def plain(value: Any) -> Any:
+    """The value as JSON has it: arrays as lists, numbers of numpy as numbers, paths as text."""
+    if isinstance(value, Mapping):
+        return {str(key): plain(inner) for key, inner in value.items()}
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, np.generic):
+        return value.item()
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    if isinstance(value, (list, tuple, range)):
+        return [plain(inner) for inner in value]
+    return value
+
+
+class Piece(dict[str, Any]):
+    """A piece of a config, ``{kind: {key: value}}``, that shows itself as the call that makes it."""
+
+    def __init__(self, kind: str, content: Any) -> None:
+        if isinstance(content, dict):
+            content = {key: plain(value) for key, value in content.items() if value is not None}
+        super().__init__({kind: plain(content)})
+
+    @property
+    def kind(self) -> str:
+        """Its name in a config."""
+        return next(iter(self))
+
+    def __repr__(self) -> str:
+        content = self[self.kind]
+        if not isinstance(content, dict):
+            return f"{self.kind}({content!r})"
+        return f"{self.kind}({', '.join(f'{key}={value!r}' for key, value in content.items())})"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.kind, self[self.kind])
+
+
+class Lattice(Piece):
+    """Where the spins are; see :mod:`spinneb.lattices`."""
+
+
+class Energy(Piece):
+    """An energy term; see :mod:`spinneb.terms`."""
+
+
+class State(Piece):
+    """A spin state; see :mod:`spinneb.states`."""
+
+
+class Guess(Piece):
+    """A first path; see :mod:`spinneb.guesses`."""
+
+
+class Optimiser(Piece):
+    """How a path is relaxed; see :mod:`spinneb.optimisers`."""
+
+
+class Shape(Piece):
+    """A part of space; see :mod:`spinneb.shapes`."""
+
+    def __and__(self, other: Shape) -> Shape:
+        return Shape("all", [self, other])
+
+    def __or__(self, other: Shape) -> Shape:  # type: ignore[override]
+        return Shape("any", [self, other])
+
+    def __invert__(self) -> Shape:
+        return Shape("not", self)
+
+
+def spins(value: ArrayLike, what: str, sites: int | None = None) -> NDArray[np.float64]:
+    """Vectors as (site, xyz), checked."""
+    m = np.asarray(value, dtype=np.float64)
+    if m.ndim != 2 or m.shape[1] != 3 or (sites is not None and m.shape[0] != sites):
+        wanted = f"({sites if sites is not None else 'sites'}, 3)"
+        raise ValueError(f"{what}: found an array of shape {m.shape}, expected {wanted}")
+    return m

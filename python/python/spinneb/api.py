@@ -1,0 +1,327 @@
+"""What is done with a system or a config."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import tempfile
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, Literal, Union
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _core
+from ._values import Guess, plain
+from .results import Check, Landscape, Rates, Relaxed, Result
+from .system import AnyState, System, as_guess, as_state
+
+__all__ = ["barrier", "check", "landscape", "load", "rates", "relax", "run"]
+
+#: a file, a dictionary, or a system with its states
+Config = Union[str, "os.PathLike[str]", Mapping[str, Any], System]
+#: True for a line that tells how far it is, or a function of what is known: stage, iteration, …
+Progress = Union[bool, Callable[[dict[str, Any]], object], None]
+Effort = Literal["none", "quick", "normal", "thorough"]
+
+
+def run(
+    config: Config,
+    *,
+    out: str | os.PathLike[str] | None = None,
+    threads: int | None = None,
+    progress: Progress = None,
+    set: Mapping[str, Any] | None = None,
+    force: bool = False,
+) -> Result:
+    """The minimum-energy path that a config asks for: what ``spinneb run`` does, to the bit.
+
+    Parameters
+    ----------
+    config
+        A file, a dictionary as in such a file, or a :class:`System` with its two states. Files that a dictionary names are looked
+        for in the working directory.
+    out
+        Folder for the files of the result. An earlier result of another config there is refused, as on the command line.
+    threads
+        So many; one for each core if left out. Results do not depend on it.
+    progress
+        ``True`` for a line on stderr, or a function that is called with a dictionary: ``stage``, and of a band ``iteration``,
+        ``images``, ``highest_image_meV``, ``largest_predicted_rotation_rad``, ``length_rad``. What it raises ends the run.
+    set
+        Values of keys in place of the config's: ``{"path.images": 41}``.
+    force
+        Replace what is in ``out``.
+
+    Raises
+    ------
+    ConfigError
+        Something is wrong with the config.
+    SpinnebError
+        The computation cannot go on; an energy that is not a finite number, for example.
+    KeyboardInterrupt
+        Ctrl-C, within a second.
+    """
+    core = _config(config, "run", set)
+    if out is not None:
+        core.reserve(os.fspath(out), force)
+    with _telling(progress) as tell:
+        result = Result(core.run(threads, tell))
+    if out is not None:
+        result.save(out, force=force)
+    return result
+
+
+def barrier(
+    system: System,
+    initial: AnyState | None = None,
+    final: AnyState | None = None,
+    *,
+    guess: Guess | Mapping[str, Any] | ArrayLike | None = None,
+    images: int | None = None,
+    relax_ends: bool | None = None,
+    effort: Effort | None = None,
+    temperatures: Iterable[float | str] | None = None,
+    out: str | os.PathLike[str] | None = None,
+    threads: int | None = None,
+    progress: Progress = None,
+    **options: Any,
+) -> Result:
+    """The minimum-energy path between two states of a system, with its barrier and saddles.
+
+    Parameters
+    ----------
+    system
+        The spins and their energy.
+    initial, final
+        The two states: ``sn.uniform("z")``, ``sn.skyrmion(radius=4)``, …, or vectors of the shape (N, 3), such as
+        ``result.saddles[0].spins``.
+    guess
+        The first path: ``sn.sweep("left")``, …, or vectors of the shape (images, N, 3). All natural ones are tried if left out.
+    images
+        Number of images, both ends counted; as many as the path needs if left out.
+    relax_ends
+        Relax both ends to minima first (the default).
+    effort
+        How long lower passes are looked for.
+    temperatures
+        For rates and lifetimes: numbers in K, or quantities.
+    out, threads, progress
+        As in :func:`run`.
+    options
+        Any other key of a config: ``neb={"tolerance": 1e-8}``, ``rates={"damping": 0.5, …}``.
+    """
+    if temperatures is not None:
+        options["rates"] = {**options.get("rates", {}), "temperatures": _kelvin(temperatures)}
+    if guess is not None or images is not None:
+        path = dict(options.get("path", {}))
+        path.update({} if guess is None else {"guess": as_guess(guess)})
+        path.update({} if images is None else {"images": images})
+        options["path"] = path
+    if effort is not None:
+        options["search"] = {"effort": effort}
+    if relax_ends is not None:
+        options["relax_ends"] = relax_ends
+    changed = {"initial": system.initial if initial is None else initial, "final": system.final if final is None else final}
+    return run(system.replaced(**changed, **options), out=out, threads=threads, progress=progress)
+
+
+def relax(
+    config: Config,
+    *states: AnyState,
+    modes: int = 6,
+    threads: int | None = None,
+    progress: Progress = None,
+    set: Mapping[str, Any] | None = None,
+) -> Relaxed | tuple[Relaxed, ...]:
+    """States relaxed to minima: energy, torque, whether it is a minimum, lowest modes.
+
+    Parameters
+    ----------
+    config
+        The spins and their energy.
+    states
+        One or two states. Without any the config's own, ``initial`` and ``final``, as a tuple.
+    modes
+        How many of the lowest eigenvalues are computed.
+    threads, progress, set
+        As in :func:`run`.
+    """
+    if len(states) > 2:
+        raise TypeError("relax takes one or two states at a time")
+    if states:
+        names = dict(zip(("initial", "final"), (as_state(state, "state") for state in states)))
+        if isinstance(config, System):
+            config = config.replaced(**{"initial": None, "final": None, **names})
+        else:
+            set = {**(set or {}), **names}
+    core = _config(config, "relax", set)
+    with _telling(progress) as tell:
+        files, spins = core.relax(modes, threads, tell)
+    told = json.loads(files["relax.json"])["states"]
+    found = tuple(Relaxed(one, np.asarray(m), np.asarray(core.places)) for one, m in zip(told, spins))
+    return found[0] if len(states) == 1 else found
+
+
+def check(config: Config, *, set: Mapping[str, Any] | None = None) -> Check:
+    """What a config would run, without running it: sites, shells, energies, scales, images, memory, time.
+
+    Two states that a system lacks are taken as uniform ones, up and down.
+    """
+    if isinstance(config, System):
+        up, down = ({"uniform": {"direction": [0, 0, z]}} for z in (1, -1))
+        config = config.replaced(
+            initial=up if config.initial is None else config.initial, final=down if config.final is None else config.final
+        )
+    return Check(_config(config, "run", set).check())
+
+
+def landscape(
+    config: Config,
+    *,
+    energy_window: str | None = None,
+    effort: Effort | None = None,
+    states: Sequence[AnyState] = (),
+    groups: Mapping[str, Any] | None = None,
+    temperatures: Iterable[float | str] | None = None,
+    threads: int | None = None,
+    progress: Progress = None,
+    set: Mapping[str, Any] | None = None,
+) -> Landscape:
+    """All minima and saddles below an energy, how they are joined, and how long states live.
+
+    Parameters
+    ----------
+    config
+        The spins and their energy; states it may lack.
+    energy_window
+        How far above the lowest minimum: ``"20 meV"``; everything if left out.
+    effort
+        How long is looked.
+    states
+        Further states to start from.
+    groups
+        Groups of minima for lifetimes, by name: ``{"up": {"axis": [0, 0, 1], "from": 0.5}}``.
+    temperatures
+        For lifetimes: numbers in K, or quantities.
+    threads, progress, set
+        As in :func:`run`.
+    """
+    own = {
+        "energy_window": energy_window,
+        "effort": effort,
+        "states": [as_state(state, "states") for state in states] or None,
+        "groups": groups,
+        "temperatures": None if temperatures is None else _kelvin(temperatures),
+    }
+    chosen = {f"landscape.{key}": value for key, value in own.items() if value is not None}
+    core = _config(config, "landscape", {**chosen, **(set or {})})
+    with _telling(progress) as tell:
+        return Landscape(core.landscape(threads, tell))
+
+
+def rates(
+    result: Result,
+    temperatures: float | str | Iterable[float | str],
+    *,
+    damping: float | None = None,
+    g_factor: float | None = None,
+    theory: Sequence[Literal["htst", "langer"]] | None = None,
+) -> Rates:
+    """Rates and lifetimes over the saddles of a certified result.
+
+    Parameters
+    ----------
+    result
+        A run; its moments say how fast spins precess.
+    temperatures
+        Numbers in K, or quantities; one or several.
+    damping
+        Gilbert damping (0.1).
+    g_factor
+        g factor (2).
+    theory
+        ``"htst"`` (harmonic transition state theory) and ``"langer"``; both if left out.
+    """
+    single = isinstance(temperatures, (int, float, str))
+    asked = {
+        "temperatures": _kelvin([temperatures] if single else temperatures),  # type: ignore[list-item,arg-type]
+        "damping": damping,
+        "g_factor": g_factor,
+        "theory": theory,
+    }
+    json_text = _dumped({key: value for key, value in asked.items() if value is not None})
+    return Rates(Result(result._core.with_rates(json_text)))
+
+
+def load(folder: str | os.PathLike[str]) -> Result | Landscape:
+    """The result in a folder, of the command line or of :meth:`Result.save`; of ``spinneb landscape``, a :class:`Landscape`."""
+    place = Path(folder)
+    try:
+        summary = json.loads((place / "summary.json").read_bytes())
+    except FileNotFoundError as error:
+        raise FileNotFoundError(error.errno, "no finished result (no summary.json) in", os.fspath(place)) from None
+    if summary.get("kind") == "landscape":
+        files = {path.name: path.read_bytes() for path in place.iterdir() if path.is_file()}
+        return Landscape(files=files)
+    summary.pop("manifest", None)
+    return Result(_core.read(place), summary)
+
+
+def _config(config: Config, kind: str, set: Mapping[str, Any] | None) -> _core.Config:
+    """A config, read."""
+    sets = [f"{key}={_dumped(value)}" for key, value in (set or {}).items()]
+    if isinstance(config, (str, os.PathLike)):
+        return _core.Config(os.fspath(config), None, "", sets, [], kind)
+    terms = config.terms if isinstance(config, System) else []
+    with tempfile.TemporaryDirectory(prefix="spinneb-") as folder:
+        whole = _with_files(config.config() if isinstance(config, System) else dict(config), folder)
+        return _core.Config(None, _dumped(whole), os.getcwd(), sets, terms, kind)
+
+
+def _with_files(config: dict[str, Any], folder: str) -> dict[str, Any]:
+    """A first path of vectors as a file; results keep it."""
+    path = config.get("path")
+    guess = path.get("guess") if isinstance(path, Mapping) else None
+    if guess is None or isinstance(guess, Mapping):
+        return config
+    file = os.path.join(folder, "guess.npy")
+    np.save(file, np.asarray(guess, dtype=np.float64))
+    return {**config, "path": {**path, "guess": {"file": {"path": file}}}}  # type: ignore[dict-item]
+
+
+def _dumped(value: Any) -> str:
+    return json.dumps(plain(value), ensure_ascii=False, allow_nan=False)
+
+
+def _kelvin(temperatures: Iterable[float | str]) -> list[str]:
+    return [value if isinstance(value, str) else f"{float(value)!r} K" for value in temperatures]
+
+
+class _telling:
+    """What a run tells its progress to."""
+
+    def __init__(self, progress: Progress) -> None:
+        self.progress = progress
+        self.width = 0
+
+    def __enter__(self) -> Callable[[dict[str, Any]], object] | None:
+        if self.progress is True:
+            return self.line
+        return None if self.progress in (None, False) else self.progress  # type: ignore[return-value]
+
+    def line(self, news: dict[str, Any]) -> None:
+        words = str(news["stage"])
+        if "iteration" in news:
+            words += (
+                f": iteration {news['iteration']}, {news['images']} images, top {news['highest_image_meV']:.6g} meV, "
+                f"{news['largest_predicted_rotation_rad']:.1e} rad to go"
+            )
+        print("\r" + words.ljust(self.width), end="", file=sys.stderr, flush=True)
+        self.width = max(self.width, len(words))
+
+    def __exit__(self, *_: object) -> None:
+        if self.width:
+            print("\r" + " " * self.width + "\r", end="", file=sys.stderr, flush=True)

@@ -1,0 +1,154 @@
+"""Figures on matplotlib axes."""
+
+from __future__ import annotations
+
+import colorsys
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from .results import Rates, Result
+
+Array = NDArray[np.float64]
+#: blue and vermilion of Okabe and Ito, which all eyes can tell apart
+CURVE, TOP = "#0072b2", "#d55e00"
+#: rows of sites are drawn as arrows up to so many
+_ARROWS = 120
+
+
+def energy_path(result: Result, ax: Axes | None = None, **style: Any) -> Axes:
+    """See :meth:`spinneb.Result.plot`."""
+    import matplotlib.pyplot as plt
+
+    ax = plt.subplots(figsize=(4.8, 3.2), layout="constrained")[1] if ax is None else ax
+    style = {"color": CURVE, "linewidth": 1.5, **style}
+    s, e = result.profile
+    (line,) = ax.plot(s, e, **style)
+    ax.plot(result.reaction_coordinate_rad, result.above_initial_meV, "o", ms=3.5, color=line.get_color())
+    for saddle in result.saddles:
+        ax.plot(saddle.reaction_coordinate_rad, saddle.above_initial_meV, "D", ms=5, color=TOP, zorder=3)
+    doubt = "" if result.certified else " (not certified)"
+    if result.barrier_meV is not None:
+        forward, backward = result.barrier_meV["forward"], result.barrier_meV["backward"]
+        words = f"barrier {forward:.4g} meV" + ("" if np.isclose(forward, backward, rtol=1e-6) else f", back {backward:.4g} meV")
+    else:
+        words = "no barrier"
+    ax.set_title(f"{result.name}: {words}{doubt}", fontsize="medium")
+    ax.set_xlabel("reaction coordinate (rad)")
+    ax.set_ylabel("energy above the initial state (meV)")
+    return ax
+
+
+def spin_maps(result: Result, images: Sequence[int] | None, axes: Sequence[Axes] | None) -> list[Axes]:
+    """See :meth:`spinneb.Result.plot_spins`."""
+    path, e = result.spins, result.above_initial_meV
+    last = len(path) - 1
+    if images is None:
+        tops = [saddle.image for saddle in result.saddles]
+        images = sorted({0, *(tops if len(tops) <= 3 else [int(np.argmax(e))]), last})
+    chosen = [range(len(path))[k] for k in images]
+    words = {0: "initial", last: "final"}
+    tops = [saddle.image for saddle in result.saddles]
+    titles = [f"{words.get(k, 'saddle' if k in tops else f'image {k}')}\n{e[k]:.4g} meV" for k in chosen]
+    return maps([path[k] for k in chosen], result.places, titles, axes)
+
+
+def maps(states: Sequence[Array], places: Array, titles: Sequence[str], axes: Sequence[Axes] | None = None) -> list[Axes]:
+    """States side by side: chains one below the other, films as maps of their top layer."""
+    import matplotlib.pyplot as plt
+
+    is_row = bool(np.ptp(places[:, 1]) < 1e-9 and np.ptp(places[:, 2]) < 1e-9)
+    n = len(states)
+    if axes is None:
+        if is_row:
+            axes = plt.subplots(n, 1, figsize=(6.4, 0.95 * n + 0.4), sharex=True, squeeze=False, layout="constrained")[1][:, 0]
+        else:
+            axes = plt.subplots(1, n, figsize=(2.9 * n, 3.1), squeeze=False, layout="constrained")[1][0]
+    axes = list(axes)
+    if len(axes) < n:
+        raise ValueError(f"found {len(axes)} axes for {n} states")
+    for ax, m, title in zip(axes, states, titles):
+        (_row if is_row else _film)(ax, m, places)
+        ax.set_title(title, fontsize="small")
+    return axes
+
+
+def colors(m: Array) -> Array:
+    """Colours of directions: hue for the angle in the plane, lightness for m_z; white up, black down."""
+    hue = (np.arctan2(m[:, 1], m[:, 0]) / (2 * np.pi)) % 1.0
+    light = 0.5 + 0.5 * np.clip(m[:, 2], -1, 1)
+    return np.array([colorsys.hls_to_rgb(h, 0.06 + 0.9 * x, 0.95 * np.hypot(a, b)) for h, x, a, b in zip(hue, light, m[:, 0], m[:, 1])])
+
+
+def _row(ax: Axes, m: Array, places: Array) -> None:
+    x = places[:, 0]
+    step = max(1, int(np.ceil(len(m) / _ARROWS)))
+    x, m = x[::step], m[::step]
+    span = max(float(np.ptp(x)), 1.0)
+    # arrows in the plane of the chain and z, what points out of it by its colour
+    ax.quiver(x, 0 * x, m[:, 0], m[:, 2], color=colors(m), pivot="mid", units="width", scale=32, width=0.0045, edgecolor="0.3", linewidth=0.3)
+    ax.set_xlim(x.min() - 0.03 * span, x.max() + 0.03 * span)
+    ax.set_ylim(-1, 1)
+    ax.set_yticks([])
+    ax.set_xlabel("site")
+    ax.label_outer()
+
+
+def _film(ax: Axes, m: Array, places: Array) -> None:
+    from matplotlib.collections import PolyCollection
+
+    top = places[:, 2] > places[:, 2].max() - 1e-6
+    m, r = m[top], places[top][:, :2]
+    ax.set_aspect("equal")
+    distance = _nearest(r)
+    turn = np.arange(6) * np.pi / 3 + np.pi / 6
+    corner = 0.58 * distance * np.stack([np.cos(turn), np.sin(turn)], axis=-1)
+    square = 0.5 * distance * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+    cell = square if _is_square(r, distance) else corner
+    ax.add_collection(PolyCollection(r[:, None, :] + cell[None], facecolors=colors(m), edgecolors="none"))
+    ax.set_facecolor("0.93")
+    pad = 0.7 * distance
+    ax.set_xlim(r[:, 0].min() - pad, r[:, 0].max() + pad)
+    ax.set_ylim(r[:, 1].min() - pad, r[:, 1].max() + pad)
+    ax.set_xticks([])
+    ax.set_yticks([])
+
+
+def _nearest(r: Array) -> float:
+    """The distance of nearest neighbours, from some sites."""
+    some = r[:: max(1, len(r) // 50)]
+    d = np.linalg.norm(some[:, None] - r[None], axis=-1)
+    d[d < 1e-9] = np.inf
+    found = float(d.min()) if len(r) > 1 else 1.0
+    return found if np.isfinite(found) else 1.0
+
+
+def _is_square(r: Array, distance: float) -> bool:
+    """Whether neighbours stand along x and y alone."""
+    middle = r[len(r) // 2]
+    way = r - middle
+    near = way[np.abs(np.linalg.norm(way, axis=1) - distance) < 1e-6]
+    return bool(np.all(np.min(np.abs(near), axis=1) < 1e-6))
+
+
+def lifetimes(rates: Rates, ax: Axes | None = None, **style: Any) -> Axes:
+    """See :meth:`spinneb.Rates.plot`."""
+    import matplotlib.pyplot as plt
+
+    ax = plt.subplots(figsize=(4.8, 3.2), layout="constrained")[1] if ax is None else ax
+    t = rates.temperatures_K
+    style = {"color": CURVE, "marker": "o", "ms": 4, **style}
+    ax.plot(t, rates.lifetimes_s(log10=True), **style)
+    ax.set_xlabel("temperature (K)")
+    ax.set_ylabel("log₁₀ lifetime (s)")
+    for seconds, words in [(0.0, "1 s"), (np.log10(10 * 365.25 * 86400), "10 years")]:
+        low, high = ax.get_ylim()
+        if low < seconds < high:
+            ax.axhline(seconds, color="0.7", lw=0.8, zorder=0)
+            ax.annotate(words, (1, seconds), xycoords=("axes fraction", "data"), ha="right", va="bottom", fontsize="small", color="0.4")
+    return ax

@@ -1,0 +1,541 @@
+"""What runs have found."""
+
+from __future__ import annotations
+
+import csv
+import html
+import io
+import json
+import os
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _core
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+    from matplotlib.axes import Axes
+
+__all__ = ["Check", "Landscape", "Rates", "Relaxed", "Result", "Saddle"]
+
+Array = NDArray[np.float64]
+Way = Literal["forward", "backward"]
+#: kinds of files that hold all of a result
+_WHOLE = ["csv", "npz", "ovf"]
+
+
+class Saddle:
+    """A saddle of a path: the highest point of a pass."""
+
+    def __init__(self, told: Mapping[str, Any], spins: Array) -> None:
+        #: as summary.json has it
+        self.summary: dict[str, Any] = dict(told)
+        #: the vectors, (N, 3), read-only
+        self.spins = spins
+
+    @property
+    def energy_meV(self) -> float:
+        """Total energy."""
+        return float(self.summary["energy_meV"])
+
+    @property
+    def above_initial_meV(self) -> float:
+        """Energy above the initial state, which is not the difference of two large numbers."""
+        return float(self.summary["energy_above_initial_meV"])
+
+    @property
+    def reaction_coordinate_rad(self) -> float:
+        """Where on the path."""
+        return float(self.summary["reaction_coordinate_rad"])
+
+    @property
+    def image(self) -> int:
+        """The nearest image of the path."""
+        return int(self.summary["image"])
+
+    @property
+    def negative_modes(self) -> int | None:
+        """Directions that lead down: 1 of a saddle that is one."""
+        found = self.summary["negative_modes"]
+        return None if found is None else int(found)
+
+    @property
+    def zero_modes(self) -> int | None:
+        """Directions that leave the energy as it is."""
+        found = self.summary["zero_modes"]
+        return None if found is None else int(found)
+
+    @property
+    def max_torque_meV(self) -> float | None:
+        """What is left of the torque on any spin."""
+        found = self.summary["max_torque_meV"]
+        return None if found is None else float(found)
+
+    @property
+    def lowest_eigenvalues_meV(self) -> Array:
+        """Of the Hessian on the spheres."""
+        return np.asarray(self.summary["lowest_eigenvalues_meV"], dtype=np.float64)
+
+    def __repr__(self) -> str:
+        return f"<Saddle {self.above_initial_meV:.6f} meV above the initial state, image {self.image}>"
+
+
+class Result:
+    """A minimum-energy path with its barrier and saddles; :func:`~spinneb.run`, :func:`~spinneb.barrier` and
+    :func:`~spinneb.load` make it.
+
+    Arrays are of float64 and read-only, without copies, and stay good for as long as anything refers to them. A result can be
+    pickled; one of a system with terms of your own forgets their functions then, which only :func:`~spinneb.rates` would need.
+    """
+
+    def __init__(self, core: _core.Outcome, summary: dict[str, Any] | None = None) -> None:
+        self._core = core
+        self._summary = summary
+
+    @property
+    def summary(self) -> dict[str, Any]:
+        """All numbers, as summary.json has them."""
+        if self._summary is None:
+            self._summary = json.loads(self._core.summary())
+        return self._summary
+
+    @property
+    def name(self) -> str:
+        """Name of the run."""
+        return str(self.summary["name"])
+
+    @property
+    def config(self) -> dict[str, Any]:
+        """The config as run, complete with its material."""
+        found: dict[str, Any] = json.loads(self._core.json)
+        return found
+
+    @property
+    def barrier_meV(self) -> Mapping[str, float] | None:
+        """The barrier ``["forward"]`` (from the initial state) and ``["backward"]``; None where there is none to tell, as
+        ``stop_reason`` says."""
+        found: Mapping[str, float] | None = self.summary["barrier_meV"]
+        return found
+
+    @property
+    def certified(self) -> bool:
+        """Whether ends and saddles are proven to be what they are said to be."""
+        return bool(self.summary["certified"])
+
+    @property
+    def converged(self) -> bool:
+        """Whether the band met its tolerance."""
+        return bool(self.summary["converged"])
+
+    @property
+    def stop_reason(self) -> str:
+        """Why the run ended."""
+        return str(self.summary["stop_reason"])
+
+    @property
+    def warnings(self) -> list[str]:
+        """What you should know."""
+        return list(self.summary["warnings"])
+
+    @property
+    def spins(self) -> Array:
+        """The path, (image, site, xyz)."""
+        return np.asarray(self._core.spins)
+
+    @property
+    def initial(self) -> Array:
+        """The initial state as relaxed, (site, xyz)."""
+        first: Array = self.spins[0]
+        return first
+
+    @property
+    def final(self) -> Array:
+        """The final state as relaxed, (site, xyz)."""
+        last: Array = self.spins[-1]
+        return last
+
+    @property
+    def energies_meV(self) -> Array:
+        """Total energy of each image."""
+        return self._column("energies_meV")
+
+    @property
+    def above_initial_meV(self) -> Array:
+        """Energy of each image above the initial state, which is not the difference of two large numbers."""
+        return self._column("above_initial_meV")
+
+    @property
+    def reaction_coordinate_rad(self) -> Array:
+        """Geodesic length of the path up to each image."""
+        return self._column("reaction_coordinate_rad")
+
+    @property
+    def terms_meV(self) -> dict[str, Array]:
+        """Energy of each image by energy term."""
+        return {name: np.asarray(mev) for name, mev in self._core.terms}
+
+    @property
+    def profile(self) -> tuple[Array, Array]:
+        """The interpolated energy path: reaction coordinate (rad) and energy above the initial state (meV)."""
+        s, e = self._core.profile
+        return np.asarray(s), np.asarray(e)
+
+    @property
+    def saddles(self) -> list[Saddle]:
+        """The saddles along the path, in its order."""
+        return [Saddle(told, np.asarray(m)) for told, m in zip(self.summary["saddles"], self._core.saddles)]
+
+    @property
+    def minima(self) -> list[Array]:
+        """Minima between the ends, each (site, xyz)."""
+        return [np.asarray(m) for m in self._core.minima]
+
+    @property
+    def places(self) -> Array:
+        """Where the sites are, (site, xyz), in lattice constants; in a chain x is the number of the site."""
+        return np.asarray(self._core.places)
+
+    def _column(self, name: str) -> Array:
+        return np.asarray(self._core.column(name))
+
+    # tables and pictures
+
+    def to_dataframe(self) -> pandas.DataFrame:
+        """A row an image, as path.csv has it (pandas)."""
+        import pandas
+
+        return pandas.DataFrame(self._table())
+
+    def _table(self) -> dict[str, Array]:
+        return {
+            "image": np.arange(len(self.energies_meV)),
+            "reaction_coordinate_rad": self.reaction_coordinate_rad,
+            "energy_meV": self.energies_meV,
+            **{f"{name}_meV": mev for name, mev in self.terms_meV.items()},
+            "max_perpendicular_torque_meV": self._column("max_perpendicular_torque_meV"),
+            "energy_above_initial_meV": self.above_initial_meV,
+        }
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Spins and energies with their coordinates (xarray)."""
+        import xarray
+
+        table = self._table()
+        images = {"image": table.pop("image"), "reaction_coordinate_rad": ("image", table.pop("reaction_coordinate_rad"))}
+        places = {axis: ("site", self.places[:, k]) for k, axis in enumerate("xyz")}
+        return xarray.Dataset(
+            {"spins": (("image", "site", "component"), self.spins), **{key: ("image", value) for key, value in table.items()}},
+            coords={**images, "component": list("xyz"), **places},
+            attrs={"name": self.name, "certified": int(self.certified), "summary": json.dumps(self.summary)},
+        )
+
+    def plot(self, ax: Axes | None = None, **style: Any) -> Axes:
+        """The energy path on matplotlib axes: images, the curve through them, saddles, the barrier.
+
+        ``style`` goes to the curve (``color=``, ``label=``, ``linewidth=`` …).
+        """
+        from .plotting import energy_path
+
+        return energy_path(self, ax, **style)
+
+    def plot_spins(self, images: Sequence[int] | None = None, axes: Sequence[Axes] | None = None) -> list[Axes]:
+        """The spins of some images side by side, on matplotlib axes: hue for the direction in the plane, lightness for m_z.
+
+        Left out, ``images`` are the initial state, those at the saddles, and the final state.
+        """
+        from .plotting import spin_maps
+
+        return spin_maps(self, images, axes)
+
+    def html(self) -> str:
+        """The report: a page for a browser that needs no network."""
+        return self._core.html()
+
+    def _repr_html_(self) -> str:
+        page = html.escape(self.html(), quote=True)
+        return f'<iframe srcdoc="{page}" style="width: 100%; height: 720px; border: 0" sandbox="allow-scripts"></iframe>'
+
+    # files
+
+    def save(self, folder: str | os.PathLike[str], *, formats: Sequence[str] | None = None, force: bool = False) -> None:
+        """Writes the files of the result to a folder, as ``spinneb run`` does.
+
+        Parameters
+        ----------
+        folder
+            An earlier result of another config in it is refused, but for ``force``.
+        formats
+            Kinds of files (``spinneb list formats``): ``["csv", "npz", "ovf", "html", "svg", "png"]``; those of the config if
+            left out. :func:`~spinneb.load` needs csv, npz and ovf.
+        force
+            Replace what is there.
+        """
+        self._core.save(os.fspath(folder), None if formats is None else list(formats), force)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restored, (self._core.files(_WHOLE), self.summary)
+
+    def __repr__(self) -> str:
+        proven = "certified" if self.certified else "not certified"
+        if self.barrier_meV is None:
+            return f"<Result {self.name}: no barrier, {self.stop_reason}>"
+        forward, backward = self.barrier_meV["forward"], self.barrier_meV["backward"]
+        return f"<Result {self.name}: barrier {forward:.6f} meV, back {backward:.6f} meV, {proven}>"
+
+
+def _restored(files: Mapping[str, bytes], summary: dict[str, Any]) -> Result:
+    """A result from its files."""
+    with tempfile.TemporaryDirectory(prefix="spinneb-") as folder:
+        for name, content in files.items():
+            file = Path(folder, name)
+            file.parent.mkdir(exist_ok=True)
+            file.write_bytes(content)
+        return Result(_core.read(folder), summary)
+
+
+class Relaxed:
+    """A state relaxed by itself."""
+
+    def __init__(self, told: Mapping[str, Any], spins: Array, places: Array) -> None:
+        #: as relax.json has it
+        self.summary: dict[str, Any] = {key: value for key, value in told.items() if key != "files"}
+        #: the vectors, (N, 3), read-only
+        self.spins = spins
+        #: where the sites are, (N, 3), in lattice constants
+        self.places = places
+
+    @property
+    def is_minimum(self) -> bool:
+        """Whether it is proven to be a minimum, perhaps a flat one."""
+        return bool(self.summary["minimum"] and self.summary["converged"])
+
+    @property
+    def energy_meV(self) -> float:
+        """Total energy."""
+        return float(self.summary["energy_meV"])
+
+    @property
+    def energies_meV(self) -> dict[str, float]:
+        """Energy by term."""
+        return dict(self.summary["energies_meV"])
+
+    @property
+    def lowest_eigenvalues_meV(self) -> Array:
+        """Of the Hessian on the spheres, zero modes apart."""
+        return np.asarray(self.summary["lowest_eigenvalues_meV"], dtype=np.float64)
+
+    @property
+    def largest_rotation_rad(self) -> float:
+        """How far a spin has turned at most."""
+        return float(self.summary["largest_rotation_rad"])
+
+    @property
+    def warnings(self) -> list[str]:
+        """What you should know."""
+        return list(self.summary["warnings"])
+
+    def plot_spins(self, axes: Sequence[Axes] | None = None) -> list[Axes]:
+        """The spins, on matplotlib axes."""
+        from .plotting import maps
+
+        return maps([self.spins], self.places, [f"{self.energy_meV:.4f} meV"], axes)
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
+        """Its spins: it can stand for a state."""
+        return np.array(self.spins, dtype=dtype) if copy else np.asarray(self.spins, dtype=dtype)
+
+    def __repr__(self) -> str:
+        kind = "a minimum" if self.is_minimum else "no minimum"
+        return f"<Relaxed state: {self.energy_meV:.6f} meV, {kind}>"
+
+
+class Check(Mapping[str, str]):
+    """What a config would run, by key; ``print`` shows it as ``spinneb check`` does."""
+
+    def __init__(self, rows: Sequence[tuple[str, str]]) -> None:
+        self._rows = list(rows)
+        self._content: dict[str, str] = {}
+        last = ""
+        for key, words in self._rows:
+            last = key or last
+            self._content[last] = f"{self._content[last]}\n{words}" if last in self._content else words
+
+    def __getitem__(self, key: str) -> str:
+        return self._content[key]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._content)
+
+    def __len__(self) -> int:
+        return len(self._content)
+
+    def __repr__(self) -> str:
+        return "\n".join(f"{key:<13}{words}" for key, words in self._rows)
+
+
+class Rates:
+    """Rates and lifetimes of a path."""
+
+    def __init__(self, result: Result) -> None:
+        #: the result with its rates, to be saved
+        self.result = result
+
+    @property
+    def saddles(self) -> list[dict[str, Any]]:
+        """Over each saddle, each way: ``rates`` of summary.json."""
+        return list(self.result.summary["rates"])
+
+    @property
+    def transitions(self) -> list[dict[str, Any]]:
+        """From end to end, each way: ``transition_rates`` of summary.json."""
+        return list(self.result.summary["transition_rates"])
+
+    def _rows(self, way: Way) -> list[dict[str, Any]]:
+        found = [one["temperatures"] for one in self.transitions if one["direction"] == way]
+        return list(found[0]) if found else []
+
+    @property
+    def temperatures_K(self) -> Array:
+        """The temperatures."""
+        return np.array([row["temperature_K"] for row in self._rows("forward")], dtype=np.float64)
+
+    def lifetimes_s(self, way: Way = "forward", *, log10: bool = False) -> Array:
+        """Mean times from one end to the other at the temperatures; NaN where there is none, as ``reasons`` says.
+
+        ``log10`` gives decimal logarithms, which no time is too long for.
+        """
+        key = "log10_first_passage_s" if log10 else "first_passage_s"
+        return np.array([np.nan if row[key] is None else row[key] for row in self._rows(way)], dtype=np.float64)
+
+    @property
+    def reasons(self) -> list[str | None]:
+        """Why there is no rate at each temperature, where there is none."""
+        return [row["reason"] for row in self._rows("forward")]
+
+    def to_dataframe(self) -> pandas.DataFrame:
+        """A row a direction and temperature (pandas)."""
+        import pandas
+
+        rows = [{"direction": one["direction"], **row} for one in self.transitions for row in one["temperatures"]]
+        return pandas.DataFrame(rows)
+
+    def plot(self, ax: Axes | None = None, **style: Any) -> Axes:
+        """Lifetimes against temperature, on matplotlib axes."""
+        from .plotting import lifetimes
+
+        return lifetimes(self, ax, **style)
+
+    def __repr__(self) -> str:
+        lines = [f"<Rates {self.result.name}"]
+        for t, s, why in zip(self.temperatures_K, self.lifetimes_s(), self.reasons):
+            lines.append(f"  {t:g} K: " + (f"{s:.3g} s" if why is None else f"none: {why}"))
+        return "\n".join(lines) + ">"
+
+
+class Landscape:
+    """Minima and saddles, how they are joined, and how long states live."""
+
+    def __init__(self, core: _core.Landscape | None = None, files: Mapping[str, bytes] | None = None) -> None:
+        self._core = core
+        found: Mapping[str, bytes] = files if core is None and files is not None else core.files() if core else {}
+        #: all files by name, as ``spinneb landscape`` writes them
+        self.files: dict[str, bytes] = dict(found)
+        self._document: dict[str, Any] = json.loads(self.files["landscape.json"])
+        with np.load(io.BytesIO(self.files["landscape.npz"])) as arrays:
+            #: landscape.npz: spins of all minima and saddles
+            self.arrays: dict[str, Array] = {name: arrays[name] for name in arrays.files}
+
+    @property
+    def summary(self) -> dict[str, Any]:
+        """summary.json."""
+        found: dict[str, Any] = json.loads(self.files["summary.json"])
+        return found
+
+    @property
+    def finished(self) -> bool:
+        """Whether the search came to its stop before its work was spent."""
+        return bool(self.summary["converged"])
+
+    @property
+    def warnings(self) -> list[str]:
+        """What you should know."""
+        return list(self.summary["warnings"])
+
+    @property
+    def minimum_kinds(self) -> list[dict[str, Any]]:
+        """One of each kind of minima that symmetry makes of each other."""
+        return list(self._document["minima"])
+
+    @property
+    def saddle_kinds(self) -> list[dict[str, Any]]:
+        """One of each kind of saddles that symmetry makes of each other."""
+        return list(self._document["saddles"])
+
+    @property
+    def minima(self) -> list[dict[str, Any]]:
+        """All minima: a dictionary each, as minima.csv has them."""
+        return self._table("minima.csv")
+
+    @property
+    def saddles(self) -> list[dict[str, Any]]:
+        """All saddles: a dictionary each, as saddles.csv has them."""
+        return self._table("saddles.csv")
+
+    @property
+    def lifetimes(self) -> list[dict[str, Any]]:
+        """lifetimes.csv, where there are temperatures."""
+        return self._table("lifetimes.csv") if "lifetimes.csv" in self.files else []
+
+    def _table(self, name: str) -> list[dict[str, Any]]:
+        rows = csv.DictReader(io.StringIO(self.files[name].decode()))
+        return [{key: _number(value) for key, value in row.items()} for row in rows]
+
+    def to_dataframe(self, table: Literal["minima", "saddles", "lifetimes"] = "minima") -> pandas.DataFrame:
+        """One of the tables (pandas)."""
+        import pandas
+
+        return pandas.read_csv(io.BytesIO(self.files[f"{table}.csv"]))
+
+    def graph(self) -> Any:
+        """Minima and saddles as a graph (networkx)."""
+        import networkx
+
+        return networkx.parse_graphml(self.files["landscape.graphml"].decode())
+
+    def save(self, folder: str | os.PathLike[str], *, force: bool = False) -> None:
+        """Writes the files to a folder, as ``spinneb landscape`` does."""
+        if self._core is None:
+            raise ValueError("this landscape was read from a folder, where its files are")
+        self._core.save(os.fspath(folder), force)
+
+    def _repr_html_(self) -> str:
+        svg = self.files.get("disconnectivity.svg", b"").decode()
+        return f"<p>{html.escape(repr(self)[1:-1])}</p>{svg[svg.find('<svg') :] if '<svg' in svg else ''}"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (None, self.files)
+
+    def __repr__(self) -> str:
+        told = self.summary
+        return (
+            f"<Landscape {told['name']}: {told['minima']} minima of {told['kinds_of_minima']} kinds, "
+            f"{told['saddles']} saddles of {told['kinds_of_saddles']} kinds>"
+        )
+
+
+def _number(text: str | None) -> Any:
+    """A cell of a table: a number where it is one, None where it is empty."""
+    if not text:
+        return None
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return text

@@ -1,0 +1,156 @@
+"""Spins on a lattice with an energy: what a config says, without files."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from typing import Any, Union
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ._values import Guess, Lattice, State, Values, plain, spins
+from .term import AnyTerm, Term
+
+__all__ = ["System"]
+
+#: a state of the package, one as a config has it, or vectors of the shape (N, 3)
+AnyState = Union[State, Mapping[str, Any], ArrayLike]
+
+
+class System:
+    """Spins on a lattice with an energy; with two states it is all that a run needs.
+
+    Parameters
+    ----------
+    lattice
+        Where the spins are: ``sn.chain(50)``, ``sn.triangular(40, 40, periodic=True)``, …
+    energy
+        The terms: ``sn.exchange(J=["10 meV"])``, …, and :class:`~spinneb.Term` for those of your own.
+    material
+        A material of the library (``"permalloy"``; ``spinneb list materials``), a file, or a dictionary; ``energy`` is added to
+        its terms.
+    moment
+        Moment of a site: ``"3 mu_B"``. Fields and rates need it (or ``Ms``).
+    Ms
+        Saturation magnetisation of a continuum: ``"800 kA/m"``.
+    name
+        What results are called.
+    initial, final
+        The two states of a path, or later, in :func:`~spinneb.barrier`.
+    options
+        Any other key of a config (``rates={"temperatures": ["300 K"]}``, ``neb={…}``).
+    """
+
+    def __init__(
+        self,
+        lattice: Lattice | Mapping[str, Any],
+        energy: Iterable[AnyTerm] = (),
+        *,
+        material: str | Mapping[str, Any] | None = None,
+        moment: Values | None = None,
+        Ms: Values | None = None,
+        name: str | None = None,
+        initial: AnyState | None = None,
+        final: AnyState | None = None,
+        **options: Any,
+    ) -> None:
+        if material is not None and (moment is not None or Ms is not None):
+            raise TypeError("a material has its own moment: give either material= or moment= (Ms=)")
+        terms = list(energy)
+        for term in terms:
+            if not isinstance(term, (Term, Mapping)):
+                raise TypeError(f"an energy term is made by exchange(…), anisotropy(…) … or Term(…), found {term!r}")
+        self.lattice = lattice
+        self.energy = [term for term in terms if not isinstance(term, Term)]
+        #: the terms of your own
+        self.terms = _named([term for term in terms if isinstance(term, Term)])
+        self.material = material
+        self.moment = moment
+        self.Ms = Ms
+        self.name = name
+        self.initial = initial
+        self.final = final
+        self.options = options
+
+    def config(self, initial: AnyState | None = None, final: AnyState | None = None, **options: Any) -> dict[str, Any]:
+        """The system as a config, with these states and keys in place of its own."""
+        material: Any = self.material
+        if material is None:
+            material = {"name": self.name or "system", "moment": self.moment, "Ms": self.Ms}
+            material = {key: value for key, value in material.items() if value is not None}
+        config = {
+            "name": self.name,
+            "material": material,
+            "lattice": self.lattice,
+            "energy": self.energy,
+            "custom_terms": [term.name for term in self.terms] or None,
+            "initial": as_state(self.initial if initial is None else initial, "initial"),
+            "final": as_state(self.final if final is None else final, "final"),
+            **self.options,
+            **options,
+        }
+        kept: dict[str, Any] = plain({key: value for key, value in config.items() if value is not None})
+        return kept
+
+    def to_json(self, initial: AnyState | None = None, final: AnyState | None = None, **options: Any) -> str:
+        """The config as text, for a file that ``spinneb run`` takes too, unless the system has terms of your own."""
+        config = self.config(initial, final, **options)
+        guess = config.get("path", {}).get("guess")
+        if isinstance(guess, list):
+            states = [{"vectors": image} for image in guess[1:-1]]
+            config["path"] = {**config["path"], "guess": {"waypoints": {"states": states}}}
+        return json.dumps(config, indent=2, ensure_ascii=False, allow_nan=False)
+
+    def replaced(self, **changes: Any) -> System:
+        """The same system with other arguments: ``system.replaced(moment="2 mu_B")``."""
+        own: dict[str, Any] = {
+            "lattice": self.lattice,
+            "energy": [*self.energy, *self.terms],
+            "material": self.material,
+            "moment": self.moment,
+            "Ms": self.Ms,
+            "name": self.name,
+            "initial": self.initial,
+            "final": self.final,
+            **self.options,
+        }
+        return System(**{**own, **changes})
+
+    def __repr__(self) -> str:
+        shown = [f"lattice={self.lattice!r}"]
+        shown += [
+            f"{key}={value!r}"
+            for key, value in [("material", self.material), ("moment", self.moment), ("Ms", self.Ms), ("name", self.name)]
+            if value is not None
+        ]
+        terms = [*map(repr, self.energy), *map(repr, self.terms)]
+        return f"System({', '.join(shown)}, energy=[{', '.join(terms)}])"
+
+
+def _named(terms: list[Term]) -> list[Term]:
+    """Each with a name of its own."""
+    names = [term.name for term in terms]
+    for name in names:
+        if names.count(name) > 1:
+            raise ValueError(f"two terms are called {name!r}: give each a name of its own, Term(…, name=…)")
+    return terms
+
+
+def as_state(value: AnyState | None, what: str) -> Any:
+    """A state as a config has it; vectors become one."""
+    if value is None or isinstance(value, Mapping):
+        return value
+    if isinstance(value, str):
+        raise TypeError(f"{what}: found the text {value!r}, expected a state, such as uniform({value!r}), or vectors")
+    return {"vectors": spins(value, what).tolist()}
+
+
+def as_guess(value: Guess | Mapping[str, Any] | ArrayLike) -> Any:
+    """A first path as a config has it, or vectors of the shape (images, N, 3)."""
+    if isinstance(value, Mapping):
+        return value
+    path = np.asarray(value, dtype=np.float64)
+    if path.ndim != 3 or path.shape[2] != 3 or len(path) < 2:
+        raise ValueError(f"guess: found an array of shape {path.shape}, expected (images, sites, 3)")
+    return path

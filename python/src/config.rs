@@ -1,0 +1,207 @@
+//! A config with all that it names, and what can be done with it.
+
+use crate::buffer::Buffer;
+use crate::errors::raised;
+use crate::landscape::Landscape;
+use crate::outcome::Outcome;
+use crate::supervise::supervised;
+use crate::term::{Term, Trouble};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+use spinneb::config::{Loaded, Source, VERSION, discard_leftovers};
+use spinneb::drive::survey::survey;
+use spinneb::drive::{self, relaxed_state};
+use spinneb::energy::{CustomEnergy, Evaluator};
+use spinneb::error::Error;
+use spinneb::files::disk::File;
+use spinneb::output::folder::{self, NewResult};
+use spinneb::output::RelaxReport;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Which states a config may lack.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Run,
+    Relax,
+    Landscape,
+}
+
+/// A config, read.
+#[pyclass(frozen, module = "spinneb._core")]
+pub struct Config {
+    loaded: Arc<Loaded>,
+    /// It has a final state.
+    with_final: bool,
+    trouble: Trouble,
+}
+
+/// Files by name.
+pub fn dictionary<'py>(py: Python<'py>, files: &[File]) -> PyResult<Bound<'py, PyDict>> {
+    let all = PyDict::new(py);
+    for file in files {
+        all.set_item(&file.name, PyBytes::new(py, &file.bytes))?;
+    }
+    Ok(all)
+}
+
+/// Puts files where the config's results go, with the care of the command line for what is there.
+pub fn save(loaded: &Loaded, dir: PathBuf, names: &[String], force: bool, files: &[File]) -> Result<(), Error> {
+    // the hash of a config does not tell of the functions of its terms
+    let force = force || !loaded.custom.is_empty();
+    let Some(_lock) = loaded.reserve(&dir, names, force)? else { return Ok(()) };
+    let source = loaded.source_name();
+    let new = NewResult { files, source: source.as_deref(), keep_earlier: !force, force };
+    folder::write_result(&dir, &new)?;
+    discard_leftovers(&dir)
+}
+
+#[pymethods]
+impl Config {
+    /// From a file, or from JSON whose files are in `folder`; `kind` is run, relax or landscape.
+    #[new]
+    #[pyo3(signature = (path, json, folder, sets, terms, kind))]
+    fn new(
+        py: Python,
+        path: Option<PathBuf>,
+        json: Option<String>,
+        folder: PathBuf,
+        sets: Vec<String>,
+        terms: Vec<Bound<PyAny>>,
+        kind: &str,
+    ) -> PyResult<Config> {
+        let trouble = Trouble::default();
+        let own = terms.iter().map(|term| Ok(Arc::new(Term::new(term, &trouble)?) as Arc<dyn CustomEnergy>));
+        let own = own.collect::<PyResult<Vec<_>>>()?;
+        let kind = match kind {
+            "relax" => Kind::Relax,
+            "landscape" => Kind::Landscape,
+            _ => Kind::Run,
+        };
+        let read = move |_: &mut crate::supervise::Ways| {
+            let source = match (path, json) {
+                (Some(path), _) => Source::file(&path)?,
+                (None, json) => Source::value(&folder, "untitled", json.unwrap_or_default()),
+            };
+            let source = source.set(&sets)?;
+            match kind {
+                Kind::Run => Ok((source.load()?, true)),
+                Kind::Relax => source.load_states(),
+                Kind::Landscape => Ok((source.load_landscape()?, true)),
+            }
+        };
+        let (loaded, with_final) = supervised(py, Some(1), None, &trouble, read)?;
+        Ok(Config { loaded: Arc::new(loaded.with_terms(own)), with_final, trouble })
+    }
+
+    /// The config as run.
+    #[getter]
+    fn json(&self) -> &str {
+        &self.loaded.as_run
+    }
+
+    /// Name of the run.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.loaded.name
+    }
+
+    /// What it would run, in rows of a key and words.
+    fn check(&self, py: Python) -> PyResult<Vec<(&'static str, String)>> {
+        let loaded = self.loaded.clone();
+        supervised(py, Some(1), None, &self.trouble, move |_| {
+            Ok(spinneb::cli::report_of(&loaded, &loaded.problem()?))
+        })
+    }
+
+    /// Sites as (site, xyz) in lattice constants; in a chain x is the number of the site.
+    #[getter]
+    fn places(&self) -> Buffer {
+        places(&self.loaded)
+    }
+
+    /// The initial and the final state as they are given, before anything is relaxed.
+    fn states(&self, py: Python) -> PyResult<Vec<Buffer>> {
+        let (loaded, with_final) = (self.loaded.clone(), self.with_final);
+        let states = supervised(py, Some(1), None, &self.trouble, move |_| loaded.states(with_final))?;
+        let all = std::iter::once(states.initial).chain(states.final_state);
+        Ok(all.map(|spins| Buffer::spins(&Arc::new(spins), |spins| spins.as_slice(), None)).collect())
+    }
+
+    /// The minimum-energy path.
+    fn run(&self, py: Python, threads: Option<usize>, progress: Option<Bound<PyAny>>) -> PyResult<Outcome> {
+        let loaded = self.loaded.clone();
+        let found = supervised(py, threads, progress.as_ref(), &self.trouble, move |ways| {
+            let mut problem = loaded.problem()?;
+            problem.control.obey(ways.switch.clone());
+            drive::run(&problem, &mut ways.teller)
+        })?;
+        Ok(Outcome::new(self.loaded.clone(), found, self.trouble.clone()))
+    }
+
+    /// Sees that the files of a run can be written to a folder.
+    fn reserve(&self, py: Python, dir: PathBuf, force: bool) -> PyResult<()> {
+        let force = force || !self.loaded.custom.is_empty();
+        let reserved = self.loaded.reserve(&dir, &self.loaded.file_names(), force);
+        reserved.map(|_| ()).map_err(|e| raised(py, e))
+    }
+
+    /// The files of the states relaxed.
+    fn relax<'py>(
+        &self,
+        py: Python<'py>,
+        modes: usize,
+        threads: Option<usize>,
+        progress: Option<Bound<PyAny>>,
+    ) -> PyResult<(Bound<'py, PyDict>, Vec<Buffer>)> {
+        let (loaded, with_final) = (self.loaded.clone(), self.with_final);
+        let (files, states) = supervised(py, threads, progress.as_ref(), &self.trouble, move |ways| {
+            let states = loaded.states(with_final)?;
+            let mut control = spinneb::control::Control::default();
+            control.obey(ways.switch.clone());
+            let h = Evaluator::new(&states.hamiltonian, &control);
+            let given = [("initial", Some(&states.initial)), ("final", states.final_state.as_ref())];
+            let mut relaxed = Vec::new();
+            for (which, spins) in given.into_iter().filter_map(|(which, spins)| Some((which, spins?))) {
+                relaxed.push((which, control.relied_on(relaxed_state(h, spins, modes, which))?));
+            }
+            let same_minimum = match &relaxed[..] {
+                [(_, a), (_, b)] => Some(a.minimum.is_same(h, &b.minimum)),
+                _ => None,
+            };
+            let report = RelaxReport {
+                name: &loaded.name,
+                version: VERSION,
+                lattice: states.hamiltonian.lattice(),
+                hamiltonian: &states.hamiltonian,
+                states: &relaxed,
+                same_minimum,
+                formats: &loaded.config.output.formats,
+            };
+            let files = report.files()?;
+            Ok((files, relaxed.into_iter().map(|(_, state)| state.relaxed.spins).collect::<Vec<_>>()))
+        })?;
+        let states = states.into_iter().map(|s| Buffer::spins(&Arc::new(s), |spins| spins.as_slice(), None));
+        Ok((dictionary(py, &files)?, states.collect()))
+    }
+
+    /// All minima and saddles below an energy.
+    fn landscape(&self, py: Python, threads: Option<usize>, progress: Option<Bound<PyAny>>) -> PyResult<Landscape> {
+        let loaded = self.loaded.clone();
+        let files = supervised(py, threads, progress.as_ref(), &self.trouble, move |ways| {
+            let mut asked = loaded.survey()?;
+            asked.problem.control.obey(ways.switch.clone());
+            let found = survey(&asked, &mut ways.teller)?;
+            loaded.survey_report(&found)?.files()
+        })?;
+        Ok(Landscape { loaded: self.loaded.clone(), files })
+    }
+}
+
+/// Places of the sites of a config.
+pub fn places(loaded: &Loaded) -> Buffer {
+    let lattice = &loaded.lattice;
+    let all: Vec<[f64; 3]> = (0..lattice.sites).map(|i| lattice.place(i)).collect();
+    let components: Vec<f64> = (0..3).flat_map(|c| all.iter().map(move |r| r[c])).collect();
+    Buffer::spins(&Arc::new(components), |numbers: &Vec<f64>| numbers, None)
+}
