@@ -6,6 +6,7 @@ missing, and names, meanings and defaults are those of the program. A test sees 
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import keyword
 import sys
@@ -13,9 +14,7 @@ import textwrap
 from pathlib import Path
 from typing import Any
 
-from spinneb._core import config_schema
-
-FOLDER = Path(__file__).parent / "python" / "spinneb"
+FOLDER = Path(*(importlib.util.find_spec("spinneb") or sys.exit("spinneb is not installed")).submodule_search_locations or [])
 WIDTH = 110
 
 #: module, family of the schema, class of what its functions make, first line of the module
@@ -67,7 +66,9 @@ def hint(schema: dict[str, Any], part: Any) -> str:
     for key in ("allOf", "anyOf", "oneOf"):
         if key in part:
             forms = dict.fromkeys(hint(schema, form) for form in part[key])
-            return " | ".join(form for form in forms if form != "None") or "None"
+            return " | ".join(form for form in forms if form)
+    if part.get("items") == {"type": "number"} and part.get("minItems") == part.get("maxItems") == 3:
+        return "Direction"
     kinds = part.get("type", "any")
     kinds = [kinds] if isinstance(kinds, str) else kinds
     names = {"number": "float", "integer": "int", "boolean": "bool", "string": "str", "null": "None"}
@@ -128,7 +129,7 @@ def function(schema: dict[str, Any], choice: dict[str, Any], made: str) -> str:
                 signature.insert(0, "*cells: int")
                 entries.insert(0, '"cells": list(cells)')
             else:
-                value = f"direction({arg})" if takes_direction(schema, keys[key]) else arg
+                value = f"as_direction({arg})" if takes_direction(schema, keys[key]) else arg
                 signature.append(f"{arg}: {hint(schema, keys[key])}" + (f" = {default}" if default else ""))
                 entries.append(f'"{key}": {value}')
             told.append((arg, meaning(schema, keys[key])))
@@ -136,7 +137,7 @@ def function(schema: dict[str, Any], choice: dict[str, Any], made: str) -> str:
             signature.append("*")
         for key in others:
             arg = argument(key)
-            value = f"direction({arg})" if takes_direction(schema, keys[key]) else arg
+            value = f"as_direction({arg})" if takes_direction(schema, keys[key]) else arg
             signature.append(f"{arg}: {hint(schema, keys[key])} | None = None")
             entries.append(f'"{key}": {value}')
             told.append((arg, meaning(schema, keys[key])))
@@ -167,7 +168,7 @@ def module(schema: dict[str, Any], family: str, made: str, title: str) -> str:
     names = [argument(next(iter(choice["properties"]))) for choice in choices]
     body = "\n\n\n".join(functions)
     words = {"Literal", "Sequence", "Mapping", "Any", "ArrayLike", "Direction", "Extent", "Selection", "Shape", "State", "Values"}
-    used = sorted(word for word in words | {made, "direction"} if word in body)
+    used = sorted(word for word in words | {made, "as_direction"} if word in body)
     own = [w for w in used if w not in ("Literal", "Sequence", "Mapping", "Any", "ArrayLike")]
     typing = [w for w in ("Any", "Literal") if w in used]
     abc = [w for w in ("Mapping", "Sequence") if w in used]
@@ -183,8 +184,19 @@ def module(schema: dict[str, Any], family: str, made: str, title: str) -> str:
     return "\n".join(parts)
 
 
+def config_schema() -> dict[str, Any]:
+    """The schema, of the native module by itself: the package around it may lack what is written here."""
+    (file,) = (path for path in FOLDER.glob("_core*") if path.suffix in (".so", ".pyd"))
+    spec = importlib.util.spec_from_file_location("_core", file)
+    assert spec is not None and spec.loader is not None
+    core = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(core)
+    found: dict[str, Any] = json.loads(core.config_schema())
+    return found
+
+
 def main() -> int:
-    schema = json.loads(config_schema())
+    schema = config_schema()
     stale = []
     for name, family, made, title in FAMILIES:
         path, text = FOLDER / f"{name}.py", module(schema, family, made, title)

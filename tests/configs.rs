@@ -316,7 +316,7 @@ fn all_that_is_wrong_is_told_at_once_and_each_as_an_error_of_its_own() {
     let all = r#"error: wall.json:2:61: material.energy[0].exchange.J: found the string "10 meV", expected an array, such as ["10 meV"]
 error: wall.json:2:74: material.energy[1].anistropy: unknown kind "anistropy": did you mean "anisotropy"? (known kinds: exchange, anisotropy, cubic_anisotropy, dmi, pairs, biquadratic, four_spin, zeeman, dipolar, demag)
 error: wall.json:2:93: material.energy[1].anistropy.K: found the number 0.5, but an energy per site or per volume needs its unit: write "0.5 meV" or "0.5 J/m^3" (J, eV, Ry or erg for a site, J/m^3 or erg/cm^3 for a volume, with SI prefixes)
-error: wall.json:3:3: latice: unknown key "latice": did you mean "lattice"? (known keys: $schema, comment, name, material, lattice, energy, initial, final, relax_ends, path, search, neb, saddle, rates, landscape, output)
+error: wall.json:3:3: latice: unknown key "latice": did you mean "lattice"? (known keys: $schema, comment, name, material, lattice, energy, custom_terms, initial, final, relax_ends, path, search, neb, saddle, rates, landscape, output)
 error: wall.json:3:48: latice.chain.spacing: "0.25 mev" is an energy
 "#;
     let said = wrong(&["check", "wall.json"]);

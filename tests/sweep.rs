@@ -124,8 +124,15 @@ fn single_points_by_their_index_are_the_same_results_as_a_local_sweep() {
     assert_eq!(code, Some(3));
     assert!(said.contains("many: 6 points: 3 certified, 3 missing\nmany: missing: 1, 2, 4\n"), "{said}");
     assert_eq!(table(array.path())[2][3..], ["", "", "", "", "", "", "missing", "sites_3__K_0.2meV"]);
-    for k in ["1", "2", "4"] {
-        assert_eq!(spinneb(array.path(), &["sweep", "many.json", "--index", k, "-q"]).0, Some(0));
+    // those from one to another, of which the table is not made; what is done is not run again
+    let (code, out, said) = spinneb(array.path(), &["sweep", "many.json", "--index", "1-3", "--jobs", "2", "--json"]);
+    assert_eq!((code, out.lines().count()), (Some(0), 3), "{said}");
+    assert!(said.contains("many: 1 of 3 points are done already"), "{said}");
+    assert_eq!(table(array.path())[2][9], "missing");
+    assert_eq!(spinneb(array.path(), &["sweep", "many.json", "--index", "4", "-q"]).0, Some(0));
+    for (wrong, said) in [("3-1", "smaller number first"), ("1-6", "there is no point 6"), ("a-2", "a point's number")] {
+        let (code, _, told) = spinneb(array.path(), &["sweep", "many.json", "--index", wrong]);
+        assert!(code == Some(2) && told.contains(said), "{told}");
     }
     // by the folder alone
     fs::remove_file(array.path().join("many.json")).unwrap();

@@ -20,6 +20,7 @@ use rayon::prelude::*;
 use std::ffi::OsString;
 use std::io::{self, Write};
 use std::num::NonZeroUsize;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::thread::available_parallelism;
@@ -45,6 +46,7 @@ Examples:
   spinneb sweep field.json                      all points, as many at a time as there are cores
   spinneb sweep field.json --list               index, values, folder and state of each point
   spinneb sweep field.json --index 17           one point: with a Slurm array, --index $SLURM_ARRAY_TASK_ID
+  spinneb sweep field.json --index 20-39        twenty of them, as many at a time as there are cores
   spinneb collect field.json                    barriers.csv and barriers.svg, .png of what is there")]
 pub struct Arguments {
     /// The sweep's file
@@ -63,9 +65,9 @@ pub struct Arguments {
     #[arg(long, conflicts_with_all = ["index", "jobs", "threads", "force", "json"])]
     pub count: bool,
 
-    /// Run this point alone, counted from 0
-    #[arg(short, long, value_name = "INDEX", conflicts_with = "jobs")]
-    pub index: Option<usize>,
+    /// Run this point alone, counted from 0, or those from one to another: 20-39
+    #[arg(short, long, value_name = "INDEX|FIRST-LAST", value_parser = part)]
+    pub index: Option<Part>,
 
     /// How many points run at a time [default: all cores over --threads]
     #[arg(short, long, value_name = "N")]
@@ -92,6 +94,29 @@ pub struct Arguments {
     pub leashed: bool,
 }
 
+/// The points from one to another, both with it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Part {
+    first: usize,
+    last: usize,
+    /// It was written as one point.
+    single: bool,
+}
+
+fn part(text: &str) -> std::result::Result<Part, String> {
+    let number = |text: &str| {
+        text.parse::<usize>().map_err(|_| format!("found {text:?}, expected a point's number, or two: 20-39"))
+    };
+    match text.split_once('-') {
+        None => number(text).map(|k| Part { first: k, last: k, single: true }),
+        Some((first, last)) => {
+            let (first, last) = (number(first)?, number(last)?);
+            let reversed = || format!("found {text}, expected the smaller number first");
+            (first <= last).then_some(Part { first, last, single: false }).ok_or_else(reversed)
+        }
+    }
+}
+
 impl Arguments {
     fn say(&self, line: &str) {
         if !self.quiet {
@@ -109,28 +134,31 @@ pub fn sweep(arguments: &Arguments, program: &[OsString]) -> Result<u8> {
         return Ok(0);
     }
     check_threads(arguments.jobs.map_or(1, NonZeroUsize::get), arguments.threads.map_or(1, NonZeroUsize::get))?;
-    if let Some(point) = arguments.index {
-        return one(arguments, &sweep, &dir, point);
+    if let Some(part) = arguments.index {
+        if part.last >= sweep.len() {
+            let (file, last) = (arguments.file.display(), sweep.len() - 1);
+            note(&format!("error: there is no point {}: {file} has the points 0 to {last}", part.last));
+            return Ok(USAGE);
+        }
+        if part.single {
+            return one(arguments, &sweep, &dir, part.first);
+        }
     }
     let Some(index) = checked(&sweep, !arguments.list)? else { return Ok(USAGE) };
     if arguments.list {
         return list(arguments, &index, &dir);
     }
     let before = states(&dir, &index);
-    if !arguments.force && occupied(&dir, &index, &before) {
+    let points = arguments.index.map_or(0..before.len(), |part| part.first..part.last + 1);
+    if !arguments.force && occupied(&dir, &index, &before, points.clone()) {
         return Ok(USAGE);
     }
-    all(arguments, &index, &dir, &before, program)
+    several(arguments, &index, &dir, (&before, points), program)
 }
 
 /// One point, as `run` runs a config.
 fn one(arguments: &Arguments, sweep: &Sweep, dir: &Path, point: usize) -> Result<u8> {
     start_threads(arguments.threads)?;
-    if point >= sweep.len() {
-        let last = sweep.len() - 1;
-        note(&format!("error: there is no point {point}: {} has the points 0 to {last}", arguments.file.display()));
-        return Ok(USAGE);
-    }
     // the points of a sweep share their source: each keeps its result
     let loaded = Loaded { source: None, ..sweep.load_point(point)? };
     sweep.problem(point, &loaded)?;
@@ -190,43 +218,44 @@ fn list(arguments: &Arguments, index: &SweepIndex, dir: &Path) -> Result<u8> {
 }
 
 /// Whether folders hold results of other configs or versions, which is said.
-fn occupied(dir: &Path, index: &SweepIndex, before: &[PointState]) -> bool {
+fn occupied(dir: &Path, index: &SweepIndex, before: &[PointState], points: Range<usize>) -> bool {
     let other = |state: &PointState| match state {
         PointState::Other | PointState::Damaged => true,
         PointState::Found(found) => found.head.version != env!("CARGO_PKG_VERSION"),
         PointState::Missing => false,
     };
-    let taken: Vec<usize> = (0..before.len()).filter(|k| other(&before[*k])).collect();
+    let count = points.len();
+    let taken: Vec<usize> = points.filter(|k| other(&before[*k])).collect();
     if let Some(first) = taken.first() {
         let place = dir.join(&index.points[*first].directory);
         note(&format!(
             "error: {} of {} points have a folder with a damaged result or one of another config or version, the first {}; \
              use --force to replace them, or another folder with --out",
             taken.len(),
-            before.len(),
+            count,
             place.display()
         ));
     }
     !taken.is_empty()
 }
 
-/// All points that are not done, several at a time.
-fn all(
+/// The points of a range that are not done, several at a time; once all of the sweep are asked for, what they come to.
+fn several(
     arguments: &Arguments,
     index: &SweepIndex,
     dir: &Path,
-    before: &[PointState],
+    (before, points): (&[PointState], Range<usize>),
     program: &[OsString],
 ) -> Result<u8> {
     SweepIndex::is_free(dir, arguments.force)?;
     index.write(dir)?;
-    let todo: Vec<usize> = (0..before.len()).filter(|k| arguments.force || before[*k].found().is_none()).collect();
+    let todo: Vec<usize> = points.clone().filter(|k| arguments.force || before[*k].found().is_none()).collect();
     let threads = arguments.threads.map_or(1, NonZeroUsize::get);
     let cores = available_parallelism().map_or(1, NonZeroUsize::get);
     let jobs = arguments.jobs.map_or((cores / threads).max(1), NonZeroUsize::get);
     let (name, total) = (&index.name, todo.len());
-    if total < before.len() {
-        arguments.say(&format!("{name}: {} of {} points are done already", before.len() - total, before.len()));
+    if total < points.len() {
+        arguments.say(&format!("{name}: {} of {} points are done already", points.len() - total, points.len()));
     }
     let (program, first) = program.split_first().context("the program does not know where it is")?;
     let start = |point: usize| {
@@ -258,29 +287,29 @@ fn all(
     });
     failed.sort();
     let after = states(dir, index);
-    if stopped.is_none() {
+    if stopped.is_none() && points.len() == before.len() {
         collect::write(index, dir, &after, arguments.quiet, arguments.force)?;
     }
     if arguments.json {
         let mut out = io::stdout().lock();
-        for (k, state) in after.iter().enumerate() {
-            writeln!(out, "{}", json_line(index, dir, k, state))?;
+        for k in points.clone() {
+            writeln!(out, "{}", json_line(index, dir, k, &after[k]))?;
         }
     }
-    tell(index, &after, &failed, arguments.quiet);
+    tell(index, &after, points.clone(), &failed, arguments.quiet);
     let codes = failed.iter().map(|(.., code)| *code);
-    let doubtful = after.iter().any(|state| state.found().is_none_or(|f| !f.head.is_proven()));
+    let doubtful = after[points].iter().any(|state| state.found().is_none_or(|f| !f.head.is_proven()));
     Ok(stopped.unwrap_or_else(|| codes.fold(if doubtful { UNFINISHED } else { 0 }, worse)))
 }
 
 /// What has failed and what is not certified, each in a line.
-fn tell(index: &SweepIndex, after: &[PointState], failed: &[(usize, String, u8)], quiet: bool) {
+fn tell(index: &SweepIndex, after: &[PointState], points: Range<usize>, failed: &[(usize, String, u8)], quiet: bool) {
     let mut lines: Vec<String> = Vec::new();
     for (point, words, _) in failed {
         lines.push(format!("error: point {point}, {}: {words}", index.points[*point].directory));
     }
-    for (k, state) in after.iter().enumerate().filter(|_| !quiet) {
-        if let Some(found) = state.found().filter(|f| !f.head.is_proven()) {
+    for k in points.filter(|_| !quiet) {
+        if let Some(found) = after[k].found().filter(|f| !f.head.is_proven()) {
             let reason = found.warnings.last().map(|w| Doubt::of_warning(w).unwrap_or(w));
             let reason = reason.map_or(String::new(), |w| format!(": {w}"));
             lines.push(format!("point {k}, {}: not certified{reason}", index.points[k].directory));

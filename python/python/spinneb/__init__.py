@@ -4,7 +4,7 @@
 >>> system = sn.System(sn.chain(20), [sn.exchange(J=["10 meV"]), sn.anisotropy(K="0.5 meV")])
 >>> result = sn.barrier(system, sn.uniform("z"), sn.uniform("-z"))
 >>> round(result.barrier_meV["forward"], 6)
-6.218497
+6.252171
 >>> result.certified
 True
 
@@ -19,16 +19,13 @@ from ._values import Energy, Guess, Lattice, Optimiser, Shape, State
 from .api import barrier, check, landscape, load, rates, relax, run
 from .bands import NEBTools
 from .fields import from_field, to_field
-from .guesses import *
+from .guesses import drift, droplet, geodesic, nlerp, rotation, shrink, sweep, waypoints
 from .lattices import *
 from .results import Check, Landscape, Rates, Relaxed, Result, Saddle
 from .states import *
 from .system import System
 from .term import Term
 from .terms import *
-
-# a state is what most files hold
-from .states import file as file  # isort: skip
 
 __all__ = [
     "Check",
@@ -65,4 +62,8 @@ __all__ = [
     "terms",
     "to_field",
 ]
-__all__ += lattices.__all__ + terms.__all__ + states.__all__ + [name for name in guesses.__all__ if name != "file"]
+__all__ += lattices.__all__
+__all__ += terms.__all__
+__all__ += states.__all__
+# but for `guesses.file`: the `file` of here is the state
+__all__ += ["drift", "droplet", "geodesic", "nlerp", "rotation", "shrink", "sweep", "waypoints"]

@@ -23,8 +23,10 @@ Selection = Union[Sequence[int], NDArray[np.integer[Any]], Mapping[str, Any], st
 _AXES = {"x": [1, 0, 0], "y": [0, 1, 0], "z": [0, 0, 1]}
 
 
-def direction(value: Any) -> Any:
-    """[0, 0, 1] for "z", [-1, 0, 0] for "-x"; anything else as it is."""
+def as_direction(value: Any) -> Any:
+    """[0, 0, 1] for "z", [-1, 0, 0] for "-x", in lists too; anything else as it is."""
+    if isinstance(value, (list, tuple)):
+        return [as_direction(inner) for inner in value]
     if isinstance(value, str) and value.lstrip("+-") in _AXES and len(value) <= 2:
         sign = -1 if value.startswith("-") else 1
         return [sign * number for number in _AXES[value[-1]]]

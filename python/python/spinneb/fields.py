@@ -11,7 +11,7 @@ from ._values import Lattice
 from .results import Result
 
 if TYPE_CHECKING:
-    import discretisedfield
+    import discretisedfield  # type: ignore[import-untyped,import-not-found,unused-ignore]
 
 __all__ = ["from_field", "to_field"]
 
@@ -67,7 +67,7 @@ def to_field(result: Result, image: int = 0, *, norm: float | None = None) -> di
     norm
         The length of the vectors, 1 if left out; Ms makes a magnetisation of it.
     """
-    import discretisedfield as df
+    import discretisedfield as df  # type: ignore[import-untyped,import-not-found,unused-ignore]
 
     lattice = result.config["lattice"]
     ((kind, content),) = lattice.items()

@@ -64,18 +64,18 @@ def maps(states: Sequence[Array], places: Array, titles: Sequence[str], axes: Se
 
     is_row = bool(np.ptp(places[:, 1]) < 1e-9 and np.ptp(places[:, 2]) < 1e-9)
     n = len(states)
-    if axes is None:
-        if is_row:
-            axes = plt.subplots(n, 1, figsize=(6.4, 0.95 * n + 0.4), sharex=True, squeeze=False, layout="constrained")[1][:, 0]
-        else:
-            axes = plt.subplots(1, n, figsize=(2.9 * n, 3.1), squeeze=False, layout="constrained")[1][0]
-    axes = list(axes)
-    if len(axes) < n:
-        raise ValueError(f"found {len(axes)} axes for {n} states")
-    for ax, m, title in zip(axes, states, titles):
+    if axes is not None:
+        made = list(axes)
+    elif is_row:
+        made = list(plt.subplots(n, 1, figsize=(6.4, 0.95 * n + 0.4), sharex=True, squeeze=False, layout="constrained")[1][:, 0])
+    else:
+        made = list(plt.subplots(1, n, figsize=(2.9 * n, 3.1), squeeze=False, layout="constrained")[1][0])
+    if len(made) < n:
+        raise ValueError(f"found {len(made)} axes for {n} states")
+    for ax, m, title in zip(made, states, titles):
         (_row if is_row else _film)(ax, m, places)
         ax.set_title(title, fontsize="small")
-    return axes
+    return made
 
 
 def colors(m: Array) -> Array:

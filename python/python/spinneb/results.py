@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from . import _core
 
 if TYPE_CHECKING:
-    import pandas
+    import pandas  # type: ignore[import-untyped,unused-ignore]
     import xarray
     from matplotlib.axes import Axes
 
@@ -212,7 +212,7 @@ class Result:
 
         return pandas.DataFrame(self._table())
 
-    def _table(self) -> dict[str, Array]:
+    def _table(self) -> dict[str, NDArray[Any]]:
         return {
             "image": np.arange(len(self.energies_meV)),
             "reaction_coordinate_rad": self.reaction_coordinate_rad,
@@ -448,7 +448,7 @@ class Landscape:
         self.files: dict[str, bytes] = dict(found)
         self._document: dict[str, Any] = json.loads(self.files["landscape.json"])
         with np.load(io.BytesIO(self.files["landscape.npz"])) as arrays:
-            #: landscape.npz: spins of all minima and saddles
+            #: landscape.npz
             self.arrays: dict[str, Array] = {name: arrays[name] for name in arrays.files}
 
     @property
@@ -488,6 +488,16 @@ class Landscape:
         return self._table("saddles.csv")
 
     @property
+    def minimum_spins(self) -> Array:
+        """The vectors of all minima, (minimum, site, xyz)."""
+        return self.arrays["minima"]
+
+    @property
+    def saddle_spins(self) -> Array:
+        """The vectors of all saddles, (saddle, site, xyz)."""
+        return self.arrays["saddles"]
+
+    @property
     def lifetimes(self) -> list[dict[str, Any]]:
         """lifetimes.csv, where there are temperatures."""
         return self._table("lifetimes.csv") if "lifetimes.csv" in self.files else []
@@ -504,7 +514,7 @@ class Landscape:
 
     def graph(self) -> Any:
         """Minima and saddles as a graph (networkx)."""
-        import networkx
+        import networkx  # type: ignore[import-untyped,unused-ignore]
 
         return networkx.parse_graphml(self.files["landscape.graphml"].decode())
 

@@ -1,0 +1,100 @@
+"""Errors say what the command line says."""
+
+import pickle
+
+import pytest
+
+import spinneb as sn
+
+
+@pytest.fixture
+def bad(tmp_path):
+    def write(text):
+        file = tmp_path / "bad.json"
+        file.write_text(text)
+        return file
+
+    return write
+
+
+GOOD = '{"material": "fept", "lattice": {"chain": {"sites": 9}}, "initial": {"uniform": {"direction": [0, 0, 1]}}, %s}'
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "{",
+        "[]",
+        GOOD % '"finale": {"uniform": {"direction": [0, 0, -1]}}',
+        GOOD % '"final": {"uniform": {"direction": [0, 0, 0]}}, "name": 3, "path": {"images": "many"}',
+        GOOD % '"final": {"uniform": {"direction": [0, 0, 1]}}, "energy": [{"exchange": {"J": [10]}}]',
+        GOOD % '"final": {"uniform": {"direction": [0, 0, -1]}}, "energy": [{"dmi": {"D": "1 meV"}}]',
+    ],
+)
+def test_a_bad_file_is_told_of_in_the_words_of_the_command_line(bad, command, text):
+    file = bad(text)
+    with pytest.raises(sn.ConfigError) as error:
+        sn.run(file)
+    done = command("run", file)
+    assert done.returncode == 2
+    assert done.stderr.strip() == "\n".join(f"error: {line}" for line in str(error.value).splitlines())
+
+
+def test_errors_are_value_errors_with_the_path_of_the_key(chain):
+    with pytest.raises(ValueError, match=r'^lattice\.chain\.sties: unknown key "sties": did you mean "sites"\?'):
+        sn.run({**chain.config(sn.uniform("z"), sn.uniform("-z")), "lattice": {"chain": {"sties": 3}}})
+    with pytest.raises(sn.ConfigError, match=r"^energy\[0\]\.exchange\.J"):
+        sn.barrier(chain.replaced(energy=[sn.exchange(J=[10])]), sn.uniform("z"), sn.uniform("-z"))
+    with pytest.raises(sn.ConfigError, match="key \"final\" is missing"):
+        sn.run(chain.replaced(initial=sn.uniform("z")))
+    with pytest.raises(sn.ConfigError, match="--set path.images"):
+        sn.run(chain.config(sn.uniform("z"), sn.uniform("-z")), set={"path.images": 1})
+    assert issubclass(sn.ConfigError, sn.SpinnebError)
+
+
+def test_several_errors_are_told_at_once(chain):
+    with pytest.raises(sn.ConfigError) as error:
+        sn.barrier(chain, sn.uniform("z"), sn.uniform("-z"), bogus=1, neb={"tolerance": -1})
+    assert len(str(error.value).splitlines()) == 2
+
+
+def test_what_is_no_json_is_refused_here(chain):
+    with pytest.raises(ValueError, match="not JSON compliant"):
+        sn.barrier(chain, sn.uniform("z"), sn.uniform("-z"), neb={"tolerance": float("nan")})
+    with pytest.raises(TypeError, match="uniform\\('z'\\)"):
+        sn.barrier(chain, "z", sn.uniform("-z"))
+    with pytest.raises(TypeError, match="energy term"):
+        sn.System(sn.chain(5), ["exchange"])
+    with pytest.raises(TypeError):
+        sn.uniform()
+    with pytest.raises(TypeError):
+        sn.domain_wall(3, widht=2)
+
+
+def test_files_and_folders_that_are_not_there(tmp_path, chain, reversal):
+    with pytest.raises(FileNotFoundError, match="nothing.json"):
+        sn.run(tmp_path / "nothing.json")
+    with pytest.raises(FileNotFoundError, match="no finished result"):
+        sn.load(tmp_path)
+    reversal.save(tmp_path / "r", formats=["csv"])
+    with pytest.raises(sn.SpinnebError, match="there is no path.npz"):
+        sn.load(tmp_path / "r")
+
+
+def test_threads_are_counted(chain):
+    for threads in (0, 100_000):
+        with pytest.raises(sn.ConfigError, match="threads"):
+            sn.barrier(chain, sn.uniform("z"), sn.uniform("-z"), threads=threads)
+
+
+def test_a_run_without_a_barrier_says_why(chain):
+    result = sn.barrier(chain, sn.uniform("z"), sn.uniform([0.1, 0, 1]))
+    assert result.barrier_meV is None and result.stop_reason in repr(result)
+    with pytest.raises(sn.SpinnebError, match="certified"):
+        sn.rates(result, 300)
+
+
+def test_errors_are_pickled(chain):
+    with pytest.raises(sn.ConfigError) as error:
+        sn.run({})
+    assert str(pickle.loads(pickle.dumps(error.value))) == str(error.value)

@@ -1,0 +1,139 @@
+"""What results offer: views, tables, figures, files, pickles."""
+
+import gc
+import json
+import pickle
+
+import numpy as np
+import pytest
+
+import spinneb as sn
+
+
+def test_arrays_are_read_only_views_of_one_memory(reversal):
+    spins = reversal.spins
+    assert spins.dtype == np.float64 and spins.ndim == 3 and spins.shape[1:] == (20, 3)
+    assert not spins.flags.writeable and not spins.flags.owndata
+    address = spins.__array_interface__["data"][0]
+    assert reversal.spins.__array_interface__["data"][0] == address
+    assert np.shares_memory(reversal.initial, spins) and np.shares_memory(reversal.final, spins)
+    with pytest.raises(ValueError):
+        spins[0, 0, 0] = 1
+    assert np.allclose(np.linalg.norm(spins, axis=2), 1, atol=1e-14)
+    for column in (reversal.energies_meV, reversal.above_initial_meV, reversal.reaction_coordinate_rad):
+        assert not column.flags.writeable and column.shape == (len(spins),)
+    assert reversal.energies_meV.__array_interface__["data"][0] == reversal.energies_meV.__array_interface__["data"][0]
+
+
+def test_arrays_outlive_their_result(chain):
+    result = sn.barrier(chain, sn.uniform("z"), sn.uniform("-z"))
+    spins, saddle = result.spins, result.saddles[0].spins
+    kept = spins.copy(), saddle.copy()
+    del result
+    gc.collect()
+    junk = [np.ones(spins.size) for _ in range(50)]
+    assert np.array_equal(spins, kept[0]) and np.array_equal(saddle, kept[1])
+    assert len(junk) == 50
+
+
+def test_numbers_are_named_as_in_the_summary(reversal):
+    assert reversal.barrier_meV["forward"] == reversal.summary["barrier_meV"]["forward"]
+    assert reversal.certified and reversal.converged and isinstance(reversal.warnings, list)
+    saddle = reversal.saddles[0]
+    assert saddle.negative_modes == 1 and saddle.spins.shape == (20, 3)
+    assert saddle.above_initial_meV == pytest.approx(reversal.barrier_meV["forward"])
+    assert saddle.lowest_eigenvalues_meV[0] < 0
+    assert sum(mev for mev in reversal.terms_meV.values()) == pytest.approx(reversal.energies_meV)
+    s, e = reversal.profile
+    assert e.max() == pytest.approx(reversal.barrier_meV["forward"], rel=1e-3)
+    assert repr(reversal).startswith("<Result chain: barrier 6.2") and "certified" in repr(reversal)
+    assert reversal.places[:, 0].tolist() == list(range(20))
+
+
+def test_tables_have_the_columns_of_path_csv(reversal):
+    frame = reversal.to_dataframe()
+    header = reversal._core.files(["csv"])["path.csv"].decode().splitlines()[0].split(",")
+    assert list(frame.columns) == header
+    assert frame["energy_meV"].to_numpy() == pytest.approx(reversal.energies_meV)
+    data = reversal.to_xarray()
+    assert data["spins"].dims == ("image", "site", "component")
+    assert float(data["spins"].sel(component="z").isel(image=0, site=3)) == reversal.spins[0, 3, 2]
+
+
+def test_figures_are_drawn_on_axes(reversal):
+    axes = reversal.plot()
+    assert axes.get_xlabel() == "reaction coordinate (rad)" and "6.2" in axes.get_title()
+    assert reversal.plot(axes, color="k") is axes
+    assert len(reversal.plot_spins()) == 3
+    assert len(reversal.plot_spins([0, -1])) == 2
+    film = sn.System(sn.triangular(6, 6), [sn.exchange(J=["5 meV"]), sn.anisotropy(K="1 meV")])
+    assert len(sn.barrier(film, sn.uniform("z"), sn.uniform("-z"), effort="none").plot_spins()) >= 2
+    assert len(sn.relax(film, sn.uniform("z")).plot_spins()) == 1
+
+
+def test_the_report_stands_in_the_cell(reversal):
+    cell = reversal._repr_html_()
+    assert cell.startswith("<iframe srcdoc=") and "6.2" in cell
+    assert reversal.html().lstrip().lower().startswith("<!doctype html>")
+
+
+def test_results_are_saved_and_loaded(reversal, tmp_path):
+    folder = tmp_path / "chain"
+    reversal.save(folder)
+    assert (folder / "report.html").exists() and (folder / "energy_path.svg").exists()
+    again = sn.load(folder)
+    assert np.array_equal(again.spins, reversal.spins)
+    assert np.array_equal(again.saddles[0].spins, reversal.saddles[0].spins)
+    assert again.summary == reversal.summary and again.config == reversal.config
+    # the same result again is left as it is; another one is refused
+    reversal.save(folder)
+    other = sn.System(sn.chain(10), [sn.exchange(J=["10 meV"]), sn.anisotropy(K="0.5 meV")], name="other")
+    other = sn.barrier(other, sn.uniform("z"), sn.uniform("-z"))
+    with pytest.raises((sn.SpinnebError, OSError)):
+        other.save(folder)
+    other.save(folder, force=True, formats=["csv", "npz", "ovf"])
+    assert sn.load(folder).name == "other" and not (folder / "report.html").exists()
+    with pytest.raises(sn.ConfigError, match="known kinds"):
+        other.save(folder, formats=["cvs"], force=True)
+
+
+def test_a_run_writes_to_its_folder(chain, tmp_path):
+    result = sn.barrier(chain, sn.uniform("z"), sn.uniform("-z"), out=tmp_path / "r")
+    assert json.loads((tmp_path / "r" / "summary.json").read_text())["barrier_meV"] == result.barrier_meV
+
+
+def test_results_are_pickled(reversal, chain):
+    again = pickle.loads(pickle.dumps(reversal))
+    assert np.array_equal(again.spins, reversal.spins) and again.summary == reversal.summary
+    assert np.array_equal(again.saddles[0].spins, reversal.saddles[0].spins)
+    # and again, with all that belongs to it
+    again = pickle.loads(pickle.dumps(again))
+    assert again.plot().get_title() == reversal.plot().get_title()
+    found = pickle.loads(pickle.dumps(sn.rates(reversal, [4.0])))
+    assert found.lifetimes_s() > 0
+    assert pickle.loads(pickle.dumps(sn.skyrmion(radius=3))) == sn.skyrmion(radius=3)
+    assert pickle.loads(pickle.dumps(chain)).to_json() == chain.to_json()
+
+
+def test_a_band_is_told_of_as_ase_does(reversal, tmp_path):
+    tools = sn.NEBTools(reversal)
+    barrier, difference = tools.get_barrier()
+    assert barrier == pytest.approx(reversal.barrier_meV["forward"] * 1e-3) and abs(difference) < 1e-12
+    assert tools.get_barrier(fit=False)[0] == pytest.approx(reversal.above_initial_meV.max() * 1e-3)
+    assert tools.get_barrier(raw=True)[0] == pytest.approx(reversal.saddles[0].energy_meV * 1e-3)
+    reversal.save(tmp_path / "r", formats=["csv", "npz", "ovf"])
+    assert sn.NEBTools(tmp_path / "r").plot_band().axes
+
+
+def test_fields_of_ubermag_come_in_and_go_out():
+    df = pytest.importorskip("discretisedfield")
+    mesh = df.Mesh(p1=(0, 0, 0), p2=(20e-9, 12e-9, 3e-9), n=(5, 3, 1))
+    field = df.Field(mesh, nvdim=3, value=lambda r: (r[0], r[1], 5e-9), norm=8e5)
+    lattice, spins, norm = sn.from_field(field)
+    assert lattice["grid"]["cells"] == [5, 3, 1] and norm == pytest.approx(8e5)
+    # the first direction is the fastest
+    assert spins[1] == pytest.approx(field.array[1, 0, 0] / 8e5) and spins[5] == pytest.approx(field.array[0, 1, 0] / 8e5)
+    film = sn.System(lattice, [sn.exchange(A="13 pJ/m"), sn.anisotropy(K="500 kJ/m^3")], Ms=f"{norm} A/m")
+    result = sn.barrier(film, spins, sn.uniform("-z"), relax_ends=False, effort=None)
+    back = sn.to_field(result, 0, norm=norm)
+    assert np.allclose(back.array, field.array) and back.mesh.allclose(mesh)
