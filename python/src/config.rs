@@ -47,9 +47,16 @@ pub fn dictionary<'py>(py: Python<'py>, files: &[File]) -> PyResult<Bound<'py, P
 
 /// Puts files where the config's results go, with the care of the command line for what is there.
 pub fn save(loaded: &Loaded, dir: PathBuf, names: &[String], force: bool, files: &[File]) -> Result<(), Error> {
-    // the hash of a config does not tell of the functions of its terms
-    let force = force || !loaded.custom.is_empty();
-    let Some(_lock) = loaded.reserve(&dir, names, force)? else { return Ok(()) };
+    let mut force = force;
+    let _lock = match loaded.reserve(&dir, names, force)? {
+        Some(lock) => lock,
+        None => {
+            // a result of the same config, perhaps with other files, or other functions of its own terms
+            force = true;
+            let Some(lock) = loaded.reserve(&dir, names, force)? else { return Ok(()) };
+            lock
+        }
+    };
     let source = loaded.source_name();
     let new = NewResult { files, source: source.as_deref(), keep_earlier: !force, force };
     folder::write_result(&dir, &new)?;
@@ -141,7 +148,6 @@ impl Config {
 
     /// Sees that the files of a run can be written to a folder.
     fn reserve(&self, py: Python, dir: PathBuf, force: bool) -> PyResult<()> {
-        let force = force || !self.loaded.custom.is_empty();
         let reserved = self.loaded.reserve(&dir, &self.loaded.file_names(), force);
         reserved.map(|_| ()).map_err(|e| raised(py, e))
     }

@@ -85,8 +85,9 @@ def test_results_are_saved_and_loaded(reversal, tmp_path):
     assert np.array_equal(again.spins, reversal.spins)
     assert np.array_equal(again.saddles[0].spins, reversal.saddles[0].spins)
     assert again.summary == reversal.summary and again.config == reversal.config
-    # the same result again is left as it is; another one is refused
-    reversal.save(folder)
+    # the same result with other files takes its place; another one is refused
+    reversal.save(folder, formats=["csv", "npz", "ovf", "vtk"])
+    assert (folder / "path.pvd").exists() and not (folder / "report.html").exists()
     other = sn.System(sn.chain(10), [sn.exchange(J=["10 meV"]), sn.anisotropy(K="0.5 meV")], name="other")
     other = sn.barrier(other, sn.uniform("z"), sn.uniform("-z"))
     with pytest.raises((sn.SpinnebError, OSError)):

@@ -91,7 +91,7 @@ def _row(ax: Axes, m: Array, places: Array) -> None:
     x, m = x[::step], m[::step]
     span = max(float(np.ptp(x)), 1.0)
     # arrows in the plane of the chain and z, what points out of it by its colour
-    ax.quiver(x, 0 * x, m[:, 0], m[:, 2], color=colors(m), pivot="mid", units="width", scale=32, width=0.0045, edgecolor="0.3", linewidth=0.3)
+    ax.quiver(x, 0 * x, m[:, 0], m[:, 2], color=colors(m), pivot="mid", units="width", scale=float(np.clip(0.6 * len(x), 14, 45)), width=0.0045, edgecolor="0.3", linewidth=0.3)
     ax.set_xlim(x.min() - 0.03 * span, x.max() + 0.03 * span)
     ax.set_ylim(-1, 1)
     ax.set_yticks([])
