@@ -130,7 +130,8 @@ fn single_points_by_their_index_are_the_same_results_as_a_local_sweep() {
     assert!(said.contains("many: 1 of 3 points are done already"), "{said}");
     assert_eq!(table(array.path())[2][9], "missing");
     assert_eq!(spinneb(array.path(), &["sweep", "many.json", "--index", "4", "-q"]).0, Some(0));
-    for (wrong, said) in [("3-1", "smaller number first"), ("1-6", "there is no point 6"), ("a-2", "a point's number")] {
+    for (wrong, said) in [("3-1", "smaller number first"), ("1-6", "there is no point 6"), ("a-2", "a point's number")]
+    {
         let (code, _, told) = spinneb(array.path(), &["sweep", "many.json", "--index", wrong]);
         assert!(code == Some(2) && told.contains(said), "{told}");
     }

@@ -27,7 +27,11 @@ impl Buffer {
     }
 
     /// Configurations, component after component in memory, as (site, xyz), or (image, site, xyz) of several.
-    pub fn spins<T: Any + Send + Sync>(owner: &Arc<T>, slab: impl FnOnce(&T) -> &[f64], images: Option<usize>) -> Buffer {
+    pub fn spins<T: Any + Send + Sync>(
+        owner: &Arc<T>,
+        slab: impl FnOnce(&T) -> &[f64],
+        images: Option<usize>,
+    ) -> Buffer {
         let slice = slab(owner);
         let sites = slice.len() / (3 * images.unwrap_or(1));
         let (mut shape, mut strides) = (vec![sites, 3], vec![1, sites]);

@@ -14,8 +14,8 @@ use spinneb::drive::{self, relaxed_state};
 use spinneb::energy::{CustomEnergy, Evaluator};
 use spinneb::error::Error;
 use spinneb::files::disk::File;
-use spinneb::output::folder::{self, NewResult};
 use spinneb::output::RelaxReport;
+use spinneb::output::folder::{self, NewResult};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -116,9 +116,7 @@ impl Config {
     /// What it would run, in rows of a key and words.
     fn check(&self, py: Python) -> PyResult<Vec<(&'static str, String)>> {
         let loaded = self.loaded.clone();
-        supervised(py, Some(1), None, &self.trouble, move |_| {
-            Ok(spinneb::cli::report_of(&loaded, &loaded.problem()?))
-        })
+        supervised(py, Some(1), None, &self.trouble, move |_| Ok(spinneb::cli::report_of(&loaded, &loaded.problem()?)))
     }
 
     /// Sites as (site, xyz) in lattice constants; in a chain x is the number of the site.

@@ -17,7 +17,9 @@ fn exception(py: Python, name: &str, text: String) -> PyErr {
 /// `ConfigError` with the text of the command line, the system's own exception, or `SpinnebError`.
 pub fn raised(py: Python, error: Error) -> PyErr {
     match error {
-        Error::Several(_) | Error::Config { .. } | Error::Invalid { .. } => exception(py, "ConfigError", error.to_string()),
+        Error::Several(_) | Error::Config { .. } | Error::Invalid { .. } => {
+            exception(py, "ConfigError", error.to_string())
+        }
         Error::Io { source, path } if source.raw_os_error().is_some() => {
             // the system's number makes it FileNotFoundError, PermissionError …
             let number = source.raw_os_error();

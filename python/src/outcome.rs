@@ -166,7 +166,10 @@ fn asking_for(loaded: &Loaded, kinds: Option<Vec<String>>) -> Result<Loaded, Err
         let known: Vec<&str> = KINDS.iter().filter(|kind| kind.group != Group::Always).map(|kind| kind.name).collect();
         let unknown = |list: &Vec<String>| list.iter().find(|kind| !known.contains(&kind.as_str())).cloned();
         if let Some(kind) = unknown(&formats) {
-            return Err(Error::invalid("formats", format!("unknown kind {kind:?} (known kinds: {})", known.join(", "))));
+            return Err(Error::invalid(
+                "formats",
+                format!("unknown kind {kind:?} (known kinds: {})", known.join(", ")),
+            ));
         }
         loaded.config.output = OutputConfig { formats, plots, ..loaded.config.output };
     }

@@ -90,7 +90,8 @@ pub fn supervised<T: Send + 'static>(
     let done = py.detach(|| worker.join());
     heard?;
     trouble.raise()?;
-    let done = done.map_err(|_| raised(py, Error::Numerical("the computation broke off: this is a fault of spinneb".into())))?;
+    let done =
+        done.map_err(|_| raised(py, Error::Numerical("the computation broke off: this is a fault of spinneb".into())))?;
     done.map_err(|e| raised(py, e))
 }
 

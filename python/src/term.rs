@@ -47,7 +47,11 @@ impl Term {
             (true, _) => Reach::Unknown,
             (_, Ok(number)) => Reach::Within(number),
             _ if reach.extract::<String>()? == "dense" => Reach::All,
-            _ => return Err(PyValueError::new_err(format!("reach is a number of sites, \"dense\" or None, found {reach}"))),
+            _ => {
+                return Err(PyValueError::new_err(format!(
+                    "reach is a number of sites, \"dense\" or None, found {reach}"
+                )));
+            }
         };
         Ok(Term {
             name: own.getattr("name")?.extract()?,
