@@ -1,27 +1,23 @@
 //! The lowest eigenvalues of a matrix: slice by slice, or by block Lanczos on the inverse; those of a matrix that is factorised
 //! already by the latter alone.
 
-use super::ritz::{APART, Mode, combination, rayleigh_ritz};
+use super::krylov::{Krylov, MOST, Modes};
+use super::ritz::{APART, Mode, rayleigh_ritz};
 use super::slices::sliced;
-use super::{Factors, Matrix, eigen_symmetric, slab};
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use super::together::together;
+use super::{Factors, Matrix};
 
 /// Vectors in a block: as many as modes are often degenerate, and for the rare case in which that was too few.
 const BLOCKS: [usize; 2] = [2, 4];
-/// A vector with |A⁻¹v − θv| ≤ this part of θ is an eigenvector: its eigenvalue is right to the square of it.
-const RESIDUAL: f64 = 1e-6;
-/// Most vectors; most from the factors of the matrix itself, whose modes may be far from zero.
-const MOST: usize = 160;
+/// Most vectors from the factors of the matrix itself, whose modes may be far from zero.
 const MOST_AS_IT_IS: usize = 60;
 
 /// The `count` lowest modes of `matrix` in the space orthogonal to `known` (orthonormal vectors, invariant under it),
 /// ascending. Fewer where the space is smaller. Deterministic.
 ///
 /// By Rayleigh-quotient iteration in brackets that the inertia gives (see `slices`); where a factorisation is dear, block Lanczos on
-/// (A + s·1)⁻¹ with full orthogonalisation: blocks of a few vectors, so that degenerate modes are all found, until the wanted vectors
-/// are eigenvectors (Golub, Underwood, Mathematical Software III, 361 (1977), doi:10.1016/B978-0-12-587260-7.50018-2). The inertia
-/// tells whether one was missed; then the blocks become larger. Either way takes the other's place where that does not arrive.
+/// (A − s)⁻¹ (see `together`). The inertia tells whether one was missed. Either way takes the other's place where that does not
+/// arrive.
 pub fn lowest_modes(matrix: &Matrix, count: usize, known: &[Vec<f64>]) -> Vec<Mode> {
     soft_modes(matrix, count, known, f64::INFINITY)
 }
@@ -38,8 +34,8 @@ pub fn soft_modes(matrix: &Matrix, count: usize, known: &[Vec<f64>], below: f64)
     let slices = || sliced(matrix, count, known, below);
     let found = match matrix {
         Matrix::Tail(_) => None,
-        Matrix::Sparse(sparse) if sparse.is_dear() => {
-            let (modes, complete) = lanczos(matrix, count, known, below);
+        _ if matrix.is_dear() => {
+            let (modes, complete) = together(matrix, known, Modes { count, below });
             if complete { Some(modes) } else { slices().or(Some(modes)) }
         }
         _ => slices(),
@@ -59,11 +55,10 @@ pub fn modes_by_factors(
     let negatives = factors.negatives();
     let mut krylov = Krylov::new(factors, known, 1);
     (krylov.starts, krylov.passes) = (starts, 1);
-    let room = factors.order() - known.len();
     let mut look = 2 * negatives + 4;
     loop {
-        let last = !krylov.grow(room) || krylov.basis.len() >= MOST_AS_IT_IS;
-        if last || krylov.basis.len() >= look {
+        let last = !krylov.grow() || krylov.is_full(MOST_AS_IT_IS);
+        if last || krylov.is_full(look) {
             let found = krylov.negative(negatives, part);
             if last || found.is_some() {
                 return found;
@@ -75,7 +70,6 @@ pub fn modes_by_factors(
 
 /// Some of the `count` lowest modes, at least one, by block Lanczos; and whether they are eigenvectors, none missed.
 fn lanczos(matrix: &Matrix, count: usize, known: &[Vec<f64>], below: f64) -> (Vec<Mode>, bool) {
-    let room = matrix.order() - known.len();
     let scale = matrix.norm1().max(1e-280);
     let shift = shift_below(matrix, scale);
     let mut shifted = matrix.clone();
@@ -84,7 +78,7 @@ fn lanczos(matrix: &Matrix, count: usize, known: &[Vec<f64>], below: f64) -> (Ve
     let mut modes = Vec::new();
     for block in BLOCKS {
         let mut krylov = Krylov::new(&factors, known, block);
-        let (space, settled) = krylov.largest(room, count, 1.0 / (below + shift));
+        let (space, settled) = krylov.largest(Modes { count, below: below + shift }, MOST);
         modes = rayleigh_ritz(matrix, &space);
         if none_is_missed(matrix, &modes, known, scale) {
             return (modes, settled);
@@ -94,151 +88,13 @@ fn lanczos(matrix: &Matrix, count: usize, known: &[Vec<f64>], below: f64) -> (Ve
 }
 
 /// Whether no eigenvalue below the last of these modes was left out.
-fn none_is_missed(matrix: &Matrix, modes: &[Mode], known: &[Vec<f64>], scale: f64) -> bool {
+pub(super) fn none_is_missed(matrix: &Matrix, modes: &[Mode], known: &[Vec<f64>], scale: f64) -> bool {
     let Some(last) = modes.last().filter(|_| modes.len() > 1) else { return true };
     let below = last.value - APART * scale;
     let mut shifted = matrix.clone();
     shifted.shift(-below);
     let counted = rayleigh_ritz(matrix, known).iter().chain(modes).filter(|mode| mode.value < below).count();
     shifted.factor().negatives() <= counted
-}
-
-/// The space that the inverse spans from a block, and the inverse within it.
-struct Krylov<'a> {
-    factors: &'a Factors,
-    known: &'a [Vec<f64>],
-    block: usize,
-    /// What the block is made of first; where that is too few, of anything.
-    starts: Vec<Vec<f64>>,
-    /// How often a vector is made orthogonal to those before it.
-    passes: usize,
-    random: ChaCha8Rng,
-    /// Orthonormal.
-    basis: Vec<Vec<f64>>,
-    /// A⁻¹ of each.
-    images: Vec<Vec<f64>>,
-    /// basis · images, the lower half, row after row (the inverse is symmetric).
-    products: Vec<Vec<f64>>,
-}
-
-impl<'a> Krylov<'a> {
-    fn new(factors: &'a Factors, known: &'a [Vec<f64>], block: usize) -> Krylov<'a> {
-        let (starts, random) = (Vec::new(), ChaCha8Rng::seed_from_u64(0x5eed));
-        let (basis, images, products) = (Vec::new(), Vec::new(), Vec::new());
-        Krylov { factors, known, block, starts, passes: 2, random, basis, images, products }
-    }
-
-    /// The `count` eigenvectors to which the inverse is largest, orthonormal, but for the first only those to which it is more
-    /// than `least`, in a space of `room` dimensions; and whether they are that.
-    fn largest(&mut self, room: usize, count: usize, least: f64) -> (Vec<Vec<f64>>, bool) {
-        let mut look = count + 2 * self.block;
-        loop {
-            let last = !self.grow(room) || self.basis.len() >= MOST;
-            if last || self.basis.len() >= look {
-                if let Some(vectors) = self.settled(count, least, false) {
-                    return (vectors, true);
-                }
-                if last {
-                    let all = self.basis.len() == room;
-                    return (self.settled(count, least, true).unwrap_or_default(), all);
-                }
-                // looking costs the cube of the size
-                look = look * 4 / 3;
-            }
-        }
-    }
-
-    /// One block more, of a space of `room` dimensions; whether there was room.
-    fn grow(&mut self, room: usize) -> bool {
-        let (old, last) = (self.basis.len(), self.images.len().saturating_sub(self.block));
-        let wanted = self.block.min(room.saturating_sub(old));
-        for k in 0..wanted {
-            let next = match self.images.get(last + k) {
-                Some(image) if old > 0 => image.clone(),
-                _ => self.starts.pop().unwrap_or_else(|| self.anything()),
-            };
-            if let Some(v) = self.new_direction(next) {
-                self.basis.push(v);
-            }
-        }
-        for k in old..self.basis.len() {
-            let mut image = self.basis[k].clone();
-            self.factors.solve(&mut image, 1);
-            self.products.push(slab::overlaps(&self.basis[..=k], &image));
-            self.images.push(image);
-        }
-        self.basis.len() > old
-    }
-
-    fn anything(&mut self) -> Vec<f64> {
-        (0..self.factors.order()).map(|_| self.random.random_range(-1.0..1.0)).collect()
-    }
-
-    /// The part of `v` that is new, or of something random where nothing is.
-    fn new_direction(&mut self, mut v: Vec<f64>) -> Option<Vec<f64>> {
-        for _ in 0..4 {
-            let size = slab::norm(&v);
-            slab::scale(&mut v, 1.0 / size.max(f64::MIN_POSITIVE));
-            for _ in 0..self.passes {
-                for space in [self.known, &self.basis] {
-                    slab::without(&mut v, space);
-                }
-            }
-            let rest = slab::norm(&v);
-            if rest > 1e-10 {
-                slab::scale(&mut v, 1.0 / rest);
-                return Some(v);
-            }
-            v = self.anything();
-        }
-        None
-    }
-
-    fn projected(&self) -> Vec<f64> {
-        let k = self.basis.len();
-        (0..k * k).map(|e| self.products[(e / k).max(e % k)][(e / k).min(e % k)]).collect()
-    }
-
-    /// The `count` vectors to which the inverse is largest, orthonormal, if they are eigenvectors, or at `last`; but for the
-    /// first only those to which it is more than `least`.
-    fn settled(&self, count: usize, least: f64, last: bool) -> Option<Vec<Vec<f64>>> {
-        let (values, weights) = eigen_symmetric(&self.projected(), self.basis.len());
-        let mut vectors = Vec::with_capacity(count);
-        for (theta, w) in values.iter().zip(&weights).rev().take(count) {
-            if !vectors.is_empty() && *theta < least {
-                break;
-            }
-            let v = combination(w, &self.basis);
-            if !last && !self.is_eigenvector(*theta, w, &v, RESIDUAL) {
-                return None;
-            }
-            vectors.push(v);
-        }
-        Some(vectors)
-    }
-
-    /// The `count` vectors to which the inverse is negative, nearest zero first, if they are eigenvectors to this part of their
-    /// values; where none are, the one to which it is largest.
-    fn negative(&self, count: usize, part: f64) -> Option<Vec<Vec<f64>>> {
-        let (values, weights) = eigen_symmetric(&self.projected(), self.basis.len());
-        let wanted = if count == 0 { values.len().checked_sub(1)?..values.len() } else { 0..count };
-        if wanted.end > values.len() || values[wanted.end - 1] > 0.0 && count > 0 {
-            return None;
-        }
-        let vector = |k: usize| {
-            let v = combination(&weights[k], &self.basis);
-            self.is_eigenvector(values[k], &weights[k], &v, part).then_some(v)
-        };
-        wanted.rev().map(vector).collect()
-    }
-
-    /// Whether v = Σ w_k b_k is an eigenvector of the inverse, to a part of its eigenvalue θ.
-    fn is_eigenvector(&self, theta: f64, w: &[f64], v: &[f64], part: f64) -> bool {
-        let mut rest = combination(w, &self.images);
-        slab::add_scaled(&mut rest, -theta, v);
-        slab::without(&mut rest, self.known);
-        slab::norm(&rest) <= part * theta.abs()
-    }
 }
 
 /// s with A + s·1 positive definite and its lowest eigenvalue small beside that of A: halves an interval by the inertia.
@@ -278,12 +134,16 @@ fn shift_below(matrix: &Matrix, scale: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linalg::Banded;
+    use crate::linalg::{Banded, slab};
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
 
-    /// By slices and by Lanczos, with and without the other's help.
-    fn all_ways(matrix: &Matrix, count: usize, known: &[Vec<f64>]) -> [Vec<Mode>; 3] {
+    /// By slices and by Lanczos, far from the modes and near them, with and without the other's help.
+    fn all_ways(matrix: &Matrix, count: usize, known: &[Vec<f64>]) -> [Vec<Mode>; 4] {
         let slices = sliced(matrix, count, known, f64::INFINITY).expect("slices converge");
-        [slices, lanczos(matrix, count, known, f64::INFINITY).0, lowest_modes(matrix, count, known)]
+        let (near, complete) = together(matrix, known, Modes { count, below: f64::INFINITY });
+        assert!(complete);
+        [slices, lanczos(matrix, count, known, f64::INFINITY).0, near, lowest_modes(matrix, count, known)]
     }
 
     #[test]

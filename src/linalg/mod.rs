@@ -8,6 +8,7 @@ mod double_double;
 mod factors;
 mod fft;
 mod general;
+mod krylov;
 mod layout;
 mod ldl;
 mod logarithms;
@@ -22,6 +23,7 @@ mod small;
 mod sparse;
 mod tail;
 mod tail_ldl;
+mod together;
 mod tridiagonal;
 mod twisted;
 

@@ -13,7 +13,7 @@ use super::pinned::Pinned;
 use super::polish::polish;
 use super::state::State;
 use crate::energy::Evaluator;
-use crate::linalg::{Mode, lowest_modes, slab};
+use crate::linalg::{Mode, lowest_modes, slab, soft_modes};
 use crate::linalg::{orthonormal, remove};
 use crate::path::{distance, largest_angle};
 use crate::sphere::rotation_of;
@@ -170,11 +170,13 @@ impl Search<'_> {
         Pinned::new(&self.state, &t, self.shift, &[], self.kappa)
     }
 
-    /// Modes of the complement of the soft mode and the zero modes, lowest first.
-    fn complement(&self, p: &Pinned, count: usize) -> Vec<Mode> {
+    /// Modes of the complement of the soft mode and the zero modes, lowest first, those below a limit.
+    fn complement(&self, p: &Pinned, count: usize, below: f64) -> Vec<Mode> {
         let mut known = p.zeros().to_vec();
         known.push(p.soft().to_vec());
-        let modes = lowest_modes(&self.state.hessian, count, p.zeros());
+        // where factors are dear, so are modes that nothing is done with
+        let below = if self.state.hessian.is_dear() { below } else { f64::INFINITY };
+        let modes = soft_modes(&self.state.hessian, count, p.zeros(), below);
         let rest = modes.into_iter().map(|mut m| {
             remove(&mut m.vector, &known);
             m.vector
@@ -189,8 +191,8 @@ impl Search<'_> {
             return false;
         }
         self.freezes += 1;
-        let modes = self.complement(p, 5);
         let flat = 1e-4 * self.c;
+        let modes = self.complement(p, 5, flat);
         if modes.first().is_none_or(|m| m.value <= -flat) {
             return false;
         }
@@ -356,7 +358,7 @@ impl Search<'_> {
         if self.kicks >= 2 {
             return Next::Stop(Verdict::HigherIndex);
         }
-        let modes = self.complement(p, 6);
+        let modes = self.complement(p, 6, 0.0);
         match modes.first() {
             Some(lowest) if lowest.value < -1e-9 * self.c => {
                 let mut v = self.state.field(&lowest.vector);

@@ -1,0 +1,82 @@
+//! The lowest modes of a matrix whose factors are dear, all of them by few factors.
+//!
+//! ```text
+//! θ = uᵀAu,  ρ = |Au − θu|,   s = θ − ρ:   block Lanczos on (A − s)⁻¹
+//! ```
+//! The inertia of A − s proves that no eigenvalue lies below s. The nearer s is to the lowest one, the fewer vectors the modes take: so
+//! the space of a few gives the next s, where that is much nearer. (Parlett, "The Symmetric Eigenvalue Problem", SIAM 1998,
+//! doi:10.1137/1.9781611971163, §§4.5, 4.6.)
+
+use super::krylov::{Krylov, MOST, Modes};
+use super::lowest::none_is_missed;
+use super::ritz::{Mode, rayleigh_ritz};
+use super::{Matrix, remove, slab};
+
+/// Most factorisations.
+const ROUNDS: usize = 24;
+/// The first s is below zero by this part of the matrix's size.
+const FAR: f64 = 1e-3;
+/// s is below the lowest eigenvalue by at least this part, so that the inverse tells the modes above that one from rounding.
+const APART: f64 = 1e-6;
+/// Vectors of a block more than there are modes to begin with: as many as modes are often degenerate.
+const SPARE: usize = 2;
+/// Blocks before a nearer s is looked for, and how much nearer it must be.
+const BLOCKS: usize = 4;
+const NEARER: f64 = 0.5;
+
+/// The wanted modes of `matrix` in the space orthogonal to `known` (orthonormal, invariant); and whether they are those, none missed.
+pub(super) fn together(matrix: &Matrix, known: &[Vec<f64>], wanted: Modes) -> (Vec<Mode>, bool) {
+    let scale = matrix.norm1().max(1e-280);
+    let known_values: Vec<f64> = known.iter().map(|k| quotient(matrix, k, &[]).0).collect();
+    let mut modes: Vec<Mode> = Vec::new();
+    // no eigenvalue below the one, some below the other
+    let (mut low, mut high, mut down) = (f64::NEG_INFINITY, f64::INFINITY, FAR * scale);
+    let (mut shift, mut memory) = (-down, Matrix::default());
+    for _ in 0..ROUNDS {
+        memory.copy_from(matrix);
+        memory.shift(-shift);
+        let factors = memory.factor();
+        if factors.negatives() > known_values.iter().filter(|v| **v < shift).count() {
+            high = shift;
+            shift = if low.is_finite() { 0.5 * (low + high) } else { high - down };
+            down *= 4.0;
+            memory = factors.into_memory();
+            continue;
+        }
+        low = shift;
+        let mut krylov = Krylov::new(&factors, known, SPARE + modes.len());
+        krylov.starts = modes.iter().map(|mode| mode.vector.clone()).collect();
+        let mut most = (BLOCKS + 1) * (SPARE + wanted.count);
+        loop {
+            let (space, settled) = krylov.largest(Modes { below: wanted.below - low, ..wanted }, most);
+            modes = rayleigh_ritz(matrix, &space);
+            let complete = settled && none_is_missed(matrix, &modes, known, scale);
+            let Some(first) = modes.first().filter(|_| !complete && !krylov.is_full(MOST)) else {
+                return (modes, complete);
+            };
+            if settled {
+                // more are degenerate than the block has vectors: the next one has more
+                shift = low;
+                break;
+            }
+            let (theta, rest) = quotient(matrix, &first.vector, known);
+            shift = theta - rest.max(APART * scale);
+            if shift < high && theta - shift < NEARER * (theta - low) {
+                break;
+            }
+            most = (2 * most).min(MOST);
+        }
+        memory = factors.into_memory();
+    }
+    (modes, false)
+}
+
+/// uᵀAu and the size of what else Au has, known vectors apart.
+fn quotient(matrix: &Matrix, u: &[f64], known: &[Vec<f64>]) -> (f64, f64) {
+    let mut image = vec![0.0; u.len()];
+    matrix.multiply(u, &mut image);
+    let theta = slab::dot(u, &image);
+    slab::add_scaled(&mut image, -theta, u);
+    remove(&mut image, known);
+    (theta, slab::norm(&image))
+}
