@@ -81,9 +81,22 @@ def hint(schema: dict[str, Any], part: Any) -> str:
     return " | ".join(one(kind) for kind in kinds if kind != "null")
 
 
+def given(schema: dict[str, Any], part: Any, arg: str) -> str:
+    """The expression for an argument as it is passed on."""
+    if takes_direction(schema, part):
+        return f"as_direction({arg})"
+    return f"as_list({arg})" if hint(schema, part) == "Sequence[Values]" else arg
+
+
 def takes_direction(schema: dict[str, Any], part: Any) -> bool:
     """Whether "z" may stand for [0, 0, 1]."""
     return "Direction" in hint(schema, part)
+
+
+def annotation(schema: dict[str, Any], part: Any) -> str:
+    """The type of an argument; of a list of quantities one alone may be given."""
+    found = hint(schema, part)
+    return "Values" if found == "Sequence[Values]" else found
 
 
 def argument(name: str) -> str:
@@ -129,17 +142,15 @@ def function(schema: dict[str, Any], choice: dict[str, Any], made: str) -> str:
                 signature.insert(0, "*cells: int")
                 entries.insert(0, '"cells": list(cells)')
             else:
-                value = f"as_direction({arg})" if takes_direction(schema, keys[key]) else arg
-                signature.append(f"{arg}: {hint(schema, keys[key])}" + (f" = {default}" if default else ""))
-                entries.append(f'"{key}": {value}')
+                signature.append(f"{arg}: {annotation(schema, keys[key])}" + (f" = {default}" if default else ""))
+                entries.append(f'"{key}": {given(schema, keys[key], arg)}')
             told.append((arg, meaning(schema, keys[key])))
         if others and not any(s.startswith("*") for s in signature):
             signature.append("*")
         for key in others:
             arg = argument(key)
-            value = f"as_direction({arg})" if takes_direction(schema, keys[key]) else arg
-            signature.append(f"{arg}: {hint(schema, keys[key])} | None = None")
-            entries.append(f'"{key}": {value}')
+            signature.append(f"{arg}: {annotation(schema, keys[key])} | None = None")
+            entries.append(f'"{key}": {given(schema, keys[key], arg)}')
             told.append((arg, meaning(schema, keys[key])))
         if isinstance(own.get("additionalProperties"), dict):
             signature = [s for s in signature if s != "*"] + [f"**regions: {hint(schema, own['additionalProperties'])}"]
@@ -168,7 +179,7 @@ def module(schema: dict[str, Any], family: str, made: str, title: str) -> str:
     names = [argument(next(iter(choice["properties"]))) for choice in choices]
     body = "\n\n\n".join(functions)
     words = {"Literal", "Sequence", "Mapping", "Any", "ArrayLike", "Direction", "Extent", "Selection", "Shape", "State", "Values"}
-    used = sorted(word for word in words | {made, "as_direction"} if word in body)
+    used = sorted(word for word in words | {made, "as_direction", "as_list"} if word in body)
     own = [w for w in used if w not in ("Literal", "Sequence", "Mapping", "Any", "ArrayLike")]
     typing = [w for w in ("Any", "Literal") if w in used]
     abc = [w for w in ("Mapping", "Sequence") if w in used]

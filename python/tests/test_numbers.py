@@ -149,6 +149,7 @@ def test_every_part_of_a_config_can_be_written_by_a_builder():
 
 def test_pieces_show_themselves_as_they_are_written():
     assert sn.uniform("-z") == {"uniform": {"direction": [0, 0, -1]}}
+    assert sn.exchange(J="10 meV") == sn.exchange(J=["10 meV"])
     assert repr(sn.exchange(J=["10 meV"])) == "exchange(J=['10 meV'])"
     assert sn.triangular(4, 5, periodic=True) == {"triangular": {"cells": [4, 5], "periodic": True}}
     assert (sn.shapes.disc(3) & ~sn.shapes.disc(1)) == {"all": [{"disc": {"radius": 3}}, {"not": {"disc": {"radius": 1}}}]}

@@ -1,5 +1,6 @@
 """Types, stubs, builders and notebooks are what they should be."""
 
+import doctest
 import subprocess
 import sys
 from pathlib import Path
@@ -26,6 +27,10 @@ spins: np.ndarray = result.saddles[0].spins
 
 def run(*arguments):
     return subprocess.run([sys.executable, "-m", *map(str, arguments)], capture_output=True, text=True, cwd=HERE)
+
+
+def test_the_example_of_the_package_is_right():
+    assert doctest.testmod(spinneb) == (0, 5)
 
 
 def test_builders_are_those_of_the_schema():

@@ -33,6 +33,11 @@ def as_direction(value: Any) -> Any:
     return value
 
 
+def as_list(value: Any) -> Any:
+    """A quantity alone as a list of one."""
+    return [value] if isinstance(value, str) else value
+
+
 def plain(value: Any) -> Any:
     """The value as JSON has it: arrays as lists, numbers of numpy as numbers, paths as text."""
     if isinstance(value, Mapping):

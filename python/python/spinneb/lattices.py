@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ._values import Direction, Lattice, Selection, Shape, Values, as_direction
+from ._values import Direction, Lattice, Selection, Shape, Values, as_direction, as_list
 
 __all__ = [
     "chain",
@@ -28,7 +28,7 @@ __all__ = [
 def chain(
     sites: int,
     *,
-    cross_section: Sequence[Values] | None = None,
+    cross_section: Values | None = None,
     direction: Direction | None = None,
     frozen: Sequence[Mapping[str, Any]] | None = None,
     moments: Sequence[Mapping[str, Any]] | None = None,
@@ -66,7 +66,7 @@ def chain(
 
     In a config: ``{"chain": {"sites": 100, "spacing": "0.25 nm"}}``
     """
-    return Lattice("chain", {"sites": sites, "cross_section": cross_section, "direction": as_direction(direction), "frozen": frozen, "moments": moments, "periodic": periodic, "regions": regions, "sections": sections, "spacing": spacing, "vacant": vacant})
+    return Lattice("chain", {"sites": sites, "cross_section": as_list(cross_section), "direction": as_direction(direction), "frozen": frozen, "moments": moments, "periodic": periodic, "regions": regions, "sections": sections, "spacing": spacing, "vacant": vacant})
 
 
 def square(

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, Literal
 
-from ._values import Direction, Energy, Selection, Values, as_direction
+from ._values import Direction, Energy, Selection, Values, as_direction, as_list
 
 __all__ = [
     "exchange",
@@ -27,7 +27,7 @@ __all__ = [
 def exchange(
     *,
     A: Values | None = None,
-    J: Sequence[Values] | None = None,
+    J: Values | None = None,
     J_area: Values | None = None,
     between: Sequence[Selection] | None = None,
     bonds: Selection | None = None,
@@ -53,7 +53,7 @@ def exchange(
 
     In a config: ``{"exchange": {"J": ["10 meV", "-1 meV"]}}``
     """
-    return Energy("exchange", {"A": A, "J": J, "J_area": J_area, "between": between, "bonds": bonds, "sites": sites})
+    return Energy("exchange", {"A": A, "J": as_list(J), "J_area": J_area, "between": between, "bonds": bonds, "sites": sites})
 
 
 def anisotropy(
