@@ -35,9 +35,9 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 /// Exit code of a command line or config that is wrong.
-pub const USAGE: u8 = 2;
+pub(crate) const USAGE: u8 = 2;
 /// Exit code of a run that finished without a converged result.
-pub const UNFINISHED: u8 = 3;
+pub(crate) const UNFINISHED: u8 = 3;
 
 /// Arguments → configs → runs → results: does what a command line asks for, without the name of the program, and returns its exit
 /// code. `program` is the command, with the arguments that come first, that starts this program again.
@@ -72,7 +72,7 @@ pub fn main(program: &[OsString], arguments: impl IntoIterator<Item = OsString>)
 /// Minimum-energy paths, barriers and saddles of spin chains
 #[derive(Debug, Parser)]
 #[command(name = "spinneb", version, arg_required_else_help = true, after_help = EXAMPLES)]
-pub struct Cli {
+pub(crate) struct Cli {
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
@@ -96,7 +96,7 @@ Exit codes:
 
 /// The subcommands.
 #[derive(Debug, Subcommand)]
-pub enum Command {
+pub(crate) enum Command {
     /// Find the minimum-energy path of each config and write its results
     Run(Run),
     /// Relax the states of configs: energy, torque, minimum or not, lowest modes, zero modes
@@ -131,7 +131,7 @@ pub enum Command {
 Examples:
   spinneb init
   spinneb init nanowire --out wires/first.json")]
-pub struct Init {
+pub(crate) struct Init {
     /// Which config to start from
     #[arg(value_enum, default_value = "chain")]
     pub template: start::Template,
@@ -152,7 +152,7 @@ Examples:
   spinneb completions bash > ~/.local/share/bash-completion/completions/spinneb
   spinneb completions fish > ~/.config/fish/completions/spinneb.fish
   spinneb completions zsh > ~/.zfunc/_spinneb")]
-pub struct Completions {
+pub(crate) struct Completions {
     /// For which shell
     #[arg(value_enum)]
     pub shell: clap_complete::Shell,
@@ -164,7 +164,7 @@ pub struct Completions {
 Examples:
   spinneb man > ~/.local/share/man/man1/spinneb.1
   spinneb man run | man -l -")]
-pub struct Man {
+pub(crate) struct Man {
     /// The command to tell of; all of them in short if left out
     #[arg(value_name = "COMMAND")]
     pub command: Option<String>,
@@ -178,7 +178,7 @@ Examples:
   spinneb run wall.json --set path.images=41 --set 'energy[0].anisotropy.K=\"-0.3 meV\"' --out results/strong
   spinneb run configs/*.json --json --quiet > summaries.jsonl
   spinneb run long.json --resume")]
-pub struct Run {
+pub(crate) struct Run {
     /// Configs to run, one after the other
     #[arg(required = true, value_name = "CONFIG")]
     pub configs: Vec<PathBuf>,
@@ -232,7 +232,7 @@ Examples:
   spinneb check wall.json
   spinneb check configs/*.json
   spinneb check wall.json --set lattice.chain.sites=500")]
-pub struct Check {
+pub(crate) struct Check {
     /// Configs to check
     #[arg(required = true, value_name = "CONFIG")]
     pub configs: Vec<PathBuf>,
@@ -251,7 +251,7 @@ the result are written again, with its rates.
 Examples:
   spinneb rate results/wall --temperature \"300 K\"
   spinneb rate results/* --temperature \"4 K\" --temperature \"77 K\" --damping 0.05 --theory langer")]
-pub struct Rate {
+pub(crate) struct Rate {
     /// Folders with finished results
     #[arg(required = true, value_name = "RESULT_DIR")]
     pub results: Vec<PathBuf>,
@@ -287,7 +287,7 @@ pub struct Rate {
 
 /// The time between checkpoints; none where there are to be none.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Interval(pub Option<Duration>);
+pub(crate) struct Interval(pub Option<Duration>);
 
 /// What it is if nothing is said.
 const EVERY: &str = "30 s";
@@ -338,7 +338,7 @@ Examples:
   spinneb plot results/wall
   spinneb plot results/wall --style dark --width 120 --out talk
   spinneb plot results/weak results/strong --labels \"K = 0.2 meV,K = 0.5 meV\" --out comparison.svg")]
-pub struct Plot {
+pub(crate) struct Plot {
     /// Folders with finished results
     #[arg(required = true, value_name = "RESULT_DIR")]
     pub results: Vec<PathBuf>,
@@ -380,7 +380,7 @@ Examples:
   spinneb list optimisers
   spinneb list states domain_wall
   spinneb list materials fept")]
-pub struct List {
+pub(crate) struct List {
     /// What to list; everything if left out
     #[arg(value_enum)]
     pub what: Option<What>,
@@ -391,7 +391,7 @@ pub struct List {
 
 /// How long is looked for lower passes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Looking {
+pub(crate) enum Looking {
     /// Not at all
     None,
     /// Until 8 searches in a row brought no news
@@ -404,7 +404,7 @@ pub enum Looking {
 
 impl Looking {
     /// As `--set` has it, in a block of the config.
-    pub fn setting(self, block: &str) -> String {
+    pub(crate) fn setting(self, block: &str) -> String {
         let word = self.to_possible_value().map(|value| value.get_name().to_string()).unwrap_or_default();
         format!("{block}.effort=\"{word}\"")
     }
@@ -412,7 +412,7 @@ impl Looking {
 
 /// What can be listed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum What {
+pub(crate) enum What {
     /// Energy terms: exchange, anisotropy, fields
     Terms,
     /// Lattices of sites
@@ -430,7 +430,7 @@ pub enum What {
 }
 
 /// Prints an error on stderr and says with which code to exit.
-pub fn report(error: &anyhow::Error) -> u8 {
+pub(crate) fn report(error: &anyhow::Error) -> u8 {
     // A reader that has seen enough (`spinneb list | head -1`) is no error.
     if error.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == ErrorKind::BrokenPipe) {
         return 0;
@@ -451,13 +451,13 @@ pub fn report(error: &anyhow::Error) -> u8 {
 }
 
 /// The worse of two exit codes: 0 is better than 3 (not converged), then 2 (usage), then 1 (anything else).
-pub fn worse(a: u8, b: u8) -> u8 {
+pub(crate) fn worse(a: u8, b: u8) -> u8 {
     let rank = |code: u8| [0, UNFINISHED, USAGE].iter().position(|c| *c == code).unwrap_or(3);
     if rank(b) > rank(a) { b } else { a }
 }
 
 /// A line on stderr. There is nowhere to say that it cannot be written.
-pub fn note(line: &str) {
+pub(crate) fn note(line: &str) {
     let _ = writeln!(io::stderr(), "{line}");
 }
 
