@@ -1,9 +1,9 @@
 //! Langer's rates against spins that are seen to escape: `cargo bench --bench dynamics`.
 //!
 //! Three problems at barriers from 4 k_BT on: one spin with an easy and a hard axis (also the lowest eigenvalue of its Fokker–Planck
-//! equation), a chain of ten spins that reverses by a wall from one of its ends, and a skyrmion that
-//! collapses and slides over a periodic film. Rates by forward flux (`spinneb::dynamics`), at the lowest barrier also by waiting for escapes. Times
-//! are in units of μ/γ per meV. The table and a figure go to `results/gallery/11_langer_by_dynamics/`. With the word `quick` after
+//! equation), a chain of ten spins that reverses in a field by a wall from one of its ends, and a skyrmion that
+//! collapses and slides over a periodic film. Rates by forward flux (`spinneb::dynamics`), at the lowest barrier of the first two also by waiting for escapes. Times
+//! are in units of μ/γ per meV. The table and a figure go to `results/gallery/dynamics/`. With the word `quick` after
 //! `--` little is simulated.
 
 #[allow(dead_code, unused_imports)]
@@ -19,7 +19,7 @@ use spinneb::units::{HBAR, K_B};
 use std::fmt::Write;
 use std::path::Path;
 
-const FOLDER: &str = "results/gallery/11_langer_by_dynamics";
+const FOLDER: &str = "results/gallery/dynamics";
 
 /// A problem, and how its escapes are looked at.
 struct Case {
@@ -31,13 +31,14 @@ struct Case {
     barriers: &'static [f64],
     /// Grows from A to the other side, from all m_z.
     order: fn(&[f64]) -> f64,
-    /// λ from A to the other side as fractions of the way, but for the first ones, which go with the fluctuations in A.
+    /// How many λ there are beyond the first one, and what part of the way to the other side the last one is.
     interfaces: usize,
+    reach: f64,
     /// Time step.
     step: f64,
     /// Crossings and trials of a block, and blocks.
     amount: [usize; 2],
-    /// Escapes that are waited for at the lowest barrier.
+    /// Escapes that are waited for at the lowest barrier; none where that would take too long.
     escapes: usize,
 }
 
@@ -52,6 +53,7 @@ const CASES: [Case; 3] = [
         barriers: &[4.0, 6.0, 8.0, 10.0, 12.0],
         order: |z| -mean(z),
         interfaces: 12,
+        reach: 0.8,
         step: 0.01,
         amount: [1000, 24],
         escapes: 2000,
@@ -59,14 +61,15 @@ const CASES: [Case; 3] = [
     Case {
         name: "ten spins, a wall",
         config: r#"{"material": {"name": "ten spins", "moment": "1 mu_B", "energy": [{"exchange": {"J": ["1 meV"]}},
-            {"anisotropy": {"K": "0.15 meV", "axis": [0, 0, 1]}}, {"anisotropy": {"K": "-0.15 meV", "axis": [1, 0, 0]}}]},
-            "lattice": {"chain": {"sites": 10}},
+            {"anisotropy": {"K": "0.2 meV", "axis": [0, 0, 1]}}, {"anisotropy": {"K": "-0.2 meV", "axis": [1, 0, 0]}}]},
+            "lattice": {"chain": {"sites": 10}}, "energy": [{"zeeman": {"B": ["0 T", "0 T", "-2.5 T"]}}],
             "initial": {"uniform": {"direction": [0, 0, 1]}}, "final": {"uniform": {"direction": [0, 0, -1]}}"#,
         colour: VERMILLION,
         damping: 1.0,
-        barriers: &[4.0, 6.0, 8.0, 10.0],
+        barriers: &[4.0, 7.0, 10.0],
         order: |z| -mean(z),
         interfaces: 12,
+        reach: 0.8,
         step: 0.04,
         amount: [600, 24],
         escapes: 600,
@@ -79,12 +82,13 @@ const CASES: [Case; 3] = [
             "initial": {"skyrmion": {"radius": 2}}, "final": {"uniform": {"direction": [0, 0, 1]}}"#,
         colour: GREEN,
         damping: 1.0,
-        barriers: &[6.0, 8.0, 10.0],
+        barriers: &[6.0, 9.0],
         order: |z| z.iter().map(|z| z.min(0.0)).sum(),
-        interfaces: 9,
+        interfaces: 14,
+        reach: 0.99,
         step: 0.04,
-        amount: [100, 16],
-        escapes: 60,
+        amount: [60, 8],
+        escapes: 0,
     },
 ];
 
@@ -105,15 +109,20 @@ struct Row {
 
 fn main() {
     let quick = std::env::args().any(|word| word == "quick");
-    let rows: Vec<Row> = CASES.iter().flat_map(|case| rows(case, quick)).collect();
-    let text = table(&rows);
-    print!("{text}");
-    if quick {
-        return;
+    let mut all = Vec::new();
+    for case in &CASES {
+        all.extend(rows(case, quick));
+        if !quick {
+            write(&all);
+        }
     }
+    print!("{}", table(&all));
+}
+
+fn write(rows: &[Row]) {
     std::fs::create_dir_all(FOLDER).expect("a folder");
-    std::fs::write(format!("{FOLDER}/table.md"), &text).expect("a table");
-    let canvas = figure(&rows).draw().expect("a figure");
+    std::fs::write(format!("{FOLDER}/table.md"), table(rows)).expect("a table");
+    let canvas = figure(rows).draw().expect("a figure");
     std::fs::write(format!("{FOLDER}/langer_by_dynamics.svg"), canvas.svg().expect("a figure")).expect("a figure");
     std::fs::write(format!("{FOLDER}/langer_by_dynamics.png"), canvas.png().expect("a figure")).expect("a figure");
 }
@@ -148,7 +157,8 @@ fn row(case: &Case, problem: &Problem, outcome: &Outcome, k: usize, thermal: f64
     let found = forward_flux(&bath, start.as_slice(), &order, &flux);
     let last = interfaces[interfaces.len() - 1];
     let escapes = if quick { 20 } else { case.escapes };
-    let waited = (k == 0).then(|| escape_rate(&bath, start.as_slice(), &order, last, escapes, 7000));
+    let waited =
+        (k == 0 && case.escapes > 0).then(|| escape_rate(&bath, start.as_slice(), &order, last, escapes, 7000));
     let rates = outcome.rates.as_ref().expect("rates");
     let passage = &rates.transitions[0].rows[k].passage;
     let langer = libm::exp(passage.ln_langer_per_s.expect("a rate")) / (1e12 * 2.0 / HBAR);
@@ -162,7 +172,7 @@ fn row(case: &Case, problem: &Problem, outcome: &Outcome, k: usize, thermal: f64
     row
 }
 
-/// λ₀ and λ₁ where the fluctuations in A have their mean and their upper end, then evenly to three fifths of the way beyond the top.
+/// λ₀ and λ₁ where the fluctuations in A have their mean and their upper end, then evenly to the last one.
 fn interfaces(case: &Case, bath: &Bath, start: &[f64], order: &dyn Fn(&[f64]) -> f64, goal: f64) -> Vec<f64> {
     let mut walker = spinneb::dynamics::Walker::new(start, 99);
     let mut seen: Vec<f64> = (0..20_000)
@@ -176,7 +186,7 @@ fn interfaces(case: &Case, bath: &Bath, start: &[f64], order: &dyn Fn(&[f64]) ->
     seen.sort_by(f64::total_cmp);
     let at = |part: f64| seen[(part * (seen.len() - 1) as f64) as usize];
     let (middle, upper) = (at(0.6), at(0.92));
-    let last = order(start) + 0.8 * (goal - order(start));
+    let last = order(start) + case.reach * (goal - order(start));
     let further = (0..case.interfaces).map(|k| upper + (last - upper) * k as f64 / (case.interfaces - 1) as f64);
     std::iter::once(middle).chain(further).collect()
 }

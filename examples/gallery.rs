@@ -8,10 +8,11 @@
 //! changed, its `summary.json` stays as it is, so that a gallery without news is the same bytes.
 
 use serde_json::Value;
-use spinneb::config::{Loaded, load};
+use spinneb::config::{Loaded, load, load_landscape};
+use spinneb::drive::survey::survey;
 use spinneb::drive::{Outcome, Silent, run};
 use spinneb::files::disk::{self, File};
-use spinneb::output::render_files;
+use spinneb::output::{LandscapeReport, render_files};
 use std::error::Error;
 use std::fmt::Write;
 use std::fs;
@@ -33,7 +34,7 @@ fn main() -> Result<()> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let purposes = purposes(&fs::read_to_string(root.join("README.md"))?);
     let mut page = String::from(HEAD);
-    for config in configs(root)? {
+    for config in configs(&root.join("configs"))? {
         let loaded = load(&config, &[])?;
         let started = Instant::now();
         let mut outcome = run(&loaded.problem()?, &mut Silent)?;
@@ -45,15 +46,16 @@ fn main() -> Result<()> {
         section(&mut page, &loaded.name, purpose, &outcome, &files)?;
         println!("{}: {:.1} s", loaded.name, outcome.work.seconds);
     }
+    page.push_str(&landscapes(root)?);
     page.push_str(&examples(root)?);
     fs::write(root.join("results/gallery/README.md"), page)?;
     Ok(())
 }
 
-/// The shipped configs in the order of their names.
-fn configs(root: &Path) -> Result<Vec<PathBuf>> {
+/// The configs of a folder in the order of their names.
+fn configs(folder: &Path) -> Result<Vec<PathBuf>> {
     let mut found: Vec<PathBuf> =
-        fs::read_dir(root.join("configs"))?.map(|e| e.map(|e| e.path())).collect::<std::result::Result<_, _>>()?;
+        fs::read_dir(folder)?.map(|e| e.map(|e| e.path())).collect::<std::result::Result<_, _>>()?;
     found.retain(|path| path.extension().is_some_and(|e| e == "json"));
     found.sort();
     Ok(found)
@@ -155,6 +157,53 @@ fn section(page: &mut String, name: &str, purpose: &str, outcome: &Outcome, file
         }
     }
     Ok(())
+}
+
+/// What is kept of a landscape.
+const OF_LANDSCAPES: [&str; 4] = ["landscape.json", "disconnectivity.svg", "network.svg", "lifetimes.svg"];
+
+/// Surveys every shipped landscape; what was found, and its figures.
+fn landscapes(root: &Path) -> Result<String> {
+    let mut page = String::from("\n## Landscapes\n\nWhat `spinneb landscape` finds.\n");
+    for config in configs(&root.join("configs/landscapes"))? {
+        let loaded = load_landscape(&config, &[])?;
+        let found = survey(&loaded.survey()?, &mut Silent)?;
+        let report = LandscapeReport {
+            name: &loaded.name,
+            version: env!("CARGO_PKG_VERSION"),
+            config_sha256: &loaded.sha256,
+            config_text: &loaded.as_run,
+            inputs: &loaded.inputs,
+            lattice: &loaded.lattice,
+            look: loaded.look()?,
+            plots: &["svg".to_string()],
+            survey: &found,
+        };
+        let mut files = report.files()?;
+        files.retain(|file| OF_LANDSCAPES.contains(&file.name.as_str()));
+        let name = &loaded.name;
+        let dir = root.join("results/gallery/landscapes").join(name);
+        fs::create_dir_all(&dir)?;
+        for file in &files {
+            fs::write(dir.join(&file.name), &file.bytes)?;
+        }
+        let [minima, saddles] = [&found.minimum_kinds, &found.saddle_kinds].map(Vec::len);
+        writeln!(page, "\n### {name}\n")?;
+        writeln!(
+            page,
+            "{} minima of {minima} kinds, {} saddles of {saddles} kinds; {}. [Config](../../configs/landscapes/{name}.json), \
+             [numbers](landscapes/{name}/landscape.json).\n",
+            found.minima.len(),
+            found.saddles.len(),
+            report.stop_reason(),
+        )?;
+        for file in OF_LANDSCAPES[1..].iter().filter(|figure| files.iter().any(|f| f.name == **figure)) {
+            let title = file.trim_end_matches(".svg");
+            writeln!(page, "<img src=\"landscapes/{name}/{file}\" alt=\"{title} of {name}\" width=\"32%\">")?;
+        }
+        println!("landscape {name}");
+    }
+    Ok(page)
 }
 
 /// Links to what the numbered examples wrote.

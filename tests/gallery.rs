@@ -1,7 +1,8 @@
 //! The gallery tells what the program finds today: the committed results against a run of every shipped config.
 
 use serde_json::Value;
-use spinneb::config::{Loaded, load};
+use spinneb::config::{Loaded, load, load_landscape};
+use spinneb::drive::survey::survey;
 use spinneb::drive::{Silent, run};
 use spinneb::output::render_files;
 use std::collections::BTreeSet;
@@ -105,6 +106,25 @@ fn the_page_shows_every_config_with_its_barrier_and_figures_that_are_there() {
     let links = page.split("](").skip(1).map(|rest| rest.split(')').next().unwrap());
     for file in sources.chain(links) {
         assert!(gallery(file).is_file(), "{file}: {ANEW}");
+    }
+}
+
+#[test]
+fn committed_landscapes_have_the_kinds_of_states_that_a_survey_finds() {
+    for entry in fs::read_dir(root().join("configs/landscapes")).unwrap() {
+        let loaded = load_landscape(&entry.unwrap().path(), &[]).unwrap();
+        let found = survey(&loaded.survey().unwrap(), &mut Silent).unwrap();
+        let stored = text(&gallery("landscapes").join(&loaded.name).join("landscape.json"));
+        let stored: Value = serde_json::from_str(&stored).unwrap();
+        assert_eq!(stored["config_sha256"], loaded.sha256, "{}: {ANEW}", loaded.name);
+        for (of, kinds) in [("minima", &found.minimum_kinds), ("saddles", &found.saddle_kinds)] {
+            let entry = |e: &Value| (e["energy_meV"].as_f64().unwrap(), e["multiplicity"].as_u64().unwrap());
+            let listed: Vec<(f64, u64)> = stored[of].as_array().unwrap().iter().map(entry).collect();
+            let own: Vec<(f64, u64)> = kinds.iter().map(|kind| (kind.energy_mev, kind.multiplicity as u64)).collect();
+            let alike = |(a, b): (&(f64, u64), &(f64, u64))| (a.0 - b.0).abs() < 1e-9 * a.0.abs() && a.1 == b.1;
+            let same = listed.len() == own.len() && listed.iter().zip(&own).all(alike);
+            assert!(same, "{}: {of}: {listed:?} {own:?}; {ANEW}", loaded.name);
+        }
     }
 }
 
