@@ -101,8 +101,8 @@ def test_ctrl_c_ends_a_run_of_1e5_spins_soon(wait):
 
 def test_import_is_quick():
     code = (
-        "import time, numpy; start = time.perf_counter(); import spinneb; "
-        "print(time.perf_counter() - start)"
+        "import time, numpy; start = time.process_time(); import spinneb; "
+        "print(time.process_time() - start)"
     )
     times = [float(subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout) for _ in range(5)]
-    assert min(times) < 0.25, times
+    assert min(times) < 0.05, times

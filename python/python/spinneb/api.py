@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import sys
-import tempfile
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Literal, Union
@@ -275,6 +274,8 @@ def _config(config: Config, kind: str, set: Mapping[str, Any] | None) -> _core.C
     sets = [f"{key}={_dumped(value)}" for key, value in (set or {}).items()]
     if isinstance(config, (str, os.PathLike)):
         return _core.Config(os.fspath(config), None, "", sets, [], kind)
+    import tempfile
+
     terms = config.terms if isinstance(config, System) else []
     with tempfile.TemporaryDirectory(prefix="spinneb-") as folder:
         whole = _with_files(config.config() if isinstance(config, System) else dict(config), folder)

@@ -7,7 +7,6 @@ import html
 import io
 import json
 import os
-import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -291,6 +290,8 @@ class Result:
 
 def _restored(files: Mapping[str, bytes], summary: dict[str, Any]) -> Result:
     """A result from its files."""
+    import tempfile
+
     with tempfile.TemporaryDirectory(prefix="spinneb-") as folder:
         for name, content in files.items():
             file = Path(folder, name)
