@@ -417,7 +417,9 @@ class Rates:
     @property
     def reasons(self) -> list[str | None]:
         """Why there is no rate at each temperature, where there is none."""
-        return [row["reason"] for row in self._rows("forward")]
+        refused = [one["refused"] for one in self.transitions if one["direction"] == "forward"]
+        whole = refused[0] if refused else None
+        return [row["reason"] or whole for row in self._rows("forward")]
 
     def to_dataframe(self) -> pandas.DataFrame:
         """A row a direction and temperature (pandas)."""
