@@ -13,6 +13,9 @@ use crate::path::distance;
 
 /// Neighbouring images of an automatic path are at most this far apart, any spin (rad).
 const RESOLVED: f64 = 1.0;
+/// Neighbours that are farther apart than this many times the mean are a step over a minimum, which stays as long as it is however
+/// many images there are.
+const STEP: f64 = 4.0;
 /// Most images of an automatic path.
 const MOST_IMAGES: usize = 2001;
 /// Evaluations of a band before its minima are looked at.
@@ -246,10 +249,10 @@ impl<'a> Run<'a, '_> {
         let mut apart = f64::INFINITY;
         loop {
             let now = c.band.images();
-            // steps over minima stay as long as they are, however many images there are
             let before = std::mem::replace(&mut apart, c.band.path().largest_rotation());
-            let many = now >= FEWEST_IMAGES && (more < usize::MAX || now > 257);
-            if many && self.problem.images == Images::Auto && apart > 0.8 * before {
+            let steps =
+                apart > 0.8 * before && (more < usize::MAX || apart * now as f64 > STEP * c.band.path().rotation());
+            if steps && self.problem.images == Images::Auto && now >= FEWEST_IMAGES {
                 return Ok(());
             }
             let next = match self.problem.images {

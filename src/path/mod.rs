@@ -81,6 +81,11 @@ impl Path {
         self.steps(largest_angle).into_iter().fold(0.0, f64::max)
     }
 
+    /// The largest rotations of any spin from image to image, all together (rad).
+    pub fn rotation(&self) -> f64 {
+        self.steps(largest_angle).into_iter().sum()
+    }
+
     /// How far neighbouring images are apart, by any measure.
     fn steps(&self, measure: impl Fn(&[f64], &[f64]) -> f64 + Sync) -> Vec<f64> {
         let pairs = (1..self.images()).into_par_iter().with_min_len(apiece(3 * self.sites(), READ));
