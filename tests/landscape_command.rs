@@ -194,10 +194,10 @@ fn what_a_landscape_cannot_be_is_said_with_its_place() {
 
 #[test]
 fn a_saddle_without_a_rate_has_no_part_in_times_that_others_give() {
-    // at 30 K a wall along the film wanders over a third of its length
+    // at 60 K a wall along the film wanders over a third of its length
     let film = r#"{"material": {"name": "toy", "moment": "2 mu_B", "energy": [{"exchange": {"J": ["10 meV"]}},
         {"dmi": {"D": "5 meV", "kind": "interfacial"}}, {"anisotropy": {"K": "3 meV", "axis": [0, 0, 1]}}]},
-        "lattice": {"square": {"cells": [16, 9]}}, "landscape": {"effort": "quick", "energy_window": "60 meV", "temperatures": ["30 K"],
+        "lattice": {"square": {"cells": [18, 9]}}, "landscape": {"energy_window": "60 meV", "temperatures": ["60 K"],
         "groups": {"up": {"axis": [0, 0, 1], "from": 0.5}, "down": {"axis": [0, 0, 1], "to": -0.5}}}}"#;
     let (document, _folder) = landscape(film, &[]);
     let warnings: Vec<&str> = document["warnings"].as_array().unwrap().iter().map(|w| w.as_str().unwrap()).collect();
