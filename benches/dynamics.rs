@@ -229,7 +229,7 @@ fn figure(rows: &[Row]) -> LinePlot {
     }
     let exact: Vec<(f64, f64)> = rows.iter().filter_map(|r| Some((r.delta, r.exact? / r.langer))).collect();
     plot = plot.with(Series::line(exact).colour(BLUE).label("one spin, Fokker–Planck"));
-    for case in &CASES {
+    for case in CASES.iter().filter(|case| rows.iter().any(|r| r.name == case.name)) {
         let own = || rows.iter().filter(|r| r.name == case.name);
         let points: Vec<(f64, f64)> = own().map(|r| (r.delta, r.flux.per_s / r.langer)).collect();
         plot = plot.with(Series::markers(points, Marker::Disc).colour(case.colour).label(case.name));
