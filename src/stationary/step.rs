@@ -165,10 +165,10 @@ impl<'a> Region<'a> {
     fn reverse(&mut self, here: &Point, factors: &Factors, which: Range<usize>) {
         let mut start = self.x.clone();
         slab::stir(&mut start, 0.1 * slab::norm(&self.x));
-        let mut known = Vec::new();
+        let mut before = Vec::new();
         for mode in &self.modes {
-            here.basis.write_coordinates(mode, &mut known);
-            slab::add_scaled(&mut start, slab::norm(&self.x), &known);
+            here.basis.write_coordinates(mode, &mut before);
+            slab::add_scaled(&mut start, slab::norm(&self.x), &before);
         }
         let modes = modes_by_factors(factors, &here.zeros, vec![start], MODE).unwrap_or_else(|| {
             lowest_modes(&self.hessian, which.end, &here.zeros).into_iter().map(|mode| mode.vector).collect()
