@@ -528,7 +528,6 @@ mod tests {
             "spinneb relax a.json --force",
             "spinneb sweep",
             "spinneb sweep a.json --list --index 3",
-            "spinneb sweep a.json --index 3 --jobs 2",
             "spinneb sweep a.json --index=-1",
             "spinneb sweep a.json --jobs 0",
             "spinneb collect",
