@@ -104,7 +104,7 @@ fn data<'a>(report: &LandscapeReport<'a>) -> Result<Data<'a>> {
     let all_shown = (s.minima.len() + s.saddles.len()) * lattice.sites <= MOST_SPINS;
     let images =
         if all_shown { s.minima.len() + s.saddles.len() } else { s.minimum_kinds.len() + s.saddle_kinds.len() };
-    let (sites, stride) = sites_shown(lattice, images);
+    let (sites, stride) = sites_shown(lattice, lattice.sites, images);
     let film = || Ok(Film { words: lattice.words(), places: places(lattice, &sites, stride)? });
     let network = Network::of(s);
     let mut kinds: Value = serde_json::from_slice(&document::render(report)?)

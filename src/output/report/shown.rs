@@ -42,7 +42,7 @@ impl Shown {
         images.extend(at_rest.filter(|k| *k < path.images()));
         images.sort_unstable();
         images.dedup();
-        let (sites, stride) = sites_shown(lattice, images.len());
+        let (sites, stride) = sites_shown(lattice, path.sites(), images.len());
         Shown { sites, stride, images }
     }
 
@@ -52,11 +52,11 @@ impl Shown {
     }
 }
 
-/// The sites that are shown in so many images, and from a cell that is shown to the next.
-pub(super) fn sites_shown(lattice: &Lattice, images: usize) -> (Vec<usize>, usize) {
+/// Which of so many sites are shown in so many images, and from a cell that is shown to the next.
+pub(super) fn sites_shown(lattice: &Lattice, sites: usize, images: usize) -> (Vec<usize>, usize) {
     let most = |sites: usize, spins: usize| sites.min(spins / images.max(1)).max(2);
     match lattice.is_row() {
-        true => (alternating(lattice.sites, most(SITES, SPINS)), 1),
+        true => (alternating(sites, most(SITES, SPINS)), 1),
         false => by_cells(lattice, most(LATTICE_SITES, LATTICE_SPINS)),
     }
 }
