@@ -41,7 +41,8 @@ pip --no-index --no-deps "$wheel"
 export PYTHONDONTWRITEBYTECODE=1 MPLBACKEND=Agg SPINNEB_BIN="$bin/spinneb"
 "$bin/spinneb" --version
 # outside of the sources: what is tested is what is installed
-cp -r "$root/python/tests" "$root/python/notebooks" "$root/python/generate.py" "$root/python/pyproject.toml" "$work"
-cd "$work"
+mkdir "$work/own"
+cp -r "$root/python/tests" "$root/python/notebooks" "$root/python/generate.py" "$root/python/pyproject.toml" "$work/own"
+cd "$work/own"
 SPINNEB_CONFIGS="$root/configs" "$bin/python" -m pytest -q -p no:cacheprovider -m "$slow" tests
 "$bin/python" -m pytest -q -p no:cacheprovider --nbmake notebooks
