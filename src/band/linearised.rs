@@ -13,11 +13,11 @@ pub const SHIFT_FLOOR: f64 = 1e-3;
 /// μ never falls below this part of the stiffness: rounding errors of the force, undamped, turn no spin by a tolerance.
 const SHIFT_LEAST: f64 = 1e-8;
 /// Most growth steps of μ in one evaluation.
-const SHIFT_TRIES: usize = 14;
+pub const SHIFT_TRIES: usize = 14;
 /// Sites in one pass: all that belongs to them stays in the second cache.
 const ROW: usize = 512;
 /// A border column of which less than this is left beside the others is none.
-const LEAST: f64 = 1e-6;
+pub const LEAST: f64 = 1e-6;
 
 /// [A C; Cᵀ 0] of one image, A = H + (σ + μ)·1, ready for its right-hand side.
 #[derive(Debug, Default)]
@@ -54,8 +54,7 @@ impl Linearised {
     /// Factorises image k, with symmetry axes `axes`, the stiffness scale c and the shift μ of its last visit (meV).
     pub fn prepare(&mut self, band: &Band, k: usize, axes: &[Vector], c: f64, old: f64) {
         self.sigma = upwind_rate(band, k);
-        let floor = shift_floor(band, k, c);
-        self.shift = if old < 0.26 * c { floor } else { (old / 4.0).max(floor) };
+        self.shift = first_shift(band, k, c, old);
         self.tries = 1;
         self.factor_anew(band, k, axes);
         while !self.is_positive() && self.tries < SHIFT_TRIES {
@@ -227,8 +226,14 @@ impl Linearised {
     }
 }
 
+/// The μ to begin with, from that of the last visit (meV).
+pub fn first_shift(band: &Band, k: usize, c: f64, old: f64) -> f64 {
+    let floor = shift_floor(band, k, c);
+    if old < 0.26 * c { floor } else { (old / 4.0).max(floor) }
+}
+
 /// σ = |F·τ|/|m_u − m| (meV), 0 at extrema.
-fn upwind_rate(band: &Band, k: usize) -> f64 {
+pub fn upwind_rate(band: &Band, k: usize) -> f64 {
     if band.uphill(k).is_some() { band.along(k).abs() / band.chord(k).max(1e-12) } else { 0.0 }
 }
 

@@ -11,11 +11,13 @@
 //! Henkelman, Uberuaga, Jónsson, J. Chem. Phys. 113, 9901 (2000), doi:10.1063/1.1329672 (climbing image).
 
 mod gauge;
+mod iterated;
 mod laplacian;
 mod linearised;
 mod profile;
 mod split;
 mod springs;
+mod stand_in;
 mod sweep;
 mod tangent;
 

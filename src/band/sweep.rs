@@ -9,19 +9,22 @@
 //!   [A  C ] [x]   [F⊥ + σ P y_u − A x₀]
 //!   [Cᵀ 0 ] [·] = [0                  ],    x₀ = d τ,    y_a = x₀ + x
 //! ```
-//! H is the banded Riemannian Hessian of the image. μ starts at a small part of the stiffness scale c and grows while A has a
-//! negative direction in the complement of C; the count is exact (inertia of the bordered matrix).
+//! H is the Riemannian Hessian of the image. μ starts at a small part of the stiffness scale c and grows while A has a negative
+//! direction in the complement of C. In chains and small lattices, where factors are cheap, the count of those is exact (inertia of
+//! the bordered matrix, see `linearised`); in others x is found by iteration, with those that it meets (see `iterated`).
 //!
 //! Images that wait for none go first, side by side; the slopes that hang on them after that, each from its top down.
 
 use super::Band;
+use super::iterated::Iterated;
 use super::linearised::{Linearised, Move, SHIFT_FLOOR};
+use super::stand_in::StandIn;
 use crate::geometry::Vector;
 use crate::threads::MADE;
 use rayon::prelude::*;
 use std::collections::VecDeque;
 use std::mem::take;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// The sweep's memory between evaluations: the shifts μ, and room for the linear algebra.
 #[derive(Debug)]
@@ -29,18 +32,27 @@ pub struct Sweep {
     stiffness: f64,
     shifts: Vec<f64>,
     rooms: Rooms,
+    /// For the images of the first band, if those are found by iteration.
+    stand_in: OnceLock<Option<Arc<StandIn>>>,
+}
+
+/// Room for the linear algebra of an image, with factors or without.
+#[derive(Debug)]
+enum Room {
+    Factors(Linearised),
+    Products(Iterated),
 }
 
 /// Room for the linear algebra of as many images as are worked on at a time.
 #[derive(Debug, Default)]
-struct Rooms(Mutex<Vec<Linearised>>);
+struct Rooms(Mutex<Vec<Room>>);
 
 impl Rooms {
-    fn take(&self) -> Linearised {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_default()
+    fn take(&self) -> Option<Room> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).pop()
     }
 
-    fn give_back(&self, room: Linearised) {
+    fn give_back(&self, room: Room) {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).push(room);
     }
 }
@@ -52,7 +64,7 @@ struct Slope<'m> {
     /// The move that the first one waits for.
     above: Option<&'m [f64]>,
     /// The first one, if it is prepared already.
-    ahead: Option<Linearised>,
+    ahead: Option<Room>,
 }
 
 /// What all images of a sweep need.
@@ -63,19 +75,32 @@ struct Task<'a> {
     stiffness: f64,
     shifts: &'a [f64],
     rooms: &'a Rooms,
+    /// Where images are found by iteration.
+    stand_in: Option<&'a Arc<StandIn>>,
     /// How many threads are worth waking.
     threads: usize,
 }
 
 impl Task<'_> {
-    fn prepared(&self, k: usize) -> Linearised {
-        let mut room = self.rooms.take();
-        room.prepare(self.band, k, self.axes, self.stiffness, self.shifts[k]);
+    fn prepared(&self, k: usize) -> Room {
+        let new = || match self.stand_in {
+            Some(stand_in) => Room::Products(Iterated::by(stand_in.clone())),
+            None => Room::Factors(Linearised::default()),
+        };
+        let mut room = self.rooms.take().unwrap_or_else(new);
+        let (c, old) = (self.stiffness, self.shifts[k]);
+        match &mut room {
+            Room::Factors(room) => room.prepare(self.band, k, self.axes, c, old),
+            Room::Products(room) => room.prepare(self.band, k, self.axes, old),
+        }
         room
     }
 
-    fn relax(&self, mut room: Linearised, k: usize, above: Option<&[f64]>, y: &mut [f64]) -> (usize, Move) {
-        let done = room.relax(self.band, k, above, y);
+    fn relax(&self, mut room: Room, k: usize, above: Option<&[f64]>, y: &mut [f64]) -> (usize, Move) {
+        let done = match &mut room {
+            Room::Factors(room) => room.relax(self.band, k, above, y),
+            Room::Products(room) => room.relax(self.band, k, above, y),
+        };
         self.rooms.give_back(room);
         (k, done)
     }
@@ -86,7 +111,7 @@ impl Task<'_> {
         tops: &[usize],
         moves: &mut [&mut [f64]],
         slopes: &[Vec<usize>],
-    ) -> (Vec<(usize, Move)>, Vec<Linearised>) {
+    ) -> (Vec<(usize, Move)>, Vec<Room>) {
         let idle = if tops.is_empty() { 0 } else { self.threads.saturating_sub(tops.len()) };
         let firsts: Vec<usize> = slopes.iter().map(|slope| slope[0]).take(idle).collect();
         let images = tops.par_iter().zip(moves).with_min_len(self.apiece()).with_max_len(self.apiece());
@@ -111,7 +136,7 @@ impl Task<'_> {
     /// Relaxes the images of a slope, `side_by_side` of them prepared at a time.
     fn descend(&self, slope: Slope, side_by_side: usize) -> Vec<(usize, Move)> {
         let mut above = slope.above;
-        let mut ready: VecDeque<Linearised> = slope.ahead.into_iter().collect();
+        let mut ready: VecDeque<Room> = slope.ahead.into_iter().collect();
         let mut done = Vec::with_capacity(slope.images.len());
         for (i, y) in slope.moves.into_iter().enumerate() {
             if ready.is_empty() {
@@ -141,7 +166,7 @@ pub struct SweepStep {
 impl Sweep {
     /// With stiffness scale c (meV).
     pub fn new(stiffness: f64) -> Sweep {
-        Sweep { stiffness, shifts: Vec::new(), rooms: Rooms::default() }
+        Sweep { stiffness, shifts: Vec::new(), rooms: Rooms::default(), stand_in: OnceLock::new() }
     }
 
     /// The shift μ of every image (meV), all that one evaluation tells the next; empty before the first.
@@ -162,7 +187,8 @@ impl Sweep {
         slabs.iter_mut().enumerate().filter(|(k, _)| band.is_held(k + 1)).for_each(|(_, y)| y.fill(0.0));
         let threads = if small { 1 } else { rayon::current_num_threads() };
         let (shifts, rooms) = (&self.shifts[..], &self.rooms);
-        let task = Task { band, axes, stiffness: self.stiffness, shifts, rooms, threads };
+        let stand_in = self.stand_in.get_or_init(|| StandIn::of(band, self.stiffness).map(Arc::new)).as_ref();
+        let task = Task { band, axes, stiffness: self.stiffness, shifts, rooms, stand_in, threads };
         let (tops, slopes) = tops_and_slopes(band);
         let mut at_top: Vec<&mut [f64]> = tops.iter().map(|k| take(&mut slabs[k - 1])).collect();
         let (mut done, ahead) = task.relax_tops(&tops, &mut at_top, &slopes);

@@ -250,17 +250,8 @@ impl EnergyTerm for Dmi {
         }
     }
 
-    fn add_hessian_product(&self, _: Components, v: Components, mut out: ComponentsMut) {
-        for (e, Couplings { family, mev: d }) in self.parts() {
-            for segment in family.segments(0..v.sites()) {
-                let [next, previous] = [segment.next, segment.previous];
-                for i in segment.sites {
-                    let p = next.map_or([0.0; 3], |n| vector::scale(d[i], v.get(at(i, n))));
-                    let q = previous.map(|n| at(i, n)).map_or([0.0; 3], |k| vector::scale(d[k], v.get(k)));
-                    out.add(i, vector::cross(vector::sub(p, q), e));
-                }
-            }
-        }
+    fn add_hessian_product(&self, _: Components, v: Components, out: ComponentsMut) {
+        super::add_linear(self, v, out);
     }
 
     fn add_blocks(&self, _: Components, blocks: &mut Blocks) {

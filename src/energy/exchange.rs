@@ -15,7 +15,7 @@ use super::couplings::Couplings;
 use super::spec::{Medium, TermBuilder};
 use crate::error::{Error, Result};
 use crate::field::{Components, ComponentsMut};
-use crate::geometry::{Vector, vector};
+use crate::geometry::Vector;
 use crate::lattice::{BondFamily, Lattice, Selection, at};
 use crate::profile::Profile;
 use crate::registry::Described;
@@ -170,12 +170,6 @@ impl Exchange {
         let families = j.iter().enumerate().flat_map(|(k, j)| Couplings::uniform(lattice, k + 1, *j));
         Exchange { families: families.collect() }
     }
-
-    /// m_i − sgn(J) m_j.
-    fn deviation(m: &Components, j: f64, a: usize, b: usize) -> Vector {
-        let s = 1f64.copysign(j);
-        vector::sub(m.get(a), vector::scale(s, m.get(b)))
-    }
 }
 
 impl EnergyTerm for Exchange {
@@ -204,12 +198,8 @@ impl EnergyTerm for Exchange {
         }
     }
 
-    fn add_hessian_product(&self, _: Components, v: Components, mut out: ComponentsMut) {
-        for ([i, next], j) in self.families.iter().flat_map(Couplings::bonds) {
-            let d = vector::scale(j.abs(), Exchange::deviation(&v, j, i, next));
-            out.add(i, d);
-            out.add(next, vector::scale(-1f64.copysign(j), d));
-        }
+    fn add_hessian_product(&self, _: Components, v: Components, out: ComponentsMut) {
+        super::add_linear(self, v, out);
     }
 
     fn add_blocks(&self, _: Components, blocks: &mut Blocks) {

@@ -5,11 +5,12 @@ use crate::error::{Error, Result};
 use crate::field::{Components, ComponentsMut, TILE, project_row, tiles};
 use crate::geometry::{Direction, Vector, vector};
 use crate::lattice::{BondFamily, Lattice};
-use crate::linalg::{Layout, slab};
+use crate::linalg::{Layout, Singles, slab};
 use crate::spins::Spins;
+use multiversion::multiversion;
 use rayon::prelude::*;
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// From this many sites on, the tiles of one image are shared among threads.
 pub const LONG: usize = 32 * 1024;
@@ -32,6 +33,8 @@ pub struct Hamiltonian {
     whole: Vec<bool>,
     blocks: Blocks,
     layout: Layout,
+    /// For matrices of one unknown a site, once they are wanted.
+    singles: OnceLock<Arc<Singles>>,
     reach: usize,
     stiffness: f64,
     axes: Vec<Vector>,
@@ -55,6 +58,7 @@ impl Hamiltonian {
             frozen,
             axes: symmetry_axes(&terms, sites),
             layout: lattice.layout(&blocks.bond.iter().map(|bonds| &bonds.family).collect::<Vec<_>>()),
+            singles: OnceLock::new(),
             blocks,
             whole: terms.iter().map(|t| t.is_whole()).collect(),
             terms,
@@ -95,6 +99,14 @@ impl Hamiltonian {
     /// How a matrix of its bonds is kept, a long-ranged term apart.
     pub fn layout(&self) -> &Layout {
         &self.layout
+    }
+
+    /// How a matrix of one unknown a site is kept and factorised, where that of two is sparse and takes long.
+    pub fn singles(&self) -> Option<&Arc<Singles>> {
+        let Layout::Sparse(plan) = &self.layout else { return None };
+        let place = |i: usize| self.lattice.position(i);
+        let singles = || Singles::of(plan.graph(), &(0..self.sites).map(place).collect::<Vec<_>>()).into();
+        plan.is_dear().then(|| self.singles.get_or_init(singles))
     }
 
     /// Whether site `i` never moves.
@@ -303,11 +315,8 @@ impl Hamiltonian {
         for t in &self.terms {
             t.add_hessian_product(mc, vc, ComponentsMut::new(out));
         }
-        let mut o = ComponentsMut::new(out);
-        for i in 0..self.sites {
-            o.add(i, vector::scale(-vector::dot(mc.get(i), gc.get(i)), vc.get(i)));
-        }
-        crate::field::project(m, out);
+        let o = ComponentsMut::new(out);
+        curve(mc, gc, vc, o.x, o.y, o.z);
         self.hold_frozen(out);
     }
 
@@ -326,6 +335,21 @@ impl Hamiltonian {
             t.add_blocks(m, &mut blocks);
         }
         Some(blocks)
+    }
+}
+
+/// P o − (m·g) v of a tangent field v, in place of o.
+#[multiversion(targets("x86_64+avx2"))]
+fn curve(m: Components, g: Components, v: Components, ox: &mut [f64], oy: &mut [f64], oz: &mut [f64]) {
+    let n = m.x.len();
+    let [m, g, v] = [m, g, v].map(|f| f.range(0..n));
+    let (ox, oy, oz) = (&mut ox[..n], &mut oy[..n], &mut oz[..n]);
+    for i in 0..n {
+        let bent = m.x[i] * g.x[i] + m.y[i] * g.y[i] + m.z[i] * g.z[i];
+        let radial = m.x[i] * ox[i] + m.y[i] * oy[i] + m.z[i] * oz[i];
+        ox[i] -= radial * m.x[i] + bent * v.x[i];
+        oy[i] -= radial * m.y[i] + bent * v.y[i];
+        oz[i] -= radial * m.z[i] + bent * v.z[i];
     }
 }
 

@@ -54,7 +54,7 @@ pub use spec::{FamilyBond, Medium, Part, TermBuilder, TermSpec};
 pub use symmetry::symmetry_axes;
 pub use zeeman::{Zeeman, ZeemanSpec};
 
-use crate::field::{Components, ComponentsMut};
+use crate::field::{Components, ComponentsMut, TILE};
 use crate::geometry::Vector;
 use crate::lattice::BondFamily;
 use std::fmt::Debug;
@@ -71,6 +71,16 @@ pub fn density_of(term: &dyn EnergyTerm, m: &[f64]) -> Vec<f64> {
 fn add_density(term: &dyn EnergyTerm, m: &[f64], density: &mut [f64]) {
     let mut gradient = vec![0.0; m.len()];
     term.add_gradient(Components::new(m), ComponentsMut::new(&mut gradient), density, 0..m.len() / 3);
+}
+
+/// Adds A v of a term whose gradient is A m to `out`, tile by tile.
+fn add_linear(term: &dyn EnergyTerm, v: Components, mut out: ComponentsMut) {
+    let mut density = [0.0; TILE];
+    for first in (0..v.sites()).step_by(TILE) {
+        let range = first..v.sites().min(first + TILE);
+        let density = &mut density[..range.len()];
+        term.add_gradient(v, out.reborrow().into_range(range.clone()), density, range);
+    }
 }
 
 /// One contribution to the energy of N classical unit spins.

@@ -41,6 +41,6 @@ pub use matrix::Matrix;
 pub use orthonormal::{orthonormal, remove};
 pub use ritz::{Mode, rayleigh_ritz};
 pub use small::{eigen_symmetric, eigenvalues_symmetric, solve_dense};
-pub use sparse::{Graph, SparseLdl, SparseMatrix, Symbolic, nested_dissection};
+pub use sparse::{Graph, Singles, SparseLdl, SparseMatrix, Symbolic, nested_dissection};
 pub use tail::{Decays, Tail, TailedBand};
 pub use tail_ldl::TailLdl;

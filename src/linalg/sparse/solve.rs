@@ -3,21 +3,38 @@
 use super::Symbolic;
 use super::memory::Memory;
 use super::panels::{self, WIDTH};
+use multiversion::multiversion;
 
 /// Solves L D Lᵀ X = B in place for `columns` interleaved right-hand sides, four, two or one in a pass.
 pub(super) fn solve(plan: &Symbolic, factors: &Memory, x: &mut [f64], columns: usize) {
     let mut first = 0;
     while first < columns {
         match columns - first {
-            1 => pass::<1>(plan, factors, x, columns, first),
-            2 | 3 => pass::<2>(plan, factors, x, columns, first),
-            _ => pass::<4>(plan, factors, x, columns, first),
+            1 => of_one(plan, factors, x, columns, first),
+            2 | 3 => of_two(plan, factors, x, columns, first),
+            _ => of_four(plan, factors, x, columns, first),
         }
         first += [0, 1, 2, 2, 4][(columns - first).min(4)];
     }
 }
 
+#[multiversion(targets("x86_64+avx2"))]
+fn of_one(plan: &Symbolic, factors: &Memory, x: &mut [f64], columns: usize, first: usize) {
+    pass::<1>(plan, factors, x, columns, first);
+}
+
+#[multiversion(targets("x86_64+avx2"))]
+fn of_two(plan: &Symbolic, factors: &Memory, x: &mut [f64], columns: usize, first: usize) {
+    pass::<2>(plan, factors, x, columns, first);
+}
+
+#[multiversion(targets("x86_64+avx2"))]
+fn of_four(plan: &Symbolic, factors: &Memory, x: &mut [f64], columns: usize, first: usize) {
+    pass::<4>(plan, factors, x, columns, first);
+}
+
 /// C columns, from `first` on.
+#[inline(always)]
 fn pass<const C: usize>(plan: &Symbolic, factors: &Memory, x: &mut [f64], columns: usize, first: usize) {
     let mut y = vec![[[0.0; C]; 2]; plan.place.len()];
     for (i, place) in plan.place.iter().enumerate() {
@@ -56,11 +73,13 @@ fn pass<const C: usize>(plan: &Symbolic, factors: &Memory, x: &mut [f64], column
 }
 
 /// The two rows of every site from `first` on.
+#[inline(always)]
 fn pairs<const C: usize>(w: &mut [[f64; C]], first: usize) -> &mut [[[f64; C]; 2]] {
     w[first..].as_chunks_mut().0
 }
 
 /// w ← L⁻¹ w, where the unknowns that are not the front's own take −L w.
+#[inline(always)]
 fn forward<const C: usize>(l: &[f64], panels: usize, w: &mut [[f64; C]]) {
     let rows = w.len();
     for p in 0..panels {
@@ -80,6 +99,7 @@ fn forward<const C: usize>(l: &[f64], panels: usize, w: &mut [[f64; C]]) {
 }
 
 /// w ← L⁻ᵀ w of the front's own unknowns, where the others are known.
+#[inline(always)]
 fn backward<const C: usize>(l: &[f64], panels: usize, w: &mut [[f64; C]]) {
     let rows = w.len();
     for p in (0..panels).rev() {

@@ -5,6 +5,9 @@ use super::supernodes::{self, Group, NONE};
 use super::{Graph, nested_dissection};
 use std::ops::Range;
 
+/// Factors of so many solutions' arithmetic are dear. (Those of a film of 40² sites take 20.)
+const DEAR: f64 = 16.0;
+
 /// The plan of the LDLᵀ of all matrices of a graph; computed once a lattice.
 #[derive(Clone, Debug, Default)]
 pub struct Symbolic {
@@ -114,6 +117,11 @@ impl Symbolic {
     pub fn bytes(&self) -> usize {
         let numbers = 4 * self.graph.block_count() + self.entries + self.pivots + self.waiting[0] + self.waiting[1];
         numbers * size_of::<f64>()
+    }
+
+    /// Whether factors take so much more arithmetic than a solution by them that few factors and many solutions are quicker.
+    pub fn is_dear(&self) -> bool {
+        self.flops > DEAR * 4.0 * self.entries as f64
     }
 
     /// Additions and multiplications of a factorisation.
