@@ -197,7 +197,9 @@ mod tests {
             r#"{"honeycomb": {"cells": [30, 30]}}"#,
         ] {
             let lattice = serde_json::from_str::<LatticeSpec>(kind).unwrap().resolve().unwrap();
-            for (terms, noise) in [(&[exchange, easy][..], 0.01), (&[exchange, easy, dmi], 0.01), (&[exchange, easy], 0.6)] {
+            for (terms, noise) in
+                [(&[exchange, easy][..], 0.01), (&[exchange, easy, dmi], 0.01), (&[exchange, easy], 0.6)]
+            {
                 let h = film(&lattice, terms);
                 let mut band = Band::new(&h, walls(&lattice, noise));
                 band.evaluate();

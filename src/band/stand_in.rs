@@ -102,10 +102,8 @@ mod tests {
         let spec = r#"{"square": {"cells": [40, 36], "periodic": [true, false]}}"#;
         let lattice = serde_json::from_str::<LatticeSpec>(spec).unwrap().resolve().unwrap();
         let medium = Medium::new(&lattice, None, None);
-        let terms = [
-            r#"{"exchange": {"J": ["1 meV", "-0.2 meV"]}}"#,
-            r#"{"anisotropy": {"K": "0.1 meV", "axis": [0, 0, 1]}}"#,
-        ];
+        let terms =
+            [r#"{"exchange": {"J": ["1 meV", "-0.2 meV"]}}"#, r#"{"anisotropy": {"K": "0.1 meV", "axis": [0, 0, 1]}}"#];
         let term = |text: &&str| serde_json::from_str::<TermSpec>(text).unwrap().member().build(&medium).unwrap();
         let h = Hamiltonian::new(&lattice, terms.iter().map(term).collect()).unwrap();
         let ends = [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]].map(|v| Spins::uniform(h.sites(), Direction::new(v).unwrap()));
