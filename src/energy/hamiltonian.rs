@@ -16,6 +16,8 @@ use std::sync::{Arc, OnceLock};
 pub const LONG: usize = 32 * 1024;
 /// Sites in one pass where gradients are not kept.
 const ROW: usize = 64;
+/// Factors of no more than so many solutions' arithmetic are quicker than an iteration with those of one unknown a site.
+const CHEAP: f64 = 4.0;
 /// Tiles of a long chain that are worth waking a thread for.
 const TILES: usize = 16;
 
@@ -101,12 +103,12 @@ impl Hamiltonian {
         &self.layout
     }
 
-    /// How a matrix of one unknown a site is kept and factorised, where that of two is sparse and takes long.
+    /// How a matrix of one unknown a site is kept and factorised, where factors of one of two take long.
     pub fn singles(&self) -> Option<&Arc<Singles>> {
         let Layout::Sparse(plan) = &self.layout else { return None };
         let place = |i: usize| self.lattice.position(i);
         let singles = || Singles::of(plan.graph(), &(0..self.sites).map(place).collect::<Vec<_>>()).into();
-        plan.is_dear().then(|| self.singles.get_or_init(singles))
+        (plan.solutions() > CHEAP).then(|| self.singles.get_or_init(singles))
     }
 
     /// Whether site `i` never moves.

@@ -21,9 +21,28 @@ pub(super) struct Modes {
     pub below: f64,
 }
 
+/// What a symmetric matrix is inverted by, in all of its space or in a part of it.
+pub trait Inverse {
+    /// Number of unknowns.
+    fn order(&self) -> usize;
+
+    /// Solves A X = B in place for `columns` right-hand sides, interleaved: x[j columns + c].
+    fn solve(&self, x: &mut [f64], columns: usize);
+}
+
+impl Inverse for Factors {
+    fn order(&self) -> usize {
+        Factors::order(self)
+    }
+
+    fn solve(&self, x: &mut [f64], columns: usize) {
+        Factors::solve(self, x, columns);
+    }
+}
+
 /// The space that the inverse spans from a block, and the inverse within it.
 pub(super) struct Krylov<'a> {
-    factors: &'a Factors,
+    inverse: &'a dyn Inverse,
     known: &'a [Vec<f64>],
     block: usize,
     /// What the block is made of first; where that is too few, of anything.
@@ -40,15 +59,15 @@ pub(super) struct Krylov<'a> {
 }
 
 impl<'a> Krylov<'a> {
-    pub fn new(factors: &'a Factors, known: &'a [Vec<f64>], block: usize) -> Krylov<'a> {
+    pub fn new(inverse: &'a dyn Inverse, known: &'a [Vec<f64>], block: usize) -> Krylov<'a> {
         let (starts, random) = (Vec::new(), ChaCha8Rng::seed_from_u64(0x5eed));
         let (basis, images, products) = (Vec::new(), Vec::new(), Vec::new());
-        Krylov { factors, known, block, starts, passes: 2, random, basis, images, products }
+        Krylov { inverse, known, block, starts, passes: 2, random, basis, images, products }
     }
 
     /// Dimensions of the space that A acts in, known vectors apart.
     fn room(&self) -> usize {
-        self.factors.order() - self.known.len()
+        self.inverse.order() - self.known.len()
     }
 
     /// Whether there are as many vectors as `most`, or as there can be.
@@ -95,7 +114,7 @@ impl<'a> Krylov<'a> {
         }
         let mut images = Vec::new();
         slab::interleave(&self.basis[old..], &mut images);
-        self.factors.solve(&mut images, columns);
+        self.inverse.solve(&mut images, columns);
         for k in old..self.basis.len() {
             let mut image = Vec::new();
             slab::one_of(&images, columns, k - old, &mut image);
@@ -106,7 +125,7 @@ impl<'a> Krylov<'a> {
     }
 
     fn anything(&mut self) -> Vec<f64> {
-        (0..self.factors.order()).map(|_| self.random.random_range(-1.0..1.0)).collect()
+        (0..self.inverse.order()).map(|_| self.random.random_range(-1.0..1.0)).collect()
     }
 
     /// The part of `v` that is new, or of something random where nothing is.

@@ -2,13 +2,16 @@
 //! already by the latter alone.
 
 use super::krylov::{Krylov, MOST, Modes};
+use super::orthonormal::orthonormal;
 use super::ritz::{APART, Mode, rayleigh_ritz};
 use super::slices::sliced;
 use super::together::together;
-use super::{Factors, Matrix};
+use super::{Factors, Inverse, Matrix};
 
 /// Vectors in a block: as many as modes are often degenerate, and for the rare case in which that was too few.
 const BLOCKS: [usize; 2] = [2, 4];
+/// How sharp modes are of which the sign matters: |A⁻¹v − v/λ| in parts of 1/|λ|.
+const BY_THEIR_SIGN: f64 = 1e-2;
 /// Most vectors from the factors of the matrix itself, whose modes may be far from zero.
 const MOST_AS_IT_IS: usize = 60;
 
@@ -66,6 +69,27 @@ pub fn modes_by_factors(
             look += look / 2;
         }
     }
+}
+
+/// The space of the modes that are negative, so many, and of the lowest of the others, at most `count`, those below a limit or one;
+/// of what `inverse` inverts in the space orthogonal to `known`. Nothing where they are not found soon.
+pub fn soft_space(
+    inverse: &dyn Inverse,
+    known: &[Vec<f64>],
+    negatives: usize,
+    count: usize,
+    below: f64,
+) -> Option<Vec<Vec<f64>>> {
+    let mut krylov = Krylov::new(inverse, known, BLOCKS[0]);
+    let (mut space, mut found) = krylov.largest(Modes { count, below }, MOST_AS_IT_IS);
+    while found && negatives > 0 {
+        if let Some(below) = krylov.negative(negatives, BY_THEIR_SIGN) {
+            space.extend(below);
+            return Some(orthonormal(space, 0.5));
+        }
+        found = !krylov.is_full(MOST_AS_IT_IS) && krylov.grow();
+    }
+    found.then_some(space)
 }
 
 /// Some of the `count` lowest modes, at least one, by block Lanczos; and whether they are eigenvectors, none missed.

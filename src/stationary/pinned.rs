@@ -12,7 +12,7 @@
 
 use super::border::{Border, pin};
 use super::state::State;
-use crate::linalg::{Factors, Matrix, remove, slab};
+use crate::linalg::{Factors, Inverse, Matrix, remove, slab};
 use std::mem::take;
 
 /// A factorised, pinned Hessian.
@@ -142,6 +142,20 @@ impl Pinned {
         let nu = self.border.valley(x);
         remove(x, &self.zeros);
         nu
+    }
+}
+
+/// Of H in the complement of the soft mode, for vectors in that of the zero modes.
+impl Inverse for Pinned {
+    fn order(&self) -> usize {
+        self.factors.order()
+    }
+
+    fn solve(&self, x: &mut [f64], columns: usize) {
+        self.factors.solve(x, columns);
+        slab::one_by_one(x, columns, |x| {
+            self.border.take_back(x);
+        });
     }
 }
 

@@ -13,8 +13,7 @@ use super::pinned::Pinned;
 use super::polish::polish;
 use super::state::State;
 use crate::energy::Evaluator;
-use crate::linalg::{Mode, lowest_modes, slab, soft_modes};
-use crate::linalg::{orthonormal, remove};
+use crate::linalg::{Matrix, Mode, lowest_modes, orthonormal, rayleigh_ritz, remove, slab, soft_modes, soft_space};
 use crate::path::{distance, largest_angle};
 use crate::sphere::rotation_of;
 use serde::{Deserialize, Serialize};
@@ -174,6 +173,12 @@ impl Search<'_> {
     fn complement(&self, p: &Pinned, count: usize, below: f64) -> Vec<Mode> {
         let mut known = p.zeros().to_vec();
         known.push(p.soft().to_vec());
+        // a space that the factors tell, without any more of them
+        if matches!(self.state.hessian, Matrix::Sparse(_))
+            && let Some(space) = soft_space(p, &known, p.complement_negatives, count, below + self.shift)
+        {
+            return rayleigh_ritz(&self.state.hessian, &space);
+        }
         // where factors are dear, so are modes that nothing is done with
         let below = if self.state.hessian.is_dear() { below } else { f64::INFINITY };
         let modes = soft_modes(&self.state.hessian, count, p.zeros(), below);
@@ -182,7 +187,7 @@ impl Search<'_> {
             m.vector
         });
         let space = orthonormal(rest.collect(), 0.5);
-        crate::linalg::rayleigh_ritz(&self.state.hessian, &space)
+        rayleigh_ritz(&self.state.hessian, &space)
     }
 
     /// Freezes modes that are flat to 1e-4 c, if nothing beside them is worse.
@@ -192,6 +197,10 @@ impl Search<'_> {
         }
         self.freezes += 1;
         let flat = 1e-4 * self.c;
+        // what is negative still is less than −shift
+        if self.shift >= flat {
+            return false;
+        }
         let modes = self.complement(p, 5, flat);
         if modes.first().is_none_or(|m| m.value <= -flat) {
             return false;

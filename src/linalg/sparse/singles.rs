@@ -5,6 +5,8 @@ use std::sync::Arc;
 
 /// No site.
 const NONE: u32 = u32::MAX;
+/// Numbers of a field on a site.
+const COLUMNS: usize = 3;
 
 /// Where the unknown of every site of a graph stands, and the plan of the factorisation.
 #[derive(Clone, Debug)]
@@ -68,9 +70,6 @@ impl Singles {
         }
     }
 }
-
-/// Right-hand sides that are solved for: a number more than a field has, for they go by four.
-const COLUMNS: usize = 4;
 
 #[cfg(test)]
 mod tests {

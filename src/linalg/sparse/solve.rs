@@ -4,42 +4,43 @@ use super::Symbolic;
 use super::memory::Memory;
 use super::panels::{self, WIDTH};
 use multiversion::multiversion;
+use std::ops::Range;
 
-/// Solves L D Lᵀ X = B in place for `columns` interleaved right-hand sides, four, two or one in a pass.
+/// Solves L D Lᵀ X = B in place for `columns` interleaved right-hand sides, up to four in a pass.
 pub(super) fn solve(plan: &Symbolic, factors: &Memory, x: &mut [f64], columns: usize) {
-    let mut first = 0;
-    while first < columns {
-        match columns - first {
-            1 => of_one(plan, factors, x, columns, first),
-            2 | 3 => of_two(plan, factors, x, columns, first),
-            _ => of_four(plan, factors, x, columns, first),
+    for first in (0..columns).step_by(4) {
+        let those = first..columns.min(first + 4);
+        match those.len() {
+            1 => of_one(plan, factors, x, columns, those),
+            2 => of_two(plan, factors, x, columns, those),
+            _ => of_four(plan, factors, x, columns, those),
         }
-        first += [0, 1, 2, 2, 4][(columns - first).min(4)];
     }
 }
 
 #[multiversion(targets("x86_64+avx2"))]
-fn of_one(plan: &Symbolic, factors: &Memory, x: &mut [f64], columns: usize, first: usize) {
-    pass::<1>(plan, factors, x, columns, first);
+fn of_one(plan: &Symbolic, factors: &Memory, x: &mut [f64], columns: usize, those: Range<usize>) {
+    pass::<1>(plan, factors, x, columns, those);
 }
 
 #[multiversion(targets("x86_64+avx2"))]
-fn of_two(plan: &Symbolic, factors: &Memory, x: &mut [f64], columns: usize, first: usize) {
-    pass::<2>(plan, factors, x, columns, first);
+fn of_two(plan: &Symbolic, factors: &Memory, x: &mut [f64], columns: usize, those: Range<usize>) {
+    pass::<2>(plan, factors, x, columns, those);
 }
 
 #[multiversion(targets("x86_64+avx2"))]
-fn of_four(plan: &Symbolic, factors: &Memory, x: &mut [f64], columns: usize, first: usize) {
-    pass::<4>(plan, factors, x, columns, first);
+fn of_four(plan: &Symbolic, factors: &Memory, x: &mut [f64], columns: usize, those: Range<usize>) {
+    pass::<4>(plan, factors, x, columns, those);
 }
 
-/// C columns, from `first` on.
+/// At most C columns.
 #[inline(always)]
-fn pass<const C: usize>(plan: &Symbolic, factors: &Memory, x: &mut [f64], columns: usize, first: usize) {
+fn pass<const C: usize>(plan: &Symbolic, factors: &Memory, x: &mut [f64], columns: usize, those: Range<usize>) {
+    let there = those.len();
     let mut y = vec![[[0.0; C]; 2]; plan.place.len()];
     for (i, place) in plan.place.iter().enumerate() {
         for u in 0..2 {
-            y[*place as usize][u].copy_from_slice(&x[(2 * i + u) * columns + first..][..C]);
+            copy(&mut y[*place as usize][u], &x[(2 * i + u) * columns + those.start..][..there]);
         }
     }
     let mut w = vec![[0.0; C]; plan.most_rows];
@@ -67,9 +68,15 @@ fn pass<const C: usize>(plan: &Symbolic, factors: &Memory, x: &mut [f64], column
     }
     for (i, place) in plan.place.iter().enumerate() {
         for u in 0..2 {
-            x[(2 * i + u) * columns + first..][..C].copy_from_slice(&y[*place as usize][u]);
+            copy(&mut x[(2 * i + u) * columns + those.start..][..there], &y[*place as usize][u]);
         }
     }
+}
+
+/// Copies numbers as far as both go: too few to call for.
+#[inline(always)]
+fn copy(to: &mut [f64], from: &[f64]) {
+    to.iter_mut().zip(from).for_each(|(to, from)| *to = *from);
 }
 
 /// The two rows of every site from `first` on.

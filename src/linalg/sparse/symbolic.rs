@@ -5,9 +5,6 @@ use super::supernodes::{self, Group, NONE};
 use super::{Graph, nested_dissection};
 use std::ops::Range;
 
-/// Factors of so many solutions' arithmetic are dear. (Those of a film of 40² sites take 20.)
-const DEAR: f64 = 16.0;
-
 /// The plan of the LDLᵀ of all matrices of a graph; computed once a lattice.
 #[derive(Clone, Debug, Default)]
 pub struct Symbolic {
@@ -119,9 +116,9 @@ impl Symbolic {
         numbers * size_of::<f64>()
     }
 
-    /// Whether factors take so much more arithmetic than a solution by them that few factors and many solutions are quicker.
-    pub fn is_dear(&self) -> bool {
-        self.flops > DEAR * 4.0 * self.entries as f64
+    /// The arithmetic of a factorisation, in those of a solution by it. (A film of 40² sites: 20.)
+    pub fn solutions(&self) -> f64 {
+        self.flops / (4.0 * self.entries.max(1) as f64)
     }
 
     /// Additions and multiplications of a factorisation.
