@@ -54,7 +54,7 @@ impl<'a> Run<'a, '_> {
         report.quiet = searched.quiet;
         report.spent = searched.spent;
         report.minima = self.land.minima().len();
-        report.saddles = self.land.edges().len();
+        report.saddles = self.land.edges().iter().filter(|edge| !edge.is_twin).count();
         let least = self.land.tolerance_mev(first_mev);
         let lower = |top_mev: f64| first_mev - top_mev > least;
         let Some(route) = self.land.route(ends[0], ends[1]).filter(|route| lower(route.top_mev) || unproven) else {

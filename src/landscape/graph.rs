@@ -1,8 +1,8 @@
 //! Everything that was found, as one graph, and what is asked of it.
 //!
 //! Nodes are minima, each state one of its own: up and down are two. Edges are passes: certified saddles with the minima that their
-//! two descents reach. The images of both under the symmetry of lattice and energy are nodes and edges too, without a search. A
-//! pass with the same minimum on both sides is an edge that no route takes.
+//! two descents reach. The images of both under the symmetry of lattice and energy are nodes and edges too, without a search; so one
+//! saddle may have several edges. A pass with the same minimum on both sides is an edge that no route takes.
 
 use super::pairs::Pairs;
 use super::{Minimum, Pass, Saddle, is_same_state, turned, turns};
@@ -39,6 +39,9 @@ pub struct Edge {
     pub by: Option<usize>,
     /// The saddle's spins (3N).
     pub saddle: Vec<f64>,
+    /// Another edge has this saddle too: a symmetry leaves it as it is, but not the minima that its descents came to, each over a
+    /// state that is left in any of several directions alike.
+    pub is_twin: bool,
 }
 
 /// A way over passes.
@@ -245,7 +248,14 @@ impl<'a> Landscape<'a> {
         let ends = [&pass.before, &pass.after].map(|minimum| self.add_minimum(minimum));
         let height_mev = self.height_mev(pass.saddle.spins());
         let number = self.passes.len();
-        self.edges.push(Edge { ends, height_mev, pass: number, by: None, saddle: pass.saddle.spins().to_vec() });
+        self.edges.push(Edge {
+            ends,
+            height_mev,
+            pass: number,
+            by: None,
+            saddle: pass.saddle.spins().to_vec(),
+            is_twin: false,
+        });
         self.passes.push(pass);
         self.unfold_pass(number);
         true
@@ -256,13 +266,14 @@ impl<'a> Landscape<'a> {
             let (pass, operation) = (&self.passes[number], &self.operations_known()[by]);
             let saddle = operation.apply(pass.saddle.spins());
             let height_mev = self.height_mev(pass.saddle.spins());
-            if self.knows_state(&saddle, height_mev) {
-                continue;
-            }
+            let known: Vec<[usize; 2]> = self.edges_over(&saddle, height_mev).map(|e| e.ends).collect();
             let images = [&pass.before, &pass.after].map(|minimum| minimum.image(operation));
             let of = self.edges.iter().find(|e| e.pass == number && e.by.is_none()).map(|e| e.ends);
             let ends = [0, 1].map(|k| self.place(&images[k], of.map(|of| of[k])));
-            self.edges.push(Edge { ends, height_mev, pass: number, by: Some(by), saddle });
+            if !known.iter().any(|[a, b]| ends == [*a, *b] || ends == [*b, *a]) {
+                let is_twin = !known.is_empty();
+                self.edges.push(Edge { ends, height_mev, pass: number, by: Some(by), saddle, is_twin });
+            }
         }
     }
 
@@ -286,8 +297,14 @@ impl<'a> Landscape<'a> {
     }
 
     fn knows_state(&self, m: &[f64], height_mev: f64) -> bool {
+        self.edges_over(m, height_mev).next().is_some()
+    }
+
+    /// The edges over a saddle.
+    fn edges_over(&self, m: &[f64], height_mev: f64) -> impl Iterator<Item = &Edge> {
         let near = ENERGY * self.h.stiffness_mev();
-        self.edges.iter().any(|e| (e.height_mev - height_mev).abs() < near && is_same_state(self.h, &e.saddle, m))
+        let over = move |e: &&Edge| (e.height_mev - height_mev).abs() < near && is_same_state(self.h, &e.saddle, m);
+        self.edges.iter().filter(over)
     }
 
     /// The route whose highest saddle is lowest; of several the one over the fewest passes.
@@ -448,6 +465,7 @@ mod tests {
             pass: 0,
             by: None,
             saddle: Vec::new(),
+            is_twin: false,
         };
         land.edges = vec![
             edge(0, 4, 5.0),

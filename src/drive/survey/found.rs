@@ -213,8 +213,9 @@ impl View<'_> {
     /// Kinds of saddles between these minima, likewise; all of them; and the pass of each kind.
     fn saddles(&self, number: &[usize]) -> (Vec<Kind>, Vec<FoundSaddle>, Vec<usize>) {
         let (land, edges) = (self.land, self.land.edges());
+        let is_listed = |k: &usize| number[*k] != usize::MAX;
         let is_in =
-            |e: &usize| edges[*e].height_mev <= self.top && edges[*e].ends.iter().all(|k| number[*k] != usize::MAX);
+            |e: &usize| edges[*e].height_mev <= self.top && !edges[*e].is_twin && edges[*e].ends.iter().all(is_listed);
         let mut order: Vec<usize> = (0..edges.len()).filter(is_in).collect();
         let own: Vec<f64> = land.passes().iter().map(|pass| land.height_mev(pass.saddle.spins())).collect();
         let place = |e: &usize| (own[edges[*e].pass], edges[*e].pass);
