@@ -179,8 +179,6 @@ impl Search<'_> {
         {
             return rayleigh_ritz(&self.state.hessian, &space);
         }
-        // where factors are dear, so are modes that nothing is done with
-        let below = if self.state.hessian.is_dear() { below } else { f64::INFINITY };
         let modes = soft_modes(&self.state.hessian, count, p.zeros(), below);
         let rest = modes.into_iter().map(|mut m| {
             remove(&mut m.vector, &known);
