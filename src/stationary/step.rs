@@ -95,13 +95,16 @@ impl<'a> Region<'a> {
         here.write_hessian(self.h, 0.0, &mut self.hessian);
         let factors = self.newton(here);
         let negative = factors.negatives();
-        match (self.wanted, negative) {
-            (Wanted::Saddle, 0) => self.reverse(here, &factors, 0..1),
-            (Wanted::Saddle, 2..=MODES) => self.reverse(here, &factors, 1..negative),
-            _ => {}
+        let reversed = match (self.wanted, negative) {
+            (Wanted::Saddle, 0) => Some(0..1),
+            (Wanted::Saddle, 2..=MODES) => Some(1..negative),
+            _ => None,
+        };
+        if let Some(which) = reversed.clone() {
+            self.reverse(here, &factors, which);
         }
         self.room = factors.into_memory();
-        if negative > self.wanted.negative() && (self.wanted == Wanted::Minimum || negative > MODES) {
+        if reversed.is_none() && negative != self.wanted.negative() {
             self.shifted(here);
         }
         here.write_field(&self.x, &mut self.v);
