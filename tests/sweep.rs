@@ -135,6 +135,8 @@ fn single_points_by_their_index_are_the_same_results_as_a_local_sweep() {
         let (code, _, told) = spinneb(array.path(), &["sweep", "many.json", "--index", wrong]);
         assert!(code == Some(2) && told.contains(said), "{told}");
     }
+    let (code, _, told) = spinneb(array.path(), &["sweep", "many.json", "--index", "3", "--jobs", "2"]);
+    assert!(code == Some(2) && told.contains("--index names one"), "{told}");
     // by the folder alone
     fs::remove_file(array.path().join("many.json")).unwrap();
     assert_eq!(spinneb(array.path(), &["collect", "results/many"]).0, Some(0));

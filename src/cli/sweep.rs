@@ -99,8 +99,6 @@ pub struct Arguments {
 pub struct Part {
     first: usize,
     last: usize,
-    /// It was written as one point.
-    single: bool,
 }
 
 fn part(text: &str) -> std::result::Result<Part, String> {
@@ -108,11 +106,11 @@ fn part(text: &str) -> std::result::Result<Part, String> {
         text.parse::<usize>().map_err(|_| format!("found {text:?}, expected a point's number, or two: 20-39"))
     };
     match text.split_once('-') {
-        None => number(text).map(|k| Part { first: k, last: k, single: true }),
+        None => number(text).map(|k| Part { first: k, last: k }),
         Some((first, last)) => {
             let (first, last) = (number(first)?, number(last)?);
             let reversed = || format!("found {text}, expected the smaller number first");
-            (first <= last).then_some(Part { first, last, single: false }).ok_or_else(reversed)
+            (first <= last).then_some(Part { first, last }).ok_or_else(reversed)
         }
     }
 }
@@ -140,7 +138,11 @@ pub fn sweep(arguments: &Arguments, program: &[OsString]) -> Result<u8> {
             note(&format!("error: there is no point {}: {file} has the points 0 to {last}", part.last));
             return Ok(USAGE);
         }
-        if part.single {
+        if part.first == part.last {
+            if arguments.jobs.is_some() {
+                note("error: --jobs says how many points run at a time, and --index names one: leave --jobs out");
+                return Ok(USAGE);
+            }
             return one(arguments, &sweep, &dir, part.first);
         }
     }
