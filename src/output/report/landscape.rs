@@ -2,7 +2,7 @@
 
 use super::pack::{self, column, packed};
 use super::shown::sites_shown;
-use super::{LONGEST_CONFIG, Material, Spins, material, page, places};
+use super::{LONGEST_CONFIG, Material, Spins, material, page, places, script};
 use crate::error::Result;
 use crate::geometry::Direction;
 use crate::output::canvas::{Colour, sequential};
@@ -11,22 +11,11 @@ use crate::path::Path;
 use serde::Serialize;
 use serde_json::Value;
 
-/// Template, style and script; the order of the scripts is that of use.
+/// Template, style and script.
 pub(super) const PARTS: [&str; 3] = [
-    include_str!("landscape.html"),
+    concat!(include_str!("head.html"), include_str!("landscape.html")),
     concat!(include_str!("page.css"), include_str!("landscape.css")),
-    concat!(
-        include_str!("base.js"),
-        include_str!("path.js"),
-        include_str!("colour.js"),
-        include_str!("scene.js"),
-        include_str!("webgl.js"),
-        include_str!("flat.js"),
-        include_str!("view.js"),
-        include_str!("summary.js"),
-        include_str!("choices.js"),
-        include_str!("landscape.js"),
-    ),
+    script!("summary.js", "choices.js", "landscape.js"),
 ];
 /// With more spins, states times sites, only those of the first state of each kind are in the page.
 const MOST_SPINS: usize = 1_000_000;

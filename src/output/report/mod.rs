@@ -26,25 +26,27 @@ use serde_json::Value;
 use sha2::{Digest, Sha256};
 use shown::{Shown, evenly};
 
-const PAGE: &str = include_str!("page.html");
+const PAGE: &str = concat!(include_str!("head.html"), include_str!("page.html"));
 /// The picture of the spins, with its tools.
 const VIEW: &str = include_str!("view.html");
 const STYLE: &str = include_str!("page.css");
-/// One module; the order is that of use.
-const SCRIPT: &str = concat!(
-    include_str!("base.js"),
-    include_str!("path.js"),
-    include_str!("colour.js"),
-    include_str!("scene.js"),
-    include_str!("webgl.js"),
-    include_str!("flat.js"),
-    include_str!("view.js"),
-    include_str!("chart.js"),
-    include_str!("summary.js"),
-    include_str!("page.js"),
-    include_str!("choices.js"),
-    include_str!("run.js"),
-);
+/// One module, the scripts that show spins and then these; the order is that of use.
+macro_rules! script {
+    ($($own:literal),*) => {
+        concat!(
+            include_str!("base.js"),
+            include_str!("path.js"),
+            include_str!("colour.js"),
+            include_str!("scene.js"),
+            include_str!("webgl.js"),
+            include_str!("flat.js"),
+            include_str!("view.js"),
+            $(include_str!($own)),*
+        )
+    };
+}
+use script;
+const SCRIPT: &str = script!("chart.js", "summary.js", "page.js", "choices.js", "run.js");
 /// A longer config is not repeated in the page (bytes).
 const LONGEST_CONFIG: usize = 40_000;
 /// Most points of the interpolated curve.
