@@ -245,6 +245,14 @@ fn tables_and_arrays_of_other_programs_are_understood() {
     assert_eq!(npy("|i1", "False", "(2, 3)", &[0, 0, 1, 1, 0, 0]), single);
     assert_eq!(npy("|i1", "True", "(2L, 3L)", &[0, 1, 0, 0, 1, 0]), single);
     assert_eq!(npy(">i2", "False", "(1, 2, 1, 1, 3)", &[0, 0, 0, 0, 0, 1, 0, 1, 0, 0, 0, 0]), single);
+    // a mesh of 2 × 1 × 2 nodes: x first where sites are counted, last among NumPy's nodes
+    let corners = [[1, 0, 0], [0, 0, 1], [0, 1, 0], [0, 0, 0]];
+    let (rows, columns): (Vec<u8>, Vec<u8>) =
+        (corners.concat(), (0..12).map(|e| corners[2 * (e % 2) + e / 2 % 2][e / 4]).collect());
+    for (fortran, bytes) in [("False", rows), ("True", columns)] {
+        let [image] = &npy("|i1", fortran, "(2, 1, 2, 3)", &bytes)[..] else { panic!("one image") };
+        assert_eq!(image[..], [0, 2, 1, 3].map(|k| corners[k].map(f64::from)), "{fortran}");
+    }
     let deflated =
         fs::read(std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/compressed.npz")).unwrap();
     assert_eq!(read("compressed.npz", &deflated).unwrap().images, [&single[..], &single[..]].concat());

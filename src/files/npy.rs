@@ -1,9 +1,10 @@
 //! NumPy's arrays: a header that is a Python dictionary, then the numbers.
 //!
-//! Spins are of shape (site, 3) or (image, site, 3); the meshes of micromagnetic codes, (x, y, z, 3), do where they are chains.
+//! Spins are of shape (site, 3) or (image, site, 3), or those of a mesh, (x, y, z, 3) or (image, x, y, z, 3), as micromagnetic codes
+//! have them; a mesh of one row is a chain along any axis.
 //! Format: NEP 1, <https://numpy.org/neps/nep-0001-npy-format.html>.
 
-use super::numbers::{Stored, vector};
+use super::numbers::Stored;
 use super::{Collector, FileFormat};
 use crate::error::Result;
 use crate::lattice::MAX_SITES;
@@ -12,7 +13,7 @@ use std::io::Read;
 
 pub(super) const FORMAT: FileFormat = FileFormat {
     name: "npy",
-    summary: "a NumPy array (site, xyz) or (image, site, xyz), single or double precision or integers",
+    summary: "a NumPy array (site, xyz), (image, site, xyz), or of a mesh (x, y, z, xyz); single or double precision or integers",
     extensions: &["npy"],
     recognises: |bytes| bytes.starts_with(MAGIC),
     read: |bytes, images| {
@@ -153,32 +154,33 @@ impl Header {
         whole.then(|| numbers.chunks_exact(self.kind.size()).map(value).collect())
     }
 
-    /// Images and sites, if spins can have this shape.
-    pub(super) fn layout(&self) -> std::result::Result<(usize, usize), String> {
+    /// Images and the nodes of a mesh along x, y and z, if spins can have this shape.
+    pub(super) fn layout(&self) -> std::result::Result<(usize, [usize; 3]), String> {
         let shown = self.shape.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
-        let wanted = "spins are of shape (site, 3) or (image, site, 3)";
-        let (images, mesh) = match &self.shape[..] {
-            [mesh @ .., 3] if mesh.len() == 1 || mesh.len() == 3 => (1, mesh),
-            [images, mesh @ .., 3] if mesh.len() == 1 || mesh.len() == 3 => (*images, mesh),
+        let wanted = "spins are of shape (site, 3), (image, site, 3) or, on a mesh, (x, y, z, 3)";
+        let (images, mesh) = match self.shape[..] {
+            [sites, 3] => (1, [sites, 1, 1]),
+            [images, sites, 3] => (images, [sites, 1, 1]),
+            [x, y, z, 3] => (1, [x, y, z]),
+            [images, x, y, z, 3] => (images, [x, y, z]),
             [3, _] => return Err(format!("the shape is ({shown}), but {wanted}: save the transposed array")),
             _ => return Err(format!("the shape is ({shown}), but {wanted}")),
         };
-        if mesh.iter().filter(|n| **n > 1).count() > 1 {
-            return Err(format!("the shape ({shown}) is that of a mesh of more than one row, but a chain is one"));
-        }
-        let sites = mesh.iter().copied().max().unwrap_or(0);
         if images == 0 || mesh.contains(&0) {
             return Err(format!("the shape is ({shown}): there are no spins in it"));
         }
-        match sites > MAX_SITES {
-            true => Err(format!("the shape is ({shown}), but a chain has at most {MAX_SITES} sites")),
-            false => Ok((images, sites)),
+        let nodes = mesh.iter().try_fold(1, |n: usize, length| n.checked_mul(*length));
+        match nodes.is_none_or(|n| n > MAX_SITES) {
+            true => Err(format!("the shape is ({shown}), but there are at most {MAX_SITES} sites")),
+            false => Ok((images, mesh)),
         }
     }
 
     /// Hands on the images of the array's numbers, which begin at byte `start`.
     pub(super) fn images(&self, numbers: &[u8], start: usize, out: &mut Collector, array: &str) -> Result<()> {
-        let (images, sites) = self.layout().map_err(|m| out.error(format!("{array}header"), m))?;
+        let (images, [x, y, z]) = self.layout().map_err(|m| out.error(format!("{array}header"), m))?;
+        // a row is a chain, whose sites are all there
+        let mesh = Some([x, y, z]).filter(|mesh| mesh.iter().filter(|n| **n > 1).count() > 1);
         let (needed, found) = (self.bytes(), numbers.len());
         if needed != Some(found) {
             let needed = needed.map_or("more than there can be".into(), |n| n.to_string());
@@ -186,18 +188,16 @@ impl Header {
             return Err(out.error(format!("{array}byte {start}"), what));
         }
         let size = self.kind.size();
+        let number = |at: usize| self.kind.value(&numbers[at * size..(at + 1) * size], self.big_endian);
         for k in 0..images {
-            out.begin(sites);
-            for i in 0..sites {
-                let first = 3 * (k * sites + i);
-                let v = match self.fortran {
-                    false => vector(self.kind, &numbers[first * size..], self.big_endian),
-                    true => [0, 1, 2].map(|c| {
-                        let at = size * (k + images * (i + sites * c));
-                        self.kind.value(&numbers[at..at + size], self.big_endian)
-                    }),
-                };
-                out.push(v, || format!("{array}image {k}, site {i}"))?;
+            out.begin_on(x * y * z, mesh, mesh.is_some())?;
+            // sites are counted along x first
+            for (p, q, r) in (0..z).flat_map(|r| (0..y).flat_map(move |q| (0..x).map(move |p| (p, q, r)))) {
+                let v = [0, 1, 2].map(|c| match self.fortran {
+                    false => number(c + 3 * (r + z * (q + y * (p + x * k)))),
+                    true => number(k + images * (p + x * (q + y * (r + z * c)))),
+                });
+                out.push(v, || format!("{array}image {k}, site {}", p + x * (q + y * r)))?;
             }
         }
         Ok(())
