@@ -40,8 +40,7 @@ def test_builders_are_those_of_the_schema():
 
 def test_types_are_strict(tmp_path):
     pytest.importorskip("mypy")
-    package = Path(spinneb.__file__).parent
-    done = run("mypy", "--strict", "--cache-dir", tmp_path / "cache", package)
+    done = run("mypy", "--strict", "--cache-dir", tmp_path / "cache", "-p", "spinneb")
     assert done.returncode == 0, done.stdout
     (tmp_path / "user.py").write_text(USER)
     done = run("mypy", "--strict", "--cache-dir", tmp_path / "cache", tmp_path / "user.py")
