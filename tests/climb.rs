@@ -1,8 +1,6 @@
 //! Climbs from any state to a saddle, and relaxations to a minimum.
 
-mod common;
-
-use common::Build;
+use crate::common::Build;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use spinneb::energy::{Anisotropy, Evaluator, Exchange, Hamiltonian};

@@ -3,9 +3,7 @@
 //! Chains of the refinement series K = 0.05 (50/N)² J: the same wall on ever finer lattices. The path is read with 17 images
 //! from a swept wall with 2 degrees of seeded noise, and is relaxed when |F⊥|∞ < 1e-5 c, c = 2K.
 
-mod common;
-
-use common::{Build, solve};
+use crate::common::{Build, solve};
 use rand::{RngExt, SeedableRng};
 use spinneb::drive::{Images, Problem};
 use spinneb::energy::{Anisotropy, Dmi, Exchange, Zeeman};
@@ -149,6 +147,6 @@ fn on_the_finest_lattice_of_the_series_the_saddle_is_still_certified() {
     assert!(outcome.certified, "{:?}", outcome.warnings);
     // the continuum's wall, 2√(2JK), is approached from below as the square of the lattice constant over the wall width
     let continuum = 2.0 * (2.0 * anisotropy(n)).sqrt();
-    let ratio = common::forward(&outcome) / continuum;
+    let ratio = crate::common::forward(&outcome) / continuum;
     assert!((1.0 - ratio) > 0.0 && (1.0 - ratio) < 3e-6, "{ratio}");
 }

@@ -1,8 +1,6 @@
 //! What physics knows beforehand: symmetries, limits, and that nothing depends on the number of threads.
 
-mod common;
-
-use common::{Build, forward, solve};
+use crate::common::{Build, forward, solve};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;

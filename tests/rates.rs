@@ -1,8 +1,6 @@
 //! Rates against closed forms, the reference and dense eigenvalues; what has no rate is refused.
 
-mod common;
-
-use common::{Build, cases, number, solve};
+use crate::common::{Build, cases, number, solve};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use spinneb::config::load_text;

@@ -1,8 +1,6 @@
 //! Barriers against independent values, from default settings apart from the physics.
 
-mod common;
-
-use common::{Build, cases, forward, number};
+use crate::common::{Build, cases, forward, number};
 use spinneb::drive::{Outcome, Problem};
 use spinneb::geometry::Direction;
 use spinneb::spins::Spins;
@@ -12,9 +10,9 @@ use spinneb::spins::Spins;
 /// Before that the band alone, its top image climbing but nothing refined further or certified, must give the same to 1e-6.
 fn solve(mut problem: Problem) -> Outcome {
     (problem.refine, problem.certify) = (false, false);
-    let band = common::solve(&problem);
+    let band = crate::common::solve(&problem);
     (problem.refine, problem.certify) = (true, true);
-    let outcome = common::solve(&problem);
+    let outcome = crate::common::solve(&problem);
     let (coarse, fine) = (forward(&band), forward(&outcome));
     assert!((coarse - fine).abs() <= 1e-6 * fine, "the band alone gives {coarse}, the certified saddle {fine}");
     let (w, warnings) = (outcome.work, &outcome.warnings);

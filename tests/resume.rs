@@ -1,8 +1,6 @@
 //! Runs that are stopped and go on: wherever that happens, the end is the same to the last bit.
 
-mod common;
-
-use common::Build;
+use crate::common::Build;
 use rand::{RngExt, SeedableRng};
 use spinneb::drive::{HistoryRow, Images, Observer, Outcome, Partial, Problem, Silent, run};
 use spinneb::error::Error;

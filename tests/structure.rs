@@ -1,8 +1,6 @@
 //! Paths with many saddles, and paths that are long beside a wall's width.
 
-mod common;
-
-use common::{Build, forward, solve};
+use crate::common::{Build, forward, solve};
 use spinneb::drive::{Outcome, Problem};
 use spinneb::energy::Exchange;
 use spinneb::geometry::Direction;

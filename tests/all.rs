@@ -1,0 +1,56 @@
+//! The tests of the library and of the program: one binary, so that the library is linked once and all cores are used to the end.
+//! `cargo test --test all rates::` runs those of one file.
+
+mod common;
+
+mod any_lattice;
+mod climb;
+mod configs;
+mod counts;
+mod custom_terms;
+mod energy;
+mod equivalent_films;
+mod file_configs;
+mod files;
+mod film_barriers;
+mod films;
+mod fuzz;
+mod gallery;
+mod geometry;
+mod guesses;
+mod interrupted;
+mod kills;
+mod landscape_command;
+mod lattices;
+mod longrange;
+mod lowest;
+mod media;
+mod network;
+mod output;
+mod physics;
+mod plot_command;
+mod rate_command;
+mod rates;
+mod readme;
+mod reference;
+mod relax;
+mod result_folder;
+mod resume;
+mod run;
+mod start;
+mod states;
+mod structure;
+mod sweep;
+mod symmetry;
+
+#[test]
+fn every_file_of_tests_is_among_them() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests");
+    let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let missing: Vec<String> = files
+        .filter(|file| file.extension().is_some_and(|e| e == "rs"))
+        .map(|file| file.file_stem().unwrap().to_string_lossy().into_owned())
+        .filter(|name| name != "all" && !include_str!("all.rs").contains(&format!("\nmod {name};\n")))
+        .collect();
+    assert!(missing.is_empty(), "tests/all.rs does not name {missing:?}");
+}
