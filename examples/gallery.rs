@@ -32,7 +32,7 @@ const SHOWN: (&str, &str) = ("wall_nucleation", "energy_path.png");
 
 fn main() -> Result<()> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let purposes = purposes(&fs::read_to_string(root.join("README.md"))?);
+    let purposes = purposes(&fs::read_to_string(root.join("docs/src/configs.md"))?);
     let mut page = String::from(HEAD);
     for config in configs(&root.join("configs"))? {
         let loaded = load(&config, &[])?;
@@ -99,7 +99,7 @@ fn timeless(summary: &[u8]) -> Option<Value> {
     Some(value)
 }
 
-/// The names and purposes of the shipped configs, as the README's table has them.
+/// The names and purposes of the shipped configs, as the book's table has them.
 fn purposes(readme: &str) -> Vec<(String, String)> {
     let row = |line: &str| {
         let cells: Vec<&str> = line.strip_prefix("| [`")?.split(" | ").collect();

@@ -2,6 +2,7 @@
 
 mod check;
 mod collect;
+mod docs;
 mod drawing;
 mod jobs;
 mod landscape;
@@ -59,10 +60,11 @@ pub fn main(program: &[OsString], arguments: impl IntoIterator<Item = OsString>)
         Command::Collect(arguments) => collect::collect(&arguments),
         Command::Check(arguments) => check::check(&arguments),
         Command::List(arguments) => list::list(&arguments),
+        Command::Docs(arguments) => docs::docs(&arguments),
         Command::Rate(arguments) => rate::rate(&arguments),
         Command::Plot(arguments) => plot::plot(&arguments),
         Command::Init(arguments) => start::init(&arguments),
-        Command::Schema => start::print_schema(),
+        Command::Schema(arguments) => start::print_schema(&arguments),
         Command::Completions(arguments) => start::completions(&arguments),
         Command::Man(arguments) => start::man(&arguments),
     };
@@ -111,14 +113,16 @@ pub(crate) enum Command {
     Check(Check),
     /// List what a config can ask for, with a line about each
     List(List),
+    /// Print what a key of a config means, what it takes, and what holds if it is left out
+    Docs(docs::Arguments),
     /// Rates and lifetimes over the saddles of results that are there already
     Rate(Rate),
     /// Draw the figures of results that are there already, or several energy paths over each other
     Plot(Plot),
     /// Write a starter config with explanations, and the schema beside it
     Init(Init),
-    /// Print the JSON Schema of a config, for editors that complete and check it
-    Schema,
+    /// Print the JSON Schema of a config, a sweep or a landscape, for editors that complete and check it
+    Schema(SchemaOf),
     /// Print the completions of this command line for a shell
     Completions(Completions),
     /// Print a man page
@@ -143,6 +147,14 @@ pub(crate) struct Init {
     /// Replace the file if it exists
     #[arg(long)]
     pub force: bool,
+}
+
+/// The arguments of `schema`.
+#[derive(Debug, Args)]
+pub(crate) struct SchemaOf {
+    /// Of which file
+    #[arg(value_enum, default_value = "config")]
+    pub what: start::Described,
 }
 
 /// The arguments of `completions`.
@@ -493,6 +505,9 @@ mod tests {
             "spinneb init",
             "spinneb init nanowire --out a.json --force",
             "spinneb schema",
+            "spinneb schema sweep",
+            "spinneb docs anisotropy.K",
+            "spinneb docs --page",
             "spinneb completions fish",
             "spinneb man run",
             "spinneb relax a.json b.json --set a=1 --out d --force --modes 3 --json",

@@ -1,4 +1,8 @@
-#![doc = include_str!("../README.md")]
+//! Minimum-energy paths between states of spins on a lattice, the barriers on them, certified saddles, and lifetimes.
+//!
+//! Everything that the program `spinneb` does is here; the program is the module `cli`. Energies are in meV, moments in μ_B, fields
+//! in T, lengths in nm, times in ps, angles in rad. Tutorial, how-to pages, the reference of configs, validation and costs are in the
+//! book of the repository, `docs/`.
 //!
 //! # The modules
 //!
@@ -18,6 +22,26 @@
 //! | [`files`] | files of spins: OVF, npz, npy, csv, VTK |
 //! | [`spins`], [`sphere`] | configurations and the product of spheres they live on |
 //! | [`lattice`], [`profile`], [`geometry`], [`units`], [`field`], [`linalg`], [`registry`], [`words`], [`error`] | the ground |
+//!
+//! # A run
+//!
+//! ```
+//! use spinneb::drive::{Problem, Silent, run};
+//! use spinneb::energy::{Anisotropy, Exchange, Hamiltonian};
+//! use spinneb::{geometry::Direction, lattice::Chain, spins::Spins};
+//!
+//! let chain = Chain::open(50).resolve()?;
+//! let exchange = Exchange::uniform(&chain, &[10.0]); // meV, nearest neighbours
+//! let easy_axis = Anisotropy::uniform(50, 0.5, Direction::Z); // meV
+//! let hamiltonian = Hamiltonian::new(&chain, vec![Box::new(exchange), Box::new(easy_axis)])?;
+//! let [up, down] = [Direction::Z, Direction::Z.reversed()].map(|d| Spins::uniform(50, d));
+//! let outcome = run(&Problem::new(hamiltonian, up, down), &mut Silent)?;
+//! assert!(outcome.barrier.is_some_and(|b| (b.forward_mev - 6.297777507).abs() < 1e-9));
+//! # Ok::<(), spinneb::error::Error>(())
+//! ```
+//!
+//! [`config::load`] makes the [`Problem`](drive::Problem) from a config; [`energy::CustomEnergy`] is a term of one's own;
+//! [`Loaded::report`](config::Loaded::report) with [`output::render_files`] makes the files of a result.
 
 pub mod band;
 mod base64;
@@ -44,7 +68,6 @@ pub mod profile;
 pub mod rates;
 pub mod record;
 pub mod registry;
-
 pub mod sphere;
 pub mod spins;
 pub mod state;
@@ -53,3 +76,12 @@ pub mod symmetry;
 mod threads;
 pub mod units;
 pub mod words;
+
+/// The Rust examples of the book.
+#[cfg(doctest)]
+mod book {
+    #[doc = include_str!("../docs/src/library.md")]
+    mod library {}
+    #[doc = include_str!("../docs/src/own_term.md")]
+    mod own_term {}
+}

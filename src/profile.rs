@@ -18,6 +18,7 @@ pub use random::{Deviation, Distribution, Random};
 use crate::error::{Error, Result};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{self, Deserialize, Deserializer, IntoDeserializer, MapAccess, SeqAccess, Visitor};
+use serde_json::json;
 use std::borrow::Cow;
 use std::fmt;
 use std::marker::PhantomData;
@@ -127,6 +128,9 @@ impl<T: JsonSchema> JsonSchema for Profile<T> {
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let (one, shape) = (generator.subschema_for::<T>(), generator.subschema_for::<RampShape>());
         let random = generator.subschema_for::<Random<T>>();
+        let end = |words: &str| json!({"allOf": [one], "description": words});
+        let shape = json!({"allOf": [shape], "description": "How the values go from one end to the other.", "default": "linear"});
+        let random = json!({"allOf": [random], "description": "Drawn from a distribution, for each site or bond, or for grains of them."});
         json_schema!({
             "description": "one value, a list of them, a ramp, or random values",
             "anyOf": [
@@ -134,7 +138,7 @@ impl<T: JsonSchema> JsonSchema for Profile<T> {
                 {"type": "array", "items": one},
                 {
                     "type": "object",
-                    "properties": {"from": one, "to": one, "shape": shape},
+                    "properties": {"from": end("The value of the first site or bond."), "to": end("The value of the last."), "shape": shape},
                     "required": ["from", "to"],
                     "additionalProperties": false,
                 },

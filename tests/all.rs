@@ -2,10 +2,13 @@
 //! `cargo test --test all rates::` runs those of one file.
 
 mod common;
+mod pages;
 
 mod any_lattice;
+mod book;
 mod climb;
 mod configs;
+mod conventions;
 mod counts;
 mod custom_terms;
 mod energy;

@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Too slow to be run once more: their barriers are compared with those of the README, which another test compares with a run.
+/// Too slow to be run once more: their barriers are compared with those of the book, which another test compares with a run.
 const SLOW: [&str; 3] = ["cobalt_chain", "permalloy_notch", "pd_fe_ir111_skyrmion"];
 /// The results whose `report.html` is committed.
 const REPORTS: [&str; 2] = ["ring_nucleus", "wall_nucleation"];
@@ -72,16 +72,16 @@ fn committed_summaries_and_tables_are_those_of_a_run_to_the_last_digit() {
 }
 
 #[test]
-fn the_slow_ones_are_of_todays_configs_and_have_the_barriers_of_the_readme() {
-    let readme = text(&root().join("README.md"));
+fn the_slow_ones_are_of_todays_configs_and_have_the_barriers_of_the_book() {
+    let book = text(&root().join("docs/src/configs.md"));
     for name in SLOW {
         let summary: Value = serde_json::from_str(&text(&gallery(name).join("summary.json"))).unwrap();
         assert_eq!(summary["config_sha256"], config(name).sha256, "{name}: {ANEW}");
         assert_eq!(summary["version"], env!("CARGO_PKG_VERSION"), "{name}: {ANEW}");
         assert!(summary["certified"] == true && summary["converged"] == true, "{name}");
         let [forward, backward] = ["forward", "backward"].map(|way| summary["barrier_meV"][way].as_f64().unwrap());
-        let row = format!("| [`{name}`](configs/{name}.json) | {forward:.6} / {backward:.6} |");
-        assert!(readme.contains(&row), "{row}; {ANEW}");
+        let row = format!("| [`{name}`](../../configs/{name}.json) | {forward:.6} / {backward:.6} |");
+        assert!(book.contains(&row), "{row}; {ANEW}");
         // the tables beside it are of the same run
         let rows = text(&gallery(name).join("path.csv")).lines().count() - 1;
         assert_eq!(summary["path"]["images"], rows, "{name}: {ANEW}");

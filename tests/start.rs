@@ -26,7 +26,11 @@ fn json_files(folder: &str) -> Vec<(String, Value)> {
 }
 
 fn schema() -> Validator {
-    let printed = spinneb(&root(), &["schema"]);
+    schema_of("config")
+}
+
+fn schema_of(what: &str) -> Validator {
+    let printed = spinneb(&root(), &["schema", what]);
     assert_eq!(printed.status.code(), Some(0));
     let schema: Value = serde_json::from_slice(&printed.stdout).unwrap();
     assert!(jsonschema::meta::is_valid(&schema));
@@ -73,6 +77,104 @@ fn every_shipped_config_is_valid_by_the_schema_and_misspelt_ones_are_not() {
         }
     }
     assert!(refused > 40, "{refused}");
+}
+
+#[test]
+fn shipped_sweeps_and_landscapes_are_valid_by_their_schemas_and_misspelt_ones_are_not() {
+    let (sweep, landscape) = (schema_of("sweep"), schema_of("landscape"));
+    let examples = json_files("examples/sweeps").into_iter().chain(json_files("configs/sweeps"));
+    let files: Vec<_> = examples
+        .map(|f| (&sweep, f))
+        .chain(json_files("configs/landscapes").into_iter().map(|f| (&landscape, f)))
+        .collect();
+    assert!(files.len() >= 7, "{}", files.len());
+    for (schema, (file, content)) in &files {
+        let wrong: Vec<String> = schema.iter_errors(content).map(|e| format!("{}: {e}", e.instance_path())).collect();
+        assert!(wrong.is_empty(), "{file}: {wrong:?}");
+        let mut misspelt = content.clone();
+        misspelt["gird"] = json!({});
+        assert!(!schema.is_valid(&misspelt), "{file}");
+    }
+    let range = |from: Value, points: Value| json!({"config": "a.json", "grid": {"x": {"from": from, "to": "1 T", "points": points}}});
+    for (file, valid) in [
+        (range(json!("-1 T"), json!(3)), true),
+        (range(json!("-1 Tesla"), json!(3)), false),
+        (range(json!("-1 T"), json!(1)), false),
+        (json!({"config": "a.json", "grid": {"x": []}}), false),
+        (json!({"config": "a.json"}), false),
+        (json!({"config": "a.json", "grid": {"x": [1]}, "zip": {"x": [1]}}), false),
+        (json!({"grid": {"x": [1]}}), false),
+    ] {
+        assert_eq!(sweep.is_valid(&file), valid, "{file}");
+    }
+    let without_ends = json!({"material": "toy", "lattice": {"chain": {"sites": 3}}});
+    assert!(landscape.is_valid(&without_ends) && !schema().is_valid(&without_ends));
+}
+
+#[test]
+fn every_key_is_described_and_has_a_value_that_the_schema_takes() {
+    let whole: Value = serde_json::from_slice(&spinneb(&root(), &["schema"]).stdout).unwrap();
+    let (mut keys, mut wrong) = (0, Vec::new());
+    for section in spinneb::config::reference::sections() {
+        let fits = |part: &Value, example: &str| {
+            let schema = json!({"allOf": [part], "definitions": whole["definitions"]});
+            jsonschema::validator_for(&schema).unwrap().is_valid(&serde_json::from_str(example).unwrap())
+        };
+        if section.summary.is_empty() || !fits(&section.schema, &section.example) {
+            wrong.push(format!("{}: {:?} {}", section.path, section.summary, section.example));
+        }
+        for (key, example) in &section.keys {
+            let told = !key.meaning.is_empty() && !key.value.is_empty();
+            if !told || !fits(&section.schema["properties"][&key.name], example) {
+                wrong.push(format!("{}.{}: {} {example}", section.path, key.name, key.meaning));
+            }
+            keys += 1;
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+    assert!(keys > 200, "{keys}");
+    // every object of the schema is in the reference
+    let parts: Vec<Value> = spinneb::config::reference::sections().into_iter().map(|section| section.schema).collect();
+    for (name, part) in whole["definitions"].as_object().unwrap() {
+        // those of one kind of value are told of once
+        let once = name.contains("_of_");
+        assert!(!part["properties"].is_object() || once || parts.contains(part), "{name} is not in the reference");
+    }
+}
+
+#[test]
+fn the_reference_of_a_key_is_printed_and_an_unknown_one_is_refused_with_a_near_one() {
+    let docs = |name: &str| {
+        let done = spinneb(&root(), &["docs", name]);
+        (done.status.code(), said(&done))
+    };
+    for (name, words) in [
+        ("anisotropy.K", &["energy.anisotropy.K (required)", "positive: easy axis", "J/m^3", "\"K\": \"0.5 meV\""][..]),
+        ("energy[0].anisotropy.K", &["energy.anisotropy.K (required)"]),
+        ("energy.0.anisotropy.K", &["energy.anisotropy.K (required)"]),
+        ("material.energy[1].anisotropy.K", &["energy.anisotropy.K (required)"]),
+        ("final.domain_wall.center", &["initial.domain_wall.center (required)"]),
+        ("center", &["initial.domain_wall.center", "initial.skyrmion.center", "shape.disc.center"]),
+        ("path.images", &["path.images (may be left out)"]),
+        ("neb.tolerance", &["neb.tolerance (1e-6 if left out)", "a number"]),
+        ("lattice.chain", &["lattice.chain: a row", "lattice.chain.sites (required)", "lattice.chain.periodic (false"]),
+        ("random.seed", &["value.random.seed (required)"]),
+    ] {
+        let (code, text) = docs(name);
+        assert_eq!(code, Some(0), "{name}: {text}");
+        words.iter().for_each(|word| assert!(text.contains(word), "{name}: {word} is not in {text}"));
+    }
+    for (name, hint) in [
+        ("anistropy.K", "did you mean \"anisotropy.K\"?"),
+        ("neb.tolerence", "did you mean \"neb.tolerance\"?"),
+        ("enery[0].anisotropy.K", "did you mean \"energy.anisotropy.K\"?"),
+        ("neb.sites", "error: there is no key \"neb.sites\""),
+        ("xyzzyxyzzy", "`spinneb docs` prints all of them"),
+    ] {
+        let (code, text) = docs(name);
+        assert!(code == Some(2) && text.contains(hint), "{name}: {text}");
+    }
+    assert!(said(&spinneb(&root(), &["docs"])).lines().count() > 200);
 }
 
 #[test]
@@ -149,7 +251,7 @@ fn starter_configs_are_valid_and_find_certified_paths() {
 #[test]
 fn completions_and_man_pages_tell_of_every_command() {
     let commands =
-        ["run", "relax", "sweep", "collect", "check", "list", "rate", "init", "schema", "completions", "man"];
+        ["run", "relax", "sweep", "collect", "check", "list", "docs", "rate", "init", "schema", "completions", "man"];
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
         let script = said(&spinneb(&root(), &["completions", shell]));
         for command in commands {

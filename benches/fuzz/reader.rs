@@ -1,4 +1,4 @@
-//! A second reader of files of spins, written from the formats' documents and the README alone, to compare the program's with.
+//! A second reader of files of spins, written from the formats' documents and the book alone, to compare the program's with.
 //!
 //! It knows nothing of places or messages: a file has these vectors, or none.
 

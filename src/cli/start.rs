@@ -1,7 +1,7 @@
 //! What helps to start: starter configs, the schema, completions of the command line, man pages.
 
-use super::{Cli, Completions, Init, Man, USAGE, note};
-use crate::config::{SCHEMA_FILE, schema};
+use super::{Cli, Completions, Init, Man, SchemaOf, USAGE, note};
+use crate::config::{SCHEMA_FILE, landscape_schema, schema, sweep_schema};
 use crate::files::disk;
 use anyhow::Result;
 use clap::{CommandFactory, ValueEnum};
@@ -68,9 +68,25 @@ fn is_schema(bytes: Option<Vec<u8>>) -> bool {
     bytes.is_none_or(|bytes| title(&bytes).is_some() && title(&bytes) == title(schema().as_bytes()))
 }
 
-/// Prints the schema.
-pub fn print_schema() -> Result<u8> {
-    print(schema().as_bytes())
+/// Files that have a schema.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Described {
+    /// A config, for `run`, `relax` and `check`
+    Config,
+    /// A sweep
+    Sweep,
+    /// A config for `landscape`, whose ends may be left out
+    Landscape,
+}
+
+/// Prints a schema.
+pub fn print_schema(arguments: &SchemaOf) -> Result<u8> {
+    let text = match arguments.what {
+        Described::Config => schema(),
+        Described::Sweep => sweep_schema(),
+        Described::Landscape => landscape_schema(),
+    };
+    print(text.as_bytes())
 }
 
 /// Prints the completions for a shell.

@@ -118,7 +118,7 @@ impl JsonSchema for MaterialChoice {
         let regions = json!({
             "type": "object",
             "description": "a material for each of the lattice's regions, and one for all other sites",
-            "properties": {DEFAULT: one},
+            "properties": {DEFAULT: {"allOf": [one], "description": "That of all sites in no region."}},
             "required": [DEFAULT],
             "additionalProperties": one,
         });

@@ -22,6 +22,7 @@ mod path;
 pub mod physics;
 mod pictures;
 pub mod rates;
+pub mod reference;
 mod refusals;
 mod results;
 mod schema;
@@ -44,7 +45,7 @@ pub use parts::PartMaterial;
 pub use path::{ImageCount, PathConfig};
 pub use rates::{RatesConfig, Temperatures};
 pub use results::{VERSION, discard_leftovers};
-pub use schema::{Key, SCHEMA_FILE, keys, schema};
+pub use schema::{Key, SCHEMA_FILE, keys, landscape_schema, schema, sweep_schema};
 pub use search::SearchConfig;
 pub use source::Source;
 pub use text::Text;
@@ -68,7 +69,7 @@ pub struct Config {
     /// Name of the run and of its folder; the file's name without its ending if absent.
     #[serde(default)]
     pub name: Option<Name>,
-    /// What the chain is made of.
+    /// What the sites are made of.
     pub material: MaterialChoice,
     /// Where the spins are.
     pub lattice: LatticeSpec,

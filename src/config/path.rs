@@ -9,7 +9,7 @@ use serde::{Deserialize, Deserializer};
 use std::borrow::Cow;
 use std::fmt;
 
-/// `"path": {"images": 20, "guess": {"geodesic": {}}, "noise": {…}, "smooth": 0.3}`.
+/// `"path": {"images": 20, "guess": {"geodesic": {}}, "smooth": 0.3}`.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct PathConfig {

@@ -8,6 +8,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Error, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
+use serde_json::json;
 use std::borrow::Cow;
 use std::fmt;
 
@@ -163,13 +164,18 @@ impl JsonSchema for Temperatures {
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let one = generator.subschema_for::<Temperature>();
+        let end = |words: &str| json!({"allOf": [one], "description": words});
         json_schema!({
             "description": "a list of temperatures, or a range of evenly spaced ones with both ends",
             "oneOf": [
                 {"type": "array", "items": one, "minItems": 1},
                 {
                     "type": "object",
-                    "properties": {"from": one, "to": one, "points": {"type": "integer", "minimum": 2, "maximum": MOST}},
+                    "properties": {
+                        "from": end("The first temperature."),
+                        "to": end("The last."),
+                        "points": {"type": "integer", "minimum": 2, "maximum": MOST, "description": "How many there are."},
+                    },
                     "required": ["from", "to", "points"],
                     "additionalProperties": false,
                 },

@@ -4,21 +4,40 @@
 
 use super::Config;
 use super::refusals::inline;
+use super::sweep::SweepFile;
 use schemars::generate::SchemaSettings;
-use schemars::{Schema, json_schema};
+use schemars::{JsonSchema, Schema, json_schema};
 use serde_json::Value;
 
 /// The name that configs give their schema.
 pub const SCHEMA_FILE: &str = "spinneb.schema.json";
 
-/// The schema as text.
+/// The schema of a config as text.
 pub fn schema() -> String {
     format!("{:#}\n", value())
 }
 
-fn value() -> Value {
-    let mut schema = SchemaSettings::draft07().into_generator().into_root_schema_for::<Config>();
-    schema.insert("title".into(), "a config of spinneb".into());
+/// The schema of a config for `spinneb landscape` as text: its ends may be left out.
+pub fn landscape_schema() -> String {
+    let mut schema = of::<Config>("a config of a landscape of spinneb");
+    if let Some(required) = schema["required"].as_array_mut() {
+        required.retain(|key| key != "initial" && key != "final");
+    }
+    format!("{schema:#}\n")
+}
+
+/// The schema of a sweep as text.
+pub fn sweep_schema() -> String {
+    format!("{:#}\n", of::<SweepFile>("a sweep of spinneb"))
+}
+
+pub(super) fn value() -> Value {
+    of::<Config>("a config of spinneb")
+}
+
+fn of<T: JsonSchema>(title: &str) -> Value {
+    let mut schema = SchemaSettings::draft07().into_generator().into_root_schema_for::<T>();
+    schema.insert("title".into(), title.into());
     schema.to_value()
 }
 
@@ -45,22 +64,28 @@ pub fn keys(family: &str, member: &str) -> Vec<Key> {
         return Vec::new();
     };
     let own = resolved(&schema, own);
-    let required = |name: &str| own["required"].as_array().is_some_and(|r| r.iter().any(|key| key == name));
     let properties = own["properties"].as_object().into_iter().flatten();
-    let key = |(name, property): (&String, &Value)| Key {
-        name: name.clone(),
-        required: required(name),
-        default: property.get("default").filter(|d| !d.is_null()).map(inline),
-        meaning: property["description"].as_str().unwrap_or_default().into(),
-        value: written(&schema, property),
-    };
-    let mut keys: Vec<Key> = properties.map(key).collect();
+    let mut keys: Vec<Key> = properties.map(|(name, property)| key(&schema, own, name, property)).collect();
     keys.sort_by_key(|key| !key.required);
     keys
 }
 
+/// A key of an object of the schema, in words.
+pub(super) fn key(schema: &Value, owner: &Value, name: &str, property: &Value) -> Key {
+    let mut form = property.clone();
+    // what it means is no form of what is written
+    form.as_object_mut().map(|form| form.remove("description"));
+    Key {
+        name: name.into(),
+        required: owner["required"].as_array().is_some_and(|required| required.iter().any(|key| key == name)),
+        default: property.get("default").filter(|d| !d.is_null()).map(inline),
+        meaning: property["description"].as_str().unwrap_or_default().into(),
+        value: written(schema, &form),
+    }
+}
+
 /// What a `$ref` stands for.
-fn resolved<'a>(schema: &'a Value, part: &'a Value) -> &'a Value {
+pub(super) fn resolved<'a>(schema: &'a Value, part: &'a Value) -> &'a Value {
     let pointer = part["$ref"].as_str().and_then(|r| r.strip_prefix('#'));
     pointer.and_then(|pointer| schema.pointer(pointer)).unwrap_or(part)
 }
@@ -68,13 +93,12 @@ fn resolved<'a>(schema: &'a Value, part: &'a Value) -> &'a Value {
 /// What is written for a value, in words.
 fn written(schema: &Value, part: &Value) -> String {
     let referred = resolved(schema, part);
-    let own = |part: &Value| part["description"].as_str().map(String::from);
     if !std::ptr::eq(referred, part) {
         let inner = referred["anyOf"][0].get("$ref").map(|_| written(schema, &referred["anyOf"][0]));
-        let told = own(referred);
-        return match (told, inner) {
+        let plain = referred["oneOf"][0].get("const").is_none() && !referred["properties"].is_object();
+        return match (own(referred), inner) {
             (Some(told), Some(inner)) => format!("{told}; each {inner}"),
-            (Some(told), None) if referred["oneOf"][0].get("const").is_none() => told,
+            (Some(told), None) if plain => told,
             _ => written(schema, referred),
         };
     }
@@ -85,29 +109,63 @@ fn written(schema: &Value, part: &Value) -> String {
     if let Some(one) = choices("allOf").first() {
         return written(schema, one);
     }
-    let forms: Vec<String> = choices("anyOf")
-        .iter()
-        .chain(&choices("oneOf"))
-        .filter(|form| form["type"] != "null")
-        .map(|form| written(schema, form))
-        .collect();
-    if !forms.is_empty() {
-        return forms.join(" or ");
+    let mut forms = [choices("anyOf"), choices("oneOf")].concat();
+    forms.retain(|form| form["type"] != "null");
+    let names: Vec<&str> = forms.iter().filter_map(|form| Some(member(form)?.0.as_str())).collect();
+    match names.len() {
+        0 if forms.is_empty() => simple(schema, part),
+        n if n > 1 && n == forms.len() => format!("{{NAME: …}} with one of the names {}", names.join(", ")),
+        _ => forms.iter().map(|form| written(schema, form)).collect::<Vec<_>>().join(" or "),
     }
+}
+
+/// The same of what is no choice.
+fn simple(schema: &Value, part: &Value) -> String {
     let kinds = part["type"].as_array().cloned().unwrap_or_else(|| vec![part["type"].clone()]);
     let many = || match (part["minItems"].as_u64(), part.get("items")) {
         (Some(n), Some(items)) => format!("[{n} values, each {}]", written(schema, items)),
         (None, Some(items)) => format!("[a list, each {}]", written(schema, items)),
         _ => "a list".into(),
     };
+    let told = |kind: &str| own(part).unwrap_or_else(|| kind.into());
     match kinds.iter().filter_map(Value::as_str).find(|kind| *kind != "null") {
-        Some("number") => "a number".into(),
+        Some("number") => own(part).map_or("a number".into(), |told| format!("a number, {told}")),
         Some("integer") => "a whole number".into(),
         Some("boolean") => "true or false".into(),
-        Some("string") => "a text".into(),
+        Some("string") if part["enum"].is_array() => {
+            part["enum"].as_array().into_iter().flatten().map(inline).collect::<Vec<_>>().join(" or ")
+        }
+        Some("string") => told("a text"),
         Some("array") => many(),
-        _ => own(part).unwrap_or_else(|| "an object".into()),
+        _ if part["properties"].is_object() && part["additionalProperties"] == false => keys_of(part),
+        _ if part["additionalProperties"].is_object() && own(part).is_none() => {
+            format!("{{NAME: …}}, each {}", written(schema, &part["additionalProperties"]))
+        }
+        _ => told("an object"),
     }
+}
+
+/// The keys of an object; those that may be left out with a question mark.
+fn keys_of(part: &Value) -> String {
+    let required =
+        |name: &str| part["required"].as_array().is_some_and(|required| required.iter().any(|key| key == name));
+    let mut names: Vec<&String> = part["properties"].as_object().into_iter().flatten().map(|(name, _)| name).collect();
+    names.sort_by_key(|name| !required(name));
+    let shown = |name: &&String| if required(name) { name.to_string() } else { format!("{name}?") };
+    format!("{{{}}}", names.iter().map(shown).collect::<Vec<_>>().join(", "))
+}
+
+/// What a part says of itself, where that is in words.
+fn own(part: &Value) -> Option<String> {
+    part["description"].as_str().filter(|told| !told.starts_with('`')).map(String::from)
+}
+
+/// The one key of a choice, `{"exchange": {…}}`, with what stands in it.
+pub(super) fn member(part: &Value) -> Option<(&String, &Value)> {
+    let properties = part["properties"].as_object()?;
+    let required = part["required"].as_array().is_some_and(|required| required.len() == 1);
+    let alone = properties.len() == 1 && required && !part["additionalProperties"].is_object();
+    alone.then(|| properties.iter().next()).flatten()
 }
 
 /// A list of some of these names, each once.

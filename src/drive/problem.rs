@@ -12,6 +12,22 @@ use crate::spins::Spins;
 use crate::state::{Sense, StateContext};
 
 /// Two states of a lattice, and how to look for the path between them.
+///
+/// ```
+/// use spinneb::drive::{Problem, Silent, run};
+/// use spinneb::energy::{Anisotropy, Exchange, Hamiltonian};
+/// use spinneb::{geometry::Direction, lattice::Chain, spins::Spins};
+///
+/// let chain = Chain::open(9).resolve()?;
+/// let exchange = Exchange::uniform(&chain, &[10.0]); // meV
+/// let easy_axis = Anisotropy::uniform(9, 0.5, Direction::Z); // meV
+/// let hamiltonian = Hamiltonian::new(&chain, vec![Box::new(exchange), Box::new(easy_axis)])?;
+/// let [up, down] = [Direction::Z, Direction::Z.reversed()].map(|d| Spins::uniform(9, d));
+/// let mut problem = Problem::new(hamiltonian, up, down);
+/// problem.neb.tolerance = 1e-8; // rad
+/// # assert!(run(&problem, &mut Silent)?.certified);
+/// # Ok::<(), spinneb::error::Error>(())
+/// ```
 #[derive(Debug)]
 pub struct Problem {
     /// The energy of the spins, and where they are.

@@ -37,6 +37,22 @@ pub(super) const END_TOLERANCE: f64 = 1e-14;
 /// Finds the minimum-energy path of a problem, taking what its [`Control`](crate::control::Control) finds on record from there, and
 /// recording what it computes. A run that its control stops ends with [`Error::Stopped`](crate::error::Error::Stopped), one that meets an
 /// energy that is no finite number with [`Error::Numerical`](crate::error::Error::Numerical).
+///
+/// ```
+/// use spinneb::drive::{Problem, Silent, run};
+/// use spinneb::energy::{Anisotropy, Exchange, Hamiltonian};
+/// use spinneb::{geometry::Direction, lattice::Chain, spins::Spins};
+///
+/// let chain = Chain::open(9).resolve()?;
+/// let exchange = Exchange::uniform(&chain, &[10.0]); // meV
+/// let easy_axis = Anisotropy::uniform(9, 0.5, Direction::Z); // meV
+/// let hamiltonian = Hamiltonian::new(&chain, vec![Box::new(exchange), Box::new(easy_axis)])?;
+/// let [up, down] = [Direction::Z, Direction::Z.reversed()].map(|d| Spins::uniform(9, d));
+/// let outcome = run(&Problem::new(hamiltonian, up, down), &mut Silent)?;
+/// assert!(outcome.certified);
+/// assert!((outcome.barrier.unwrap().forward_mev - 9.0 * 0.5).abs() < 1e-9); // too short for a wall: N K
+/// # Ok::<(), spinneb::error::Error>(())
+/// ```
 pub fn run(problem: &Problem, observer: &mut dyn Observer) -> Result<Outcome> {
     problem.control.recorder().begin(|| problem.fingerprint());
     // on a thread of the pool, so that it is not left and entered again for every band

@@ -88,6 +88,19 @@ fn add_linear(term: &dyn EnergyTerm, v: Components, mut out: ComponentsMut) {
 /// A term counts its energy from a reference state of its own: E = [`reference_mev`](Self::reference_mev) + Σ density.
 /// Densities are written as squares of deviations (½J|m_i − m_j|² for −J m_i·m_j), so that small energies of many spins are
 /// not differences of large ones.
+///
+/// ```
+/// use spinneb::energy::{EnergyTerm, Exchange, density_of};
+/// use spinneb::{geometry::Direction, lattice::Chain, spins::Spins};
+///
+/// let chain = Chain::open(50).resolve()?;
+/// let exchange = Exchange::uniform(&chain, &[10.0]); // meV
+/// let up = Spins::uniform(50, Direction::Z);
+/// let energy_mev = exchange.reference_mev() + density_of(&exchange, up.as_slice()).iter().sum::<f64>();
+/// assert_eq!(energy_mev, -490.0); // 49 bonds
+/// # Ok::<(), spinneb::error::Error>(())
+/// ```
+/// A term of a program's own need not write blocks: see [`CustomEnergy`].
 pub trait EnergyTerm: Debug + Send + Sync {
     /// The name it has in configs and results.
     fn name(&self) -> &str;

@@ -49,6 +49,7 @@ impl JsonSchema for Direction {
             "items": {"type": "number"},
             "minItems": 3,
             "maxItems": 3,
+            "examples": [[0, 0, 1]],
         })
     }
 }

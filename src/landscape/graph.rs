@@ -54,6 +54,24 @@ pub struct Route {
 }
 
 /// Minima and passes.
+///
+/// A survey fills one; what it found is told in [`Survey`](crate::drive::survey::Survey):
+///
+/// ```
+/// use spinneb::config::load_text;
+/// use spinneb::drive::{Silent, survey::survey};
+///
+/// let config = r#"{
+///     "material": {"name": "two spins", "energy": [{"exchange": {"J": ["1 meV"]}}, {"anisotropy": {"K": "2 meV", "axis": [0, 0, 1]}}]},
+///     "lattice": {"chain": {"sites": 2}},
+///     "initial": {"uniform": {"direction": [0, 0, 1]}},
+///     "final": {"uniform": {"direction": [0, 0, -1]}},
+///     "landscape": {"effort": "quick"}
+/// }"#;
+/// let found = survey(&load_text("two.json".as_ref(), config.into())?.survey()?, &mut Silent)?;
+/// assert_eq!(found.minima.len(), 4); // up and down, each by itself
+/// # Ok::<(), spinneb::error::Error>(())
+/// ```
 #[derive(Debug)]
 pub struct Landscape<'a> {
     h: Evaluator<'a>,

@@ -74,6 +74,16 @@ use std::collections::BTreeMap;
 
 /// Sites, each of which has (or lacks) a spin. Made by [`LatticeSpec::resolve`], so that everything in it makes sense: lists over
 /// sites have one entry a site, indices are those of sites, lengths and volumes are greater than 0.
+///
+/// ```
+/// use spinneb::lattice::{Chain, LatticeSpec};
+///
+/// let ring = LatticeSpec::Chain(Chain { periodic: true, ..Chain::open(12) }).resolve()?;
+/// let film: LatticeSpec = serde_json::from_str(r#"{"square": {"cells": [9, 9], "shape": {"disc": {"radius": 4}}}}"#).unwrap();
+/// let disc = film.resolve()?;
+/// assert!(ring.is_ring() && ring.sites == 12 && disc.sites == 49);
+/// # Ok::<(), spinneb::error::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lattice {
     /// The name of its kind.

@@ -135,7 +135,11 @@ impl JsonSchema for Selection {
                 {"type": "array", "items": index, "uniqueItems": true},
                 {
                     "type": "object",
-                    "properties": {"from": index, "to": index, "step": {"type": "integer", "minimum": 1, "default": 1}},
+                    "properties": {
+                        "from": {"type": "integer", "minimum": 0, "description": "The first."},
+                        "to": {"type": "integer", "minimum": 0, "description": "The last, which is one of them."},
+                        "step": {"type": "integer", "minimum": 1, "default": 1, "description": "Every so many of them."},
+                    },
                     "required": ["from", "to"],
                     "additionalProperties": false,
                 },

@@ -38,7 +38,7 @@ impl JsonSchema for Regions {
         json_schema!({
             "type": "object",
             "description": "states by the names of the lattice's regions; \"default\" is that of all other sites",
-            "properties": {DEFAULT: state},
+            "properties": {DEFAULT: {"allOf": [state], "description": "That of all sites in no region."}},
             "required": [DEFAULT],
             "additionalProperties": state,
         })

@@ -54,7 +54,10 @@ impl JsonSchema for Vectors {
                 list,
                 {
                     "type": "object",
-                    "properties": {"spins": list, "staggered": {"type": "boolean", "default": false}},
+                    "properties": {
+                        "spins": {"allOf": [list], "description": "A direction a site, in the order of the sites."},
+                        "staggered": {"type": "boolean", "default": false, "description": "Reverse odd sites."},
+                    },
                     "required": ["spins"],
                     "additionalProperties": false,
                 },

@@ -1,9 +1,14 @@
 //! A quantity of whatever kind, in the unit it is written in: for ranges and tables of values whose place in a config decides
 //! what they mean.
 
-use super::parse;
+use super::{
+    Angle, Energy, EnergyDensity, ExchangeStiffness, FluxDensity, Length, Magnetisation, Moment, SurfaceEnergy,
+    Temperature, Time, parse,
+};
 use crate::error::Result;
 use crate::words::number;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use std::borrow::Cow;
 
 /// A number with its unit as written.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,6 +18,29 @@ pub struct AnyQuantity {
     pub value: f64,
     /// Its unit, as written: `"kA/m"`.
     pub unit: String,
+}
+
+impl JsonSchema for AnyQuantity {
+    fn schema_name() -> Cow<'static, str> {
+        "AnyQuantity".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let kinds = [
+            generator.subschema_for::<Energy>(),
+            generator.subschema_for::<Moment>(),
+            generator.subschema_for::<FluxDensity>(),
+            generator.subschema_for::<ExchangeStiffness>(),
+            generator.subschema_for::<SurfaceEnergy>(),
+            generator.subschema_for::<EnergyDensity>(),
+            generator.subschema_for::<Magnetisation>(),
+            generator.subschema_for::<Length>(),
+            generator.subschema_for::<Temperature>(),
+            generator.subschema_for::<Time>(),
+            generator.subschema_for::<Angle>(),
+        ];
+        json_schema!({"description": "a number with its unit, of whatever kind the key wants", "anyOf": kinds})
+    }
 }
 
 impl AnyQuantity {

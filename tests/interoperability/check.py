@@ -1,7 +1,7 @@
-"""Checks spinneb's files with the packages that others use: check.py SPINNEB README
+"""Checks spinneb's files with the packages that others use: check.py SPINNEB PAGE
 
 Both directions, number by number: what spinneb writes is read with numpy, vtk, discretisedfield and libovf, and what these write
-spinneb takes as initial states and paths. Last, the README's notebook example runs on a result.
+spinneb takes as initial states and paths. Last, the example in Python of the page, which reads a result, runs on one.
 """
 
 import importlib
@@ -250,10 +250,10 @@ def libovf_writes(ovf, reader, folder, spins):
         reader.state(f"libovf, {name}", file.name, 3, spins[3], tolerance)
 
 
-def notebook(readme, result):
-    blocks = re.findall(r"```python\n(.*?)```", readme.read_text(), flags=re.S)
-    blocks = [block for block in blocks if "import spinneb" not in block]  # those of the package are run with its own tests
-    assert len(blocks) == 1, "the README has one example of files in Python"
+def notebook(page, result):
+    blocks = re.findall(r"```python\n(.*?)```", page.read_text(), flags=re.S)
+    blocks = [block for block in blocks if "path.npz" in block]  # those of the package are run with its own tests
+    assert len(blocks) == 1, "the page has one example of files in Python"
     assert len(blocks[0].splitlines()) <= 15, "it has more than 15 lines"
     written = set(result.iterdir())
     code = blocks[0].replace("results/wall_nucleation", str(result))
@@ -261,7 +261,7 @@ def notebook(readme, result):
     subprocess.run([sys.executable, "-c", code], cwd=result, check=True)
     [figure] = set(result.iterdir()) - written
     assert figure.read_bytes().startswith(b"\x89PNG") and figure.stat().st_size > 5000
-    print(f"  README's example in Python: {figure.name}")
+    print(f"  the book's example in Python: {figure.name}")
 
 
 def landscape(spinneb, folder, config, pygt, nx):
@@ -292,7 +292,7 @@ def landscape(spinneb, folder, config, pygt, nx):
 
 
 def main():
-    spinneb, readme = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
+    spinneb, page = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
     df, ovf = optional("discretisedfield"), optional("ovf.ovf")
     pygt, nx = optional("PyGT"), optional("networkx")
     with tempfile.TemporaryDirectory() as name:
@@ -313,8 +313,8 @@ def main():
         if ovf:
             libovf_writes(ovf, reader, folder, spins)
         films(spinneb, folder, df)
-        landscape(spinneb, folder, readme.parent / "configs/landscapes/ring.json", pygt, nx)
-        notebook(readme, result)
+        landscape(spinneb, folder, page.parents[2] / "configs/landscapes/ring.json", pygt, nx)
+        notebook(page, result)
     print("interoperability: checked" + "".join(f", but not with {n}" for n, m in [("discretisedfield", df), ("libovf", ovf), ("PyGT", pygt), ("networkx", nx)] if not m))
 
 

@@ -35,4 +35,4 @@ pip $usual discretisedfield==0.92.0 ovf==0.4.3 || pip $usual discretisedfield==0
 pip PyGT==0.3.0 networkx==3.4.2 || pip networkx==3.4.2 || true
 cargo build --release --quiet --manifest-path "$root/Cargo.toml"
 export PYTHONDONTWRITEBYTECODE=1 MPLBACKEND=Agg
-"$venv/bin/python" "$here/check.py" "${CARGO_TARGET_DIR:-$root/target}/release/spinneb" "$root/README.md"
+"$venv/bin/python" "$here/check.py" "${CARGO_TARGET_DIR:-$root/target}/release/spinneb" "$root/docs/src/python.md"

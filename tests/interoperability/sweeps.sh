@@ -1,8 +1,8 @@
 #!/bin/sh
 # The examples of sweeps by other programs: tests/interoperability/sweeps.sh [--venv DIR]
-# Runs examples/sweeps by GNU parallel, by Snakemake and by the lines of the Slurm array, and compares each table with that of a
-# local sweep, byte by byte. Installs parallel by apt-get (as root) and Snakemake into a virtual environment (a temporary one
-# unless DIR is given). Exit code 77: a program cannot be had here, and which one is said; the others are checked all the same.
+# Runs examples/sweeps by GNU parallel, by Snakemake, by a local cluster of HyperQueue and by the lines of the Slurm array, and
+# compares each table with that of a local sweep, byte by byte. Installs parallel by apt-get (as root), Snakemake and HyperQueue
+# into a virtual environment (a temporary one unless DIR is given). Exit code 77: a program cannot be had here, and which one is said; the others are checked all the same.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
@@ -75,5 +75,15 @@ if [ -x "$snakemake" ]; then
         { echo "sweeps: Snakemake would run again what is done" >&2; exit 1; }
 else
     cannot "Snakemake 9.13.4 cannot be installed: is there a network, and Python 3.11 or later?"
+fi
+
+if [ -x "$venv/bin/python" ] &&
+    { "$venv/bin/python" -m pip install --quiet --disable-pip-version-check --no-compile hyperqueue==0.27.0 >/dev/null 2>&1 ||
+        "$venv/bin/python" -c "import hyperqueue" 2>/dev/null; }; then
+    prepare hyperqueue
+    "$venv/bin/python" tasks.py >hyperqueue.log 2>&1 || { cat hyperqueue.log >&2; exit 1; }
+    compare "HyperQueue 0.27.0, a local cluster"
+else
+    cannot "HyperQueue 0.27.0 cannot be installed: is there a network?"
 fi
 exit "$code"

@@ -267,6 +267,7 @@ def regions(
     Parameters
     ----------
     default
+        That of all sites in no region.
     regions
         By name of the region.
 

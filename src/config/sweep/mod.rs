@@ -28,6 +28,7 @@ use crate::error::{Error, Result};
 use crate::output::sweep::{IndexedKey, IndexedPoint, SweepIndex};
 use crate::words::quoted;
 use range::Values;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -36,21 +37,29 @@ use std::path::{Path, PathBuf};
 /// Most points of a sweep.
 const MOST: usize = 1_000_000;
 
-/// A sweep's file.
-#[derive(Debug, Deserialize)]
+/// A sweep's file: a config at many values of some of its keys.
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-struct SweepFile {
+#[schemars(extend("oneOf" = [{"required": ["grid"]}, {"required": ["zip"]}]))]
+pub(super) struct SweepFile {
+    /// Where editors find the schema; not used here.
     #[serde(default, rename = "$schema")]
     _schema: Option<String>,
+    /// What you want to say about it: a text, or one of several lines.
     #[serde(default, rename = "comment")]
     _comment: Option<Comment>,
+    /// Name of the sweep and of its folder; the file's name without its ending if absent.
     #[serde(default)]
     name: Option<Name>,
+    /// The config, beside the sweep's file.
     config: String,
+    /// Changes of the config for all points, by paths of keys as in `run --set`.
     #[serde(default)]
     set: BTreeMap<String, Value>,
+    /// Every value of each of these keys with every other, the last key changing fastest.
     #[serde(default)]
     grid: Option<BTreeMap<String, Values>>,
+    /// The first values of all these keys, then the second ones, and so on.
     #[serde(default)]
     zip: Option<BTreeMap<String, Values>>,
 }

@@ -2,10 +2,12 @@
 
 use crate::units::AnyQuantity;
 use crate::words::quoted;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Error, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;
+use std::borrow::Cow;
 use std::fmt;
 
 /// Most points of a range.
@@ -25,23 +27,30 @@ pub(super) struct Values {
 }
 
 /// `{"from": "0.1 meV", "to": "1 meV", "points": 10, "scale": "log"}`.
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct Range {
+    /// The first value.
     from: End,
+    /// The last, in any unit of the same kind.
     to: End,
+    /// How many values there are.
     #[serde(deserialize_with = "points")]
+    #[schemars(range(min = 2, max = 100_000))]
     points: usize,
+    /// Whether neighbours differ by equal steps or by equal factors.
     #[serde(default)]
     scale: Scale,
 }
 
 /// How the values of a range are spaced.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 enum Scale {
+    /// By equal steps.
     #[default]
     Linear,
+    /// By equal factors.
     Log,
 }
 
@@ -57,6 +66,29 @@ fn points<'de, D: Deserializer<'de>>(d: D) -> Result<usize, D::Error> {
 enum End {
     Number(f64),
     Quantity(AnyQuantity),
+}
+
+impl JsonSchema for End {
+    fn schema_name() -> Cow<'static, str> {
+        "End".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        json_schema!({"anyOf": [{"type": "number"}, generator.subschema_for::<AnyQuantity>()]})
+    }
+}
+
+impl JsonSchema for Values {
+    fn schema_name() -> Cow<'static, str> {
+        "Values".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "description": "the values that the key takes: a list, or a range with both ends",
+            "oneOf": [{"type": "array", "minItems": 1, "uniqueItems": true}, generator.subschema_for::<Range>()],
+        })
+    }
 }
 
 impl<'de> Deserialize<'de> for End {

@@ -1,0 +1,30 @@
+#!/bin/sh
+# What a release consists of: tools/release.sh OUT
+# Checks that the work tree is clean, that the versions of the crate, of the Python package and of CITATION.cff are one, and that the
+# changelog has a section of it; then makes in OUT the crate, which is compiled as it is packed, the wheel, the program, and a file of
+# SHA-256 sums. It publishes nothing. Needs the Rust toolchain, git, and Python with maturin (pip install "maturin<2").
+set -eu
+here=$(cd "$(dirname "$0")" && pwd)
+root=$(cd "$here/.." && pwd)
+fail() {
+    echo "release: $*" >&2
+    exit 1
+}
+[ $# -eq 1 ] || { echo "usage: tools/release.sh OUT" >&2; exit 2; }
+cd "$root"
+version=$(sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -1)
+[ "$(sed -n 's/^version = "\(.*\)"/\1/p' python/Cargo.toml | head -1)" = "$version" ] || fail "python/Cargo.toml is not of version $version"
+grep -qx "version: $version" CITATION.cff || fail "CITATION.cff is not of version $version"
+grep -qF "## [$version]" CHANGELOG.md || fail "CHANGELOG.md has no section [$version]"
+[ -z "$(git status --porcelain)" ] || fail "the work tree is not clean"
+target=${CARGO_TARGET_DIR:-$root/target}
+mkdir -p "$1"
+out=$(cd "$1" && pwd)
+cargo package --locked
+cp "$target/package/spinneb-$version.crate" "$out"
+cargo build --release --locked
+cp "$target/release/spinneb" "$out/spinneb-$version-$(rustc -vV | sed -n 's/^host: //p')"
+(cd python && maturin build --release --locked --out "$out")
+(cd "$out" && find . -maxdepth 1 -type f -name '*spinneb*' ! -name SHA256SUMS | sort | xargs sha256sum >SHA256SUMS)
+echo "release: version $version is in $out; to publish it:"
+echo "  git tag v$version, cargo publish, and an upload of the wheel and of these files"
