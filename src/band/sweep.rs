@@ -39,8 +39,8 @@ pub struct Sweep {
 /// Room for the linear algebra of an image, with factors or without.
 #[derive(Debug)]
 enum Room {
-    Factors(Linearised),
-    Products(Iterated),
+    Factors(Box<Linearised>),
+    Products(Box<Iterated>),
 }
 
 /// Room for the linear algebra of as many images as are worked on at a time.
@@ -84,8 +84,8 @@ struct Task<'a> {
 impl Task<'_> {
     fn prepared(&self, k: usize) -> Room {
         let new = || match self.stand_in {
-            Some(stand_in) => Room::Products(Iterated::by(stand_in.clone())),
-            None => Room::Factors(Linearised::default()),
+            Some(stand_in) => Room::Products(Box::new(Iterated::by(stand_in.clone()))),
+            None => Room::Factors(Box::default()),
         };
         let mut room = self.rooms.take().unwrap_or_else(new);
         let (c, old) = (self.stiffness, self.shifts[k]);
