@@ -1,6 +1,9 @@
 //! The tests of the library and of the program: one binary, so that the library is linked once and all cores are used to the end.
 //! `cargo test --test all rates::` runs those of one file.
 
+// the campaigns of benches/ are programs of their own, each with all its files
+#![allow(clippy::duplicate_mod)]
+
 mod common;
 mod pages;
 

@@ -34,6 +34,18 @@ const FEWEST: usize = 7;
 /// A state that nothing but the edges of its lattice holds may be moved by k_BT over this part of it.
 const ROOM: f64 = 0.25;
 
+/// Eigenvalues that differ by less than this part of them are of modes that any rotation mixes: what they are is told of all together.
+const ALIKE: f64 = 1e-6;
+
+/// A mode that may be a translation.
+struct Candidate {
+    eigenvalue_mev: f64,
+    mode: Vec<f64>,
+    /// Of the mode, in the span of the translations.
+    part: f64,
+    pinning_mev: f64,
+}
+
 /// How a stationary state slides.
 #[derive(Debug, Default)]
 pub struct Sliding {
@@ -64,17 +76,26 @@ impl Sliding {
         wanders(h, state, &shifts, hottest_k)?;
         let mut found = Sliding::along(h.lattice(), state, group, &shifts);
         let span = orthonormal(found.moves[0].clone(), 0.0);
-        let (mut known, mut pinning) = (state.zeros.clone(), Vec::new());
+        let (mut known, mut candidates) = (state.zeros.clone(), Vec::new());
         for start in ritz_vectors(state, &span) {
             let Some((eigenvalue_mev, mode)) = nearest_mode(state, start, &known) else { continue };
             known.push(mode.clone());
             let part = slab::norm(&slab::overlaps(&span, &mode));
             let hop = found.moves[0].iter().map(|v| slab::dot(v, &mode).abs()).fold(0.0, f64::max);
-            let pinning_mev = pinning_mev(eigenvalue_mev, hop);
-            if part > SLIDES && eigenvalue_mev > -spectrum.floor_mev && pinning_mev < K_B * hottest_k {
-                found.modes.push(mode);
-                found.eigenvalues_mev.push(eigenvalue_mev);
-                pinning.push(pinning_mev);
+            candidates.push(Candidate { pinning_mev: pinning_mev(eigenvalue_mev, hop), eigenvalue_mev, part, mode });
+        }
+        let mut pinning = Vec::new();
+        let equal = |a: &Candidate, b: &Candidate| {
+            (a.eigenvalue_mev - b.eigenvalue_mev).abs() < ALIKE * b.eigenvalue_mev.abs() + spectrum.floor_mev
+        };
+        for alike in candidates.chunk_by(equal) {
+            let mean = |of: fn(&Candidate) -> f64| alike.iter().map(of).sum::<f64>() / alike.len() as f64;
+            let is_translation = mean(|c| c.part * c.part) > SLIDES * SLIDES;
+            let is_soft = mean(|c| c.eigenvalue_mev) > -spectrum.floor_mev && mean(|c| c.pinning_mev) < K_B * hottest_k;
+            for c in alike.iter().filter(|_| is_translation && is_soft) {
+                found.modes.push(c.mode.clone());
+                found.eigenvalues_mev.push(c.eigenvalue_mev);
+                pinning.push(c.pinning_mev);
             }
         }
         found.pinning_mev = if found.modes.len() == found.ways.len() { found.pinning_by_way() } else { pinning };
