@@ -21,7 +21,7 @@ use crate::energy::Hamiltonian;
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{log, vector};
 use crate::lattice::Lattice;
-use crate::linalg::{eigen_symmetric, orthonormal, remove, slab};
+use crate::linalg::{eigen_symmetric, orthonormal, rayleigh_ritz, remove, slab};
 use crate::stationary::{Spectrum, State};
 use crate::symmetry::{Group, Shift};
 use crate::units::K_B;
@@ -36,6 +36,10 @@ const ROOM: f64 = 0.25;
 
 /// Eigenvalues that differ by less than this part of them are of modes that any rotation mixes: what they are is told of all together.
 const ALIKE: f64 = 1e-6;
+
+/// Inverse iterations towards soft modes, and from how far below zero, in parts of the stiffest translation.
+const ITERATIONS: usize = 4;
+const BELOW: f64 = 0.01;
 
 /// A mode that may be a translation.
 struct Candidate {
@@ -77,8 +81,12 @@ impl Sliding {
         let mut found = Sliding::along(h.lattice(), state, group, &shifts);
         let span = orthonormal(found.moves[0].clone(), 0.0);
         let (mut known, mut candidates) = (state.zeros.clone(), Vec::new());
-        for start in ritz_vectors(state, &span) {
-            let Some((eigenvalue_mev, mode)) = nearest_mode(state, start, &known) else { continue };
+        let near = softened(state, span.clone());
+        for _ in 0..span.len() {
+            // of two modes of one eigenvalue the search finds any mixture: the next start is the softest of what is left beside it
+            let rest = near.iter().map(|v| without(v, &known)).collect();
+            let Some(start) = softest(state, &orthonormal(rest, 1e-6)) else { break };
+            let Some((eigenvalue_mev, mode)) = nearest_mode(state, start, &known) else { break };
             known.push(mode.clone());
             let part = slab::norm(&slab::overlaps(&span, &mode));
             let hop = found.moves[0].iter().map(|v| slab::dot(v, &mode).abs()).fold(0.0, f64::max);
@@ -205,21 +213,32 @@ fn direction(shift: &Shift) -> Option<usize> {
     (0..3).find(|d| by[*d] != 0)
 }
 
-/// Combinations of orthonormal vectors that the Hessian does not mix, the softest first.
-fn ritz_vectors(state: &State, span: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    let image = |v: &Vec<f64>| {
-        let mut image = vec![0.0; v.len()];
-        state.hessian.multiply(v, &mut image);
-        image
-    };
-    let images: Vec<Vec<f64>> = span.iter().map(image).collect();
-    let within: Vec<f64> = span.iter().flat_map(|a| images.iter().map(|b| slab::dot(a, b))).collect();
-    let combined = |weights: &Vec<f64>| {
-        let mut v = vec![0.0; state.slope.len()];
-        slab::add_all(&mut v, weights, span);
-        v
-    };
-    eigen_symmetric(&within, span.len()).1.iter().map(combined).collect()
+/// The space of the soft modes that are nearest to a space, nearly: by inverse iteration, from a little below zero.
+fn softened(state: &State, mut space: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    let Some(stiffest) = rayleigh_ritz(&state.hessian, &space).into_iter().next_back() else { return space };
+    let mut matrix = state.hessian.clone();
+    matrix.shift(BELOW * stiffest.value.abs());
+    let factors = matrix.factor();
+    for _ in 0..ITERATIONS {
+        for v in &mut space {
+            factors.solve(v, 1);
+            remove(v, &state.zeros);
+        }
+        space = orthonormal(space, 1e-9);
+    }
+    space
+}
+
+/// The softest combination of orthonormal vectors.
+fn softest(state: &State, span: &[Vec<f64>]) -> Option<Vec<f64>> {
+    rayleigh_ritz(&state.hessian, span).into_iter().next().map(|mode| mode.vector)
+}
+
+/// What a vector has beside some orthonormal ones.
+fn without(v: &[f64], known: &[Vec<f64>]) -> Vec<f64> {
+    let mut rest = v.to_vec();
+    remove(&mut rest, known);
+    rest
 }
 
 /// An error where the state slides along a direction that no shift of the energy goes along, and k_BT moves it far: what holds it is
