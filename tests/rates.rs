@@ -7,6 +7,7 @@ use spinneb::config::load_text;
 use spinneb::drive::{Outcome, Problem};
 use spinneb::energy::{Anisotropy, Exchange, Hamiltonian};
 use spinneb::geometry::{Direction, tangent_basis, vector};
+use spinneb::landscape::Effort;
 use spinneb::lattice::Chain;
 use spinneb::linalg::eigen_symmetric;
 use spinneb::rates::{RateSettings, SaddleRate, Theory, Way, ZeroKind};
@@ -386,6 +387,30 @@ fn a_skyrmion_that_slides_over_its_film_agrees_with_dense_eigenvalues_and_the_vo
     // cold enough, a minimum is one place
     let cold = solve(&film(&lattice, energy, [skyrmion, UP], 1e-4));
     assert!(rate(&cold, Way::Forward).minimum_zeros.is_empty() && rate(&cold, Way::Forward).htst.is_some());
+}
+
+#[test]
+fn two_translations_of_one_eigenvalue_are_both_found_wherever_the_state_stands() {
+    let energy = r#"{"exchange": {"J": ["10 meV"]}}, {"dmi": {"D": "4 meV", "kind": "interfacial"}},
+        {"anisotropy": {"K": "1.5 meV", "axis": [0, 0, 1]}}, {"zeeman": {"B": ["0 T", "0 T", "4 T"]}}"#;
+    let lattice = r#"{"triangular": {"cells": [16, 16], "periodic": true}}"#;
+    let found = ["[8, 4.3]", "[12, 6.9]", "[9.1, 5.5]"].map(|center| {
+        let skyrmion = format!(r#"{{"skyrmion": {{"radius": 4, "center": {center}}}}}"#);
+        let mut problem = film(lattice, energy, [&skyrmion, UP], 20.0);
+        problem.search = Effort::None;
+        let outcome = solve(&problem);
+        assert!(outcome.certified, "{:?}", outcome.warnings);
+        let saddles = outcome.saddles.iter().map(|s| s.above_initial_mev).enumerate();
+        let collapse = saddles.max_by(|a, b| a.1.total_cmp(&b.1)).expect("a saddle").0;
+        let of = |r: &&SaddleRate| r.saddle == collapse && r.way == Way::Forward;
+        let rate = outcome.rates.as_ref().expect("rates").saddles.iter().find(of).expect("a rate");
+        assert_eq!(
+            rate.saddle_zeros.iter().map(|z| (z.kind, z.count)).collect::<Vec<_>>(),
+            [(ZeroKind::Translation, 2)]
+        );
+        rate.ln_rate_per_s(Theory::Htst, 20.0).expect("a rate")
+    });
+    assert!(found.iter().all(|ln| (ln - found[0]).abs() < 1e-8), "{found:?}");
 }
 
 #[test]
