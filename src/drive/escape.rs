@@ -3,7 +3,7 @@
 use crate::band::Band;
 use crate::field::project;
 use crate::landscape::Saddle;
-use crate::linalg::{lowest_modes, slab};
+use crate::linalg::{slab, soft_modes};
 use crate::path::Path;
 use crate::sphere::{move_points, rotation_of};
 
@@ -13,8 +13,9 @@ const PUSH: f64 = 0.8;
 /// Two paths pushed off a stationary point of index > 1, along its lowest negative mode other than the path's own, both ways.
 pub fn escapes(band: &Band, found: &Saddle, c: f64) -> Vec<Path> {
     let state = &found.refined.state;
-    let modes = lowest_modes(&state.hessian, 8, &state.zeros);
-    let negative: Vec<_> = modes.into_iter().filter(|m| m.value < -1e-6 * c).collect();
+    let enough = -1e-6 * c;
+    let modes = soft_modes(&state.hessian, 8, &state.zeros, enough);
+    let negative: Vec<_> = modes.into_iter().filter(|m| m.value < enough).collect();
     if negative.len() < 2 {
         return Vec::new();
     }
