@@ -202,24 +202,41 @@ impl<'a> Landscape<'a> {
 
     /// The node of a minimum, a new one if there is none yet; `of`: the one that it is an image of.
     fn place(&mut self, minimum: &Minimum, of: Option<usize>) -> usize {
-        let height = self.height_mev(minimum.spins.as_slice());
-        let near = ENERGY * self.h.stiffness_mev();
-        let alike =
-            |k: &usize| (self.heights_mev[*k] - height).abs() < near && self.minima[*k].is_identical(self.h, minimum);
-        if let Some(known) = (0..self.minima.len()).find(alike) {
+        if let Some(known) = self.known(minimum) {
             return self.stands_for[known];
         }
         self.minima.push(minimum.clone());
-        self.heights_mev.push(height);
+        self.heights_mev.push(self.height_mev(minimum.spins.as_slice()));
         let new = self.minima.len() - 1;
         self.stands_for.push(new);
         self.orbits.push(of.map_or(new, |k| self.orbits[k]));
         new
     }
 
-    /// Lets two minima be one: they are joined by this flat valley.
-    pub fn merge(&mut self, [a, b]: [usize; 2], valley: Path) {
+    /// Which of the minima one is.
+    fn known(&self, minimum: &Minimum) -> Option<usize> {
+        let height = self.height_mev(minimum.spins.as_slice());
+        let near = ENERGY * self.h.stiffness_mev();
+        let alike =
+            |k: &usize| (self.heights_mev[*k] - height).abs() < near && self.minima[*k].is_identical(self.h, minimum);
+        (0..self.minima.len()).find(alike)
+    }
+
+    /// Lets two minima be one, and their images by symmetry: they are joined by this flat valley.
+    pub fn merge(&mut self, pair: [usize; 2], valley: Path) {
         self.valleys.push(valley);
+        self.join(pair);
+        for by in 0..self.images_to_come() {
+            let operation = &self.operations_known()[by];
+            if let [Some(a), Some(b)] = pair.map(|k| self.known(&self.minima[k].image(operation))) {
+                self.join([a, b]);
+            }
+        }
+    }
+
+    /// Lets the same minimum stand for both.
+    fn join(&mut self, pair: [usize; 2]) {
+        let [a, b] = pair.map(|k| self.stands_for[k]);
         let ([a, b], all) = ([a.min(b), a.max(b)], &mut self.stands_for);
         all.iter_mut().filter(|k| **k == b).for_each(|k| *k = a);
         for end in self.edges.iter_mut().flat_map(|edge| &mut edge.ends) {
@@ -227,18 +244,24 @@ impl<'a> Landscape<'a> {
         }
     }
 
-    /// The flat way from one minimum to another, if it is known, turned about the symmetry axes.
+    /// The flat way from one minimum to another, if it or an image of it is known, turned about the symmetry axes.
     pub fn valley(&self, from: &Spins, to: &Spins) -> Option<Path> {
         let near = |a: &Spins, b: &Spins| largest_angle(a.as_slice(), b.as_slice()) < SAME;
-        let along = |valley: &Path, back: bool| {
+        let along = |valley: &Path, by: Option<&Operation>, back: bool| {
             let last = valley.images() - 1;
-            let image = |k: usize| valley.spins(if back { last - k } else { k });
+            let image = |k: usize| {
+                let m = valley.image(if back { last - k } else { k });
+                Spins::from_unit_components(&by.map_or_else(|| m.to_vec(), |by| by.apply(m)))
+            };
             let turns = turns(self.h, &image(0), from);
             let fits = near(&turned(&image(0), &turns), from) && near(&turned(&image(last), &turns), to);
             let inner = (1..last).map(|k| turned(&image(k), &turns));
             fits.then(|| Path::new(&std::iter::once(from.clone()).chain(inner).chain([to.clone()]).collect::<Vec<_>>()))
         };
-        self.valleys.iter().find_map(|valley| along(valley, false).or_else(|| along(valley, true)))
+        let images = || std::iter::once(None).chain(self.operations_known().iter().map(Some));
+        let all = self.valleys.iter().flat_map(|valley| images().map(move |by| (valley, by)));
+        all.flat_map(|(valley, by)| [(valley, by, false), (valley, by, true)])
+            .find_map(|(valley, by, back)| along(valley, by, back))
     }
 
     /// The minimum that one is an image of by symmetry: itself if it was there first.
