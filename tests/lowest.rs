@@ -74,6 +74,18 @@ fn a_wall_turns_its_chirality_by_leaving_the_chain_and_coming_back() {
 }
 
 #[test]
+fn a_narrow_wall_on_a_long_plateau_is_certified_with_few_images_too() {
+    let energy = json!([{"exchange": {"J": ["10 meV"]}}, {"anisotropy": {"K": "0.5 meV", "axis": [0, 0, 1]}}]);
+    let mut config = chain(500, false, energy, up(), down());
+    config["path"] = json!({"images": 20});
+    let outcome = solve(&config, Effort::None);
+    // the wall's own energy, 2 √(2JK) where it is wide
+    assert!((certified(&outcome) - 6.297781).abs() < 1e-5);
+    let work = outcome.work.force_evaluations;
+    assert!(work < 100_000, "{work}");
+}
+
+#[test]
 fn the_two_signs_of_a_dzyaloshinskii_moriya_interaction_on_a_ring_have_one_barrier() {
     let ring = |d: &str| {
         let energy = json!([

@@ -98,8 +98,8 @@ def test_ctrl_c_ends_a_run_of_1e5_spins_soon(wait):
     took = time.monotonic() - sent
     process.wait(30)
     assert said in ("interrupted\n", "finished\n")
-    # a second as a rule, and some more on a busy machine
-    assert took < 4.0, took
+    # a second or two as a rule, and some more on a busy machine
+    assert took < 10.0, took
 
 
 def test_import_is_quick():

@@ -515,6 +515,25 @@ mod tests {
     }
 
     #[test]
+    fn a_flat_valley_joins_the_images_of_its_minima_too() {
+        let h = spin();
+        let state = |v: [f64; 3]| Spins::from_vectors(&[v]).unwrap();
+        let mut land = Landscape::new((&h).into(), state([0.0, 0.0, 1.0]).as_slice());
+        land.unfold();
+        let a = land.add_minimum(&Minimum::examine((&h).into(), &state([0.3, 0.0, 0.9])));
+        assert_eq!(land.minima().len(), 4);
+        let find = |land: &Landscape, v: [f64; 3]| land.known(&Minimum::examine((&h).into(), &state(v))).unwrap();
+        let b = find(&land, [-0.3, 0.0, 0.9]);
+        let [c, d] = [[0.3, 0.0, -0.9], [-0.3, 0.0, -0.9]].map(|v| find(&land, v));
+        land.merge([a, b], Path::new(&[[0.3, 0.0, 0.9], [0.0, 0.1, 0.9], [-0.3, 0.0, 0.9]].map(state)));
+        let standing = [a, b, c, d].map(|k| land.standing_for(k));
+        assert!(standing[0] == standing[1] && standing[2] == standing[3] && standing[0] != standing[2]);
+        let valley = land.valley(&state([-0.3, 0.0, -0.9]), &state([0.3, 0.0, -0.9])).unwrap();
+        let middle = valley.image(1);
+        assert!(middle[2] < -0.9 && middle[1].abs() > 0.05, "{middle:?}");
+    }
+
+    #[test]
     fn a_route_is_over_the_lowest_highest_pass_and_then_over_the_fewest() {
         let h = spin();
         let up = Spins::from_vectors(&[[0.0, 0.0, 1.0]]).unwrap();
