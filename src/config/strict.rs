@@ -1,12 +1,13 @@
 //! JSON values for serde, but for one thing: an array is no object.
 //!
 //! serde takes an array for a struct and fills its fields in order. In a config the keys would then go unsaid, and a list with one
-//! value too few would mean something; here it is refused.
+//! value too few would mean something; here it is refused. Nothing of a config is handed to serde_json's own reading, or every type
+//! in it would be compiled for that one too.
 
 use serde::de::value::StrDeserializer;
 use serde::de::{
-    DeserializeSeed, Deserializer, EnumAccess, Error as _, IntoDeserializer, MapAccess, SeqAccess, Unexpected,
-    VariantAccess, Visitor,
+    Deserialize, DeserializeSeed, Deserializer, EnumAccess, Error as _, IgnoredAny, IntoDeserializer, MapAccess,
+    SeqAccess, Unexpected, VariantAccess, Visitor,
 };
 use serde::forward_to_deserialize_any;
 use serde_json::{Error, Value};
@@ -34,7 +35,10 @@ impl<'de> Deserializer<'de> for Strict<'de> {
                 all.sort_by_key(|(key, _)| key.as_str() != "default");
                 visitor.visit_map(Members { rest: all.into_iter(), value: None })
             }
-            single => single.deserialize_any(visitor),
+            Value::Null => visitor.visit_unit(),
+            Value::Bool(single) => visitor.visit_bool(*single),
+            Value::Number(single) => single.deserialize_any(visitor),
+            Value::String(single) => visitor.visit_borrowed_str(single),
         }
     }
 
@@ -70,10 +74,11 @@ impl<'de> Deserializer<'de> for Strict<'de> {
         match self.0 {
             Value::Object(members) if members.len() == 1 => {
                 let (kind, value) = members.iter().next().ok_or_else(|| Error::custom("an empty object"))?;
-                visitor.visit_enum(Variant { kind, value })
+                visitor.visit_enum(Variant { kind, content: Content(Some(value)) })
             }
-            // a name alone, or what is none: serde_json's own words do
-            other => other.deserialize_enum(name, variants, visitor),
+            Value::String(kind) => visitor.visit_enum(Variant { kind, content: Content(None) }),
+            // what is no variant: serde_json's own words do
+            other => other.deserialize_enum(name, variants, IgnoredAny).and_then(|_| Err(Error::custom("no variant"))),
         }
     }
 
@@ -122,35 +127,44 @@ impl<'de> MapAccess<'de> for Members<'de> {
 
 struct Variant<'a> {
     kind: &'a str,
-    value: &'a Value,
+    content: Content<'a>,
+}
+
+/// What a variant is of; a name alone has nothing.
+struct Content<'a>(Option<&'a Value>);
+
+impl<'a> Content<'a> {
+    fn of(self, variant: &'static str) -> Result<Strict<'a>, Error> {
+        self.0.map(Strict).ok_or_else(|| Error::invalid_type(Unexpected::UnitVariant, &variant))
+    }
 }
 
 impl<'de> EnumAccess<'de> for Variant<'de> {
     type Error = Error;
-    type Variant = Strict<'de>;
+    type Variant = Content<'de>;
 
-    fn variant_seed<V: DeserializeSeed<'de>>(self, seed: V) -> Result<(V::Value, Strict<'de>), Error> {
+    fn variant_seed<V: DeserializeSeed<'de>>(self, seed: V) -> Result<(V::Value, Content<'de>), Error> {
         let kind: StrDeserializer<Error> = self.kind.into_deserializer();
-        Ok((seed.deserialize(kind)?, Strict(self.value)))
+        Ok((seed.deserialize(kind)?, self.content))
     }
 }
 
-impl<'de> VariantAccess<'de> for Strict<'de> {
+impl<'de> VariantAccess<'de> for Content<'de> {
     type Error = Error;
 
     fn unit_variant(self) -> Result<(), Error> {
-        serde::Deserialize::deserialize(self)
+        self.0.map_or(Ok(()), |value| Deserialize::deserialize(Strict(value)))
     }
 
     fn newtype_variant_seed<T: DeserializeSeed<'de>>(self, seed: T) -> Result<T::Value, Error> {
-        seed.deserialize(self)
+        seed.deserialize(self.of("newtype variant")?)
     }
 
     fn tuple_variant<V: Visitor<'de>>(self, _: usize, visitor: V) -> Result<V::Value, Error> {
-        self.deserialize_any(visitor)
+        self.of("tuple variant")?.deserialize_any(visitor)
     }
 
     fn struct_variant<V: Visitor<'de>>(self, fields: &'static [&'static str], visitor: V) -> Result<V::Value, Error> {
-        self.deserialize_struct("", fields, visitor)
+        self.of("struct variant")?.deserialize_struct("", fields, visitor)
     }
 }
