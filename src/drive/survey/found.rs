@@ -81,7 +81,6 @@ impl Survey {
         group: &Group,
         (seeds, unseen): (usize, Unseen),
         searched: Searched,
-        warnings: Vec<String>,
     ) -> Result<Survey> {
         let lowest = land.lowest_mev();
         let view = View { land, group, lowest, top: lowest + asked.window_mev };
@@ -98,7 +97,7 @@ impl Survey {
             unseen,
             symmetry_order: group.order(),
             lifetimes: None,
-            warnings,
+            warnings: Vec::new(),
         };
         survey.judge();
         if let Some(settings) = &asked.rates {
