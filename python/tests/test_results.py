@@ -71,6 +71,25 @@ def test_figures_are_drawn_on_axes(reversal):
     assert len(sn.relax(film, sn.uniform("z")).plot_spins()) == 1
 
 
+def test_spins_are_drawn_in_three_dimensions(reversal, monkeypatch):
+    pyvista = pytest.importorskip("pyvista", reason="pyvista is not installed")
+    monkeypatch.setattr(pyvista, "OFF_SCREEN", True)
+    views = reversal.plot_3d()
+    assert views.shape == (1, 3)
+    picture = views.screenshot(return_img=True)
+    # up is drawn light and down dark: the last view is darker than the first
+    first, last = picture[100:, : picture.shape[1] // 3], picture[100:, -picture.shape[1] // 3 :]
+    assert last.min() < first.min() < 250
+    scene = pyvista.Plotter()
+    assert reversal.plot_3d([0], plotter=scene, opacity=0.5) is scene
+    [actor] = scene.actors.values()
+    # an arrow for each site, of its own length along its spin
+    size = np.ptp(np.asarray(actor.mapper.dataset.points), axis=0)
+    assert size[0] == pytest.approx(19, abs=0.5) and size[2] == pytest.approx(0.85, abs=1e-3)
+    crystal = sn.System(sn.cubic(3, 3, 3), [sn.exchange(J=["5 meV"]), sn.anisotropy(K="1 meV")])
+    assert sn.relax(crystal, sn.uniform("z")).plot_3d().screenshot(return_img=True).std() > 1
+
+
 def test_the_report_stands_in_the_cell(reversal):
     cell = reversal._repr_html_()
     assert cell.startswith("<iframe srcdoc=") and "6.2" in cell

@@ -44,18 +44,17 @@ def energy_path(result: Result, ax: Axes | None = None, **style: Any) -> Axes:
     return ax
 
 
-def spin_maps(result: Result, images: Sequence[int] | None, axes: Sequence[Axes] | None) -> list[Axes]:
-    """See :meth:`spinneb.Result.plot_spins`."""
+def chosen(result: Result, images: Sequence[int] | None) -> tuple[list[Array], list[str]]:
+    """Images of a path and what they are called: the initial state, those at the saddles and the final state, if none are named."""
     path, e = result.spins, result.above_initial_meV
     last = len(path) - 1
-    if images is None:
-        tops = [saddle.image for saddle in result.saddles]
-        images = sorted({0, *(tops if len(tops) <= 3 else [int(np.argmax(e))]), last})
-    chosen = [range(len(path))[k] for k in images]
-    words = {0: "initial", last: "final"}
     tops = [saddle.image for saddle in result.saddles]
-    titles = [f"{words.get(k, 'saddle' if k in tops else f'image {k}')}\n{e[k]:.4g} meV" for k in chosen]
-    return maps([path[k] for k in chosen], result.places, titles, axes)
+    if images is None:
+        images = sorted({0, *(tops if len(tops) <= 3 else [int(np.argmax(e))]), last})
+    picked = [range(len(path))[k] for k in images]
+    words = {0: "initial", last: "final"}
+    titles = [f"{words.get(k, 'saddle' if k in tops else f'image {k}')}\n{e[k]:.4g} meV" for k in picked]
+    return [path[k] for k in picked], titles
 
 
 def maps(states: Sequence[Array], places: Array, titles: Sequence[str], axes: Sequence[Axes] | None = None) -> list[Axes]:
@@ -105,7 +104,7 @@ def _film(ax: Axes, m: Array, places: Array) -> None:
     top = places[:, 2] > places[:, 2].max() - 1e-6
     m, r = m[top], places[top][:, :2]
     ax.set_aspect("equal")
-    distance = _nearest(r)
+    distance = nearest(r)
     turn = np.arange(6) * np.pi / 3 + np.pi / 6
     corner = 0.58 * distance * np.stack([np.cos(turn), np.sin(turn)], axis=-1)
     square = 0.5 * distance * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
@@ -119,7 +118,7 @@ def _film(ax: Axes, m: Array, places: Array) -> None:
     ax.set_yticks([])
 
 
-def _nearest(r: Array) -> float:
+def nearest(r: Array) -> float:
     """The distance of nearest neighbours, from some sites."""
     some = r[:: max(1, len(r) // 50)]
     d = np.linalg.norm(some[:, None] - r[None], axis=-1)

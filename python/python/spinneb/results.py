@@ -25,6 +25,7 @@ __all__ = ["Check", "Landscape", "Rates", "Relaxed", "Result", "Saddle"]
 
 Array = NDArray[np.float64]
 Way = Literal["forward", "backward"]
+Theory = Literal["htst", "langer"]
 #: kinds of files that hold all of a result
 _WHOLE = ["csv", "npz", "ovf"]
 
@@ -248,9 +249,32 @@ class Result:
 
         Left out, ``images`` are the initial state, those at the saddles, and the final state.
         """
-        from .plotting import spin_maps
+        from .plotting import chosen, maps
 
-        return spin_maps(self, images, axes)
+        states, titles = chosen(self, images)
+        return maps(states, self.places, titles, axes)
+
+    def plot_3d(self, images: Sequence[int] | None = None, plotter: Any = None, **style: Any) -> Any:
+        """The spins of some images side by side as arrows in three dimensions: a ``pyvista.Plotter``, in the colours of
+        :meth:`plot_spins`.
+
+        ``result.plot_3d().show()`` opens them; ``.screenshot("spins.png")`` makes a file, where there is no screen after
+        ``pyvista.OFF_SCREEN = True``.
+
+        Parameters
+        ----------
+        images
+            As in :meth:`plot_spins`.
+        plotter
+            Its view is drawn into, in place of a plotter with a view an image.
+        style
+            For pyvista's ``add_mesh``: ``opacity=``, ``color="red", rgb=False, scalars=None`` …
+        """
+        from .plotting import chosen
+        from .scenes import arrows
+
+        states, titles = chosen(self, images)
+        return arrows(states, self.places, titles, plotter, **style)
 
     def html(self) -> str:
         """The report: a page for a browser that needs no network."""
@@ -347,6 +371,12 @@ class Relaxed:
 
         return maps([self.spins], self.places, [f"{self.energy_meV:.4f} meV"], axes)
 
+    def plot_3d(self, plotter: Any = None, **style: Any) -> Any:
+        """The spins as arrows in three dimensions: a ``pyvista.Plotter``, as of :meth:`Result.plot_3d`."""
+        from .scenes import arrows
+
+        return arrows([self.spins], self.places, [f"{self.energy_meV:.4f} meV"], plotter, **style)
+
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
         """Its spins: it can stand for a state."""
         return np.array(self.spins, dtype=dtype) if copy else np.asarray(self.spins, dtype=dtype)
@@ -416,10 +446,19 @@ class Rates:
 
     @property
     def reasons(self) -> list[str | None]:
-        """Why there is no rate at each temperature, where there is none."""
+        """Why there is no lifetime at each temperature; None where there is one."""
         refused = [one["refused"] for one in self.transitions if one["direction"] == "forward"]
         whole = refused[0] if refused else None
-        return [row["reason"] or whole for row in self._rows("forward")]
+        return [row["reason"] or whole if row["first_passage_s"] is None else None for row in self._rows("forward")]
+
+    def prefactors_Hz(self, way: Way = "forward", *, theory: Theory = "langer") -> Array:
+        """Attempt frequencies of the rates over the saddles, in their order along the path; NaN where a saddle has none.
+
+        Where states slide freely they depend on temperature, as T to ``prefactor_temperature_exponent`` of :attr:`saddles`, and are
+        those at ``prefactor_temperature_K`` there.
+        """
+        found = [one[f"{theory}_prefactor_Hz"] for one in self.saddles if one["direction"] == way]
+        return np.array([np.nan if value is None else value for value in found], dtype=np.float64)
 
     def to_dataframe(self) -> pandas.DataFrame:
         """A row a direction and temperature (pandas)."""
@@ -536,10 +575,8 @@ class Landscape:
 
     def __repr__(self) -> str:
         told = self.summary
-        return (
-            f"<Landscape {told['name']}: {told['minima']} minima of {told['kinds_of_minima']} kinds, "
-            f"{told['saddles']} saddles of {told['kinds_of_saddles']} kinds>"
-        )
+        each = (("minima", told["minima"], told["kinds_of_minima"]), ("saddles", told["saddles"], told["kinds_of_saddles"]))
+        return f"<Landscape {told['name']}: " + ", ".join(f"{n} {what} of {kinds} kind{'s' * (kinds != 1)}" for what, n, kinds in each) + ">"
 
 
 def _number(text: str | None) -> Any:
