@@ -2,7 +2,8 @@
 # What a release consists of: tools/release.sh OUT
 # Checks that the work tree is clean, that the versions of the crate, of the Python package and of CITATION.cff are one, and that the
 # changelog has a section of it; then makes in OUT the crate, which is compiled as it is packed, the wheel, the program, and a file of
-# SHA-256 sums. It publishes nothing. Needs the Rust toolchain, git, and Python with maturin (pip install "maturin<2").
+# SHA-256 sums. It publishes nothing. Needs the Rust toolchain, git, and Python with maturin
+# (pip install "maturin<2", and ziglang for a wheel that older systems take).
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/.." && pwd)
@@ -24,7 +25,11 @@ cargo package --locked
 cp "$target/package/spinneb-$version.crate" "$out"
 cargo build --release --locked
 cp "$target/release/spinneb" "$out/spinneb-$version-$(rustc -vV | sed -n 's/^host: //p')"
-(cd python && maturin build --release --locked --out "$out")
+# linked by zig, where its package is there (pip install ziglang), the wheel runs on every Linux with glibc 2.17 or later
+zig=
+! python3 -m ziglang version >/dev/null 2>&1 || [ "$(uname -s)" != Linux ] || zig="--zig --compatibility manylinux2014"
+# shellcheck disable=SC2086
+(cd python && maturin build --release --locked $zig --out "$out")
 (cd "$out" && find . -maxdepth 1 -type f -name '*spinneb*' ! -name SHA256SUMS | sort | xargs sha256sum >SHA256SUMS)
 echo "release: version $version is in $out; to publish it:"
 echo "  git tag v$version, cargo publish, and an upload of the wheel and of these files"
