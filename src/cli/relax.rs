@@ -85,7 +85,12 @@ fn relax_one(arguments: &Relax, config: &Path) -> Result<u8> {
     let directory = directory(arguments, &loaded);
     if let Some(dir) = &directory {
         let which: Vec<&str> = given.iter().map(|(which, _)| *which).collect();
-        free(dir, &relaxed_file_names(&which, formats), arguments.force, &loaded.made_from)?;
+        free(
+            dir,
+            &relaxed_file_names(&which, formats, states.hamiltonian.lattice()),
+            arguments.force,
+            &loaded.made_from,
+        )?;
     }
     loaded.warnings.iter().for_each(|warning| say(&format!("{name}: warning: {warning}")));
     let h = &states.hamiltonian;

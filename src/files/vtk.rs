@@ -1,4 +1,5 @@
-//! VTK's XML files for ParaView and its like: a `.vtp` of points with vectors and cells for each image, and a `.pvd` that lists them.
+//! VTK's XML files for ParaView and its like: points with vectors and cells for each image, a `.vtp`, or a `.vtu` where some of the cells
+//! are solid, and a `.pvd` that lists them.
 //!
 //! Text, so that any XML reader can look into them, with all digits. File formats: VTK User's Guide, <https://docs.vtk.org>.
 
@@ -16,43 +17,65 @@ pub struct VtkPoints {
     pub line: Vec<usize>,
     /// Triangles of sites.
     pub triangles: Vec<[usize; 3]>,
+    /// Hexahedra of sites, in the order of VTK; with them there is no line and no triangle.
+    pub hexahedra: Vec<[usize; 8]>,
 }
 
+/// The numbers of VTK for a vertex and a hexahedron.
+const VERTEX: usize = 1;
+const HEXAHEDRON: usize = 12;
+
 impl VtkPoints {
+    /// How the name of a file ends.
+    pub fn ending(&self) -> &'static str {
+        if self.hexahedra.is_empty() { "vtp" } else { "vtu" }
+    }
+
     /// An image: the points with a unit vector on each.
     pub fn file(&self, spins: &[Vector]) -> Vec<u8> {
-        let VtkPoints { positions, unit, line, triangles } = self;
-        let (n, lines, polys) = (positions.len(), usize::from(!line.is_empty()), triangles.len());
-        let mut text = String::from("<?xml version=\"1.0\"?>\n");
-        let mut put = |line: &str| {
-            text.push_str(line);
-            text.push('\n');
-        };
-        put("<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">");
-        put(&format!("<!-- positions in {unit} -->"));
-        put("<PolyData>");
-        put(&format!(
-            "<Piece NumberOfPoints=\"{n}\" NumberOfVerts=\"{n}\" NumberOfLines=\"{lines}\" NumberOfStrips=\"0\" NumberOfPolys=\"{polys}\">"
-        ));
-        put("<PointData Vectors=\"m\">");
-        put(&vectors("m", spins));
-        put("</PointData>");
-        put("<Points>");
-        put(&vectors("positions", positions));
-        put("</Points>");
-        let cells: [(&str, Vec<usize>, Vec<usize>); 3] = [
-            ("Verts", (0..n).collect(), (1..n + 1).collect()),
-            ("Lines", line.clone(), (0..lines).map(|_| line.len()).collect()),
-            ("Polys", triangles.iter().flatten().copied().collect(), (1..polys + 1).map(|k| 3 * k).collect()),
+        let (kind, counts, cells) = if self.hexahedra.is_empty() { self.surface() } else { self.solid() };
+        let lines = [
+            "<?xml version=\"1.0\"?>".into(),
+            format!("<VTKFile type=\"{kind}\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">"),
+            format!("<!-- positions in {} -->", self.unit),
+            format!("<{kind}>"),
+            format!("<Piece NumberOfPoints=\"{}\" {counts}>", self.positions.len()),
+            "<PointData Vectors=\"m\">".into(),
+            vectors("m", spins),
+            "</PointData>\n<Points>".into(),
+            vectors("positions", &self.positions),
+            "</Points>".into(),
+            cells,
+            format!("</Piece>\n</{kind}>\n</VTKFile>\n"),
         ];
-        for (name, corners, ends) in cells.iter().filter(|(name, corners, _)| *name != "Polys" || !corners.is_empty()) {
-            put(&format!("<{name}>"));
-            put(&indices("connectivity", corners.iter().copied()));
-            put(&indices("offsets", ends.iter().copied()));
-            put(&format!("</{name}>"));
+        lines.join("\n").into_bytes()
+    }
+
+    /// Vertices, the line and triangles.
+    fn surface(&self) -> (&'static str, String, String) {
+        let VtkPoints { positions, line, triangles, .. } = self;
+        let (n, lines, polys) = (positions.len(), usize::from(!line.is_empty()), triangles.len());
+        let counts =
+            format!("NumberOfVerts=\"{n}\" NumberOfLines=\"{lines}\" NumberOfStrips=\"0\" NumberOfPolys=\"{polys}\"");
+        let mut groups = vec![
+            cells("Verts", 0..n, 1..n + 1, None),
+            cells("Lines", line.iter().copied(), (0..lines).map(|_| line.len()), None),
+        ];
+        if polys > 0 {
+            let (corners, ends) = (triangles.iter().flatten().copied(), (1..polys + 1).map(|k| 3 * k));
+            groups.push(cells("Polys", corners, ends, None));
         }
-        put("</Piece>\n</PolyData>\n</VTKFile>");
-        text.into_bytes()
+        ("PolyData", counts, groups.join("\n"))
+    }
+
+    /// Vertices and hexahedra.
+    fn solid(&self) -> (&'static str, String, String) {
+        let (n, solids) = (self.positions.len(), self.hexahedra.len());
+        let corners = (0..n).chain(self.hexahedra.iter().flatten().copied());
+        let ends = (1..n + 1).chain((1..solids + 1).map(|k| n + 8 * k));
+        let types = [vec![VERTEX; n], vec![HEXAHEDRON; solids]].concat();
+        let counts = format!("NumberOfCells=\"{}\"", n + solids);
+        ("UnstructuredGrid", counts, cells("Cells", corners, ends, Some(types)))
     }
 }
 
@@ -77,8 +100,21 @@ fn vectors(name: &str, vectors: &[Vector]) -> String {
     text + "</DataArray>"
 }
 
-fn indices(name: &str, indices: impl Iterator<Item = usize>) -> String {
-    let mut text = format!("<DataArray type=\"Int64\" Name=\"{name}\" format=\"ascii\">\n");
+/// Cells by their corners one after the other and where those of each end; with the types of unstructured ones.
+fn cells(
+    name: &str,
+    corners: impl Iterator<Item = usize>,
+    ends: impl Iterator<Item = usize>,
+    types: Option<Vec<usize>>,
+) -> String {
+    let types = types.map(|types| indices("types", "UInt8", types.into_iter()));
+    let arrays = [indices("connectivity", "Int64", corners), indices("offsets", "Int64", ends)];
+    let arrays = arrays.into_iter().chain(types).collect::<Vec<_>>().join("\n");
+    format!("<{name}>\n{arrays}\n</{name}>")
+}
+
+fn indices(name: &str, kind: &str, indices: impl Iterator<Item = usize>) -> String {
+    let mut text = format!("<DataArray type=\"{kind}\" Name=\"{name}\" format=\"ascii\">\n");
     for i in indices {
         let _ = write!(text, "{i} ");
     }

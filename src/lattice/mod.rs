@@ -38,6 +38,7 @@ mod crystal;
 mod cubic;
 mod fcc;
 mod hcp;
+mod hexahedra;
 mod honeycomb;
 mod kagome;
 mod mesh;

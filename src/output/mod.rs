@@ -222,7 +222,7 @@ pub const KINDS: &[Kind] = &[
     Kind {
         name: "vtk",
         group: Group::OnRequest,
-        summary: "path.pvd with vtk/image_000.vtp …: for ParaView (if named)",
+        summary: "path.pvd with vtk/image_000.vtp … (crystals: .vtu): for ParaView (if named)",
         formats: || vec![Box::new(Vtk)],
     },
     Kind {

@@ -98,7 +98,7 @@ impl<'a> RelaxReport<'a> {
             left_saddle: relaxed.left.is_some(),
             steps: relaxed.steps,
             warnings: &state.warnings,
-            files: if written { spin_files(which, self.formats) } else { Vec::new() },
+            files: if written { spin_files(which, self.formats, self.lattice) } else { Vec::new() },
         }
     }
 
@@ -108,7 +108,7 @@ impl<'a> RelaxReport<'a> {
         for (which, state) in self.states {
             for format in FORMATS.iter().filter(|f| f.is_in(self.formats)) {
                 let bytes = (format.render)(self, which, &state.relaxed.spins.vectors())?;
-                files.push(File { name: format.file(which), bytes });
+                files.push(File { name: format.file(which, self.lattice), bytes });
             }
         }
         let document = Document {
@@ -124,9 +124,9 @@ impl<'a> RelaxReport<'a> {
     }
 }
 
-/// Names of all files that are written for these states in these formats.
-pub fn relaxed_file_names(states: &[&str], formats: &[String]) -> Vec<String> {
-    let spins = states.iter().flat_map(|which| spin_files(which, formats));
+/// Names of all files that are written for these states of a lattice in these formats.
+pub fn relaxed_file_names(states: &[&str], formats: &[String], lattice: &Lattice) -> Vec<String> {
+    let spins = states.iter().flat_map(|which| spin_files(which, formats, lattice));
     spins.chain([NUMBERS.to_string()]).collect()
 }
 
@@ -135,7 +135,7 @@ struct StateFormat {
     /// Its names in `output.formats`.
     names: &'static [&'static str],
     suffix: &'static str,
-    ending: &'static str,
+    ending: fn(&Lattice) -> &'static str,
     render: fn(&RelaxReport, &str, &[Vector]) -> Result<Vec<u8>>,
 }
 
@@ -144,38 +144,43 @@ impl StateFormat {
         formats.iter().any(|f| self.names.contains(&f.as_str()))
     }
 
-    fn file(&self, which: &str) -> String {
-        format!("{which}{}.{}", self.suffix, self.ending)
+    fn file(&self, which: &str, lattice: &Lattice) -> String {
+        format!("{which}{}.{}", self.suffix, (self.ending)(lattice))
     }
 }
 
 /// All ways to write a state.
 static FORMATS: &[StateFormat] = &[
-    StateFormat { names: &["npz"], suffix: "", ending: "npz", render: npz },
-    StateFormat { names: &["ovf"], suffix: "", ending: "ovf", render: |r, w, m| Ok(ovf(OvfData::Binary8, r, w, m)) },
+    StateFormat { names: &["npz"], suffix: "", ending: |_| "npz", render: npz },
+    StateFormat {
+        names: &["ovf"],
+        suffix: "",
+        ending: |_| "ovf",
+        render: |r, w, m| Ok(ovf(OvfData::Binary8, r, w, m)),
+    },
     StateFormat {
         names: &["ovf_binary4"],
         suffix: "_binary4",
-        ending: "ovf",
+        ending: |_| "ovf",
         render: |r, w, m| Ok(ovf(OvfData::Binary4, r, w, m)),
     },
     StateFormat {
         names: &["ovf_text", "ovf_images"],
         suffix: "_text",
-        ending: "ovf",
+        ending: |_| "ovf",
         render: |r, w, m| Ok(ovf(OvfData::Text, r, w, m)),
     },
     StateFormat {
         names: &["csv", "spins_csv"],
         suffix: "",
-        ending: "csv",
+        ending: |_| "csv",
         render: |_, _, m| Ok(files::write_csv([m].into_iter())),
     },
-    StateFormat { names: &["vtk"], suffix: "", ending: "vtp", render: vtp },
+    StateFormat { names: &["vtk"], suffix: "", ending: |lattice| vtk_points(lattice).ending(), render: vtk },
 ];
 
-fn spin_files(which: &str, formats: &[String]) -> Vec<String> {
-    FORMATS.iter().filter(|f| f.is_in(formats)).map(|f| f.file(which)).collect()
+fn spin_files(which: &str, formats: &[String], lattice: &Lattice) -> Vec<String> {
+    FORMATS.iter().filter(|f| f.is_in(formats)).map(|f| f.file(which, lattice)).collect()
 }
 
 fn npz(report: &RelaxReport, _: &str, spins: &[Vector]) -> Result<Vec<u8>> {
@@ -191,7 +196,7 @@ fn ovf(data: OvfData, report: &RelaxReport, which: &str, spins: &[Vector]) -> Ve
     OvfMesh::of(report.lattice).file(data, vec![(description, spins.to_vec())])
 }
 
-fn vtp(report: &RelaxReport, _: &str, spins: &[Vector]) -> Result<Vec<u8>> {
+fn vtk(report: &RelaxReport, _: &str, spins: &[Vector]) -> Result<Vec<u8>> {
     Ok(vtk_points(report.lattice).file(&without_idle(report.lattice, spins.to_vec())))
 }
 

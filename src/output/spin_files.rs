@@ -32,7 +32,7 @@ pub struct OvfImages;
 #[derive(Clone, Copy, Debug)]
 pub struct SpinsCsv;
 
-/// `path.pvd` with `vtk/image_000.vtp` …: for ParaView.
+/// `path.pvd` with `vtk/image_000.vtp` … (or `.vtu`): for ParaView.
 #[derive(Clone, Copy, Debug)]
 pub struct Vtk;
 
@@ -148,8 +148,9 @@ impl Format for Vtk {
 
     fn render(&self, run: &RunReport) -> Result<Vec<u8>> {
         let outcome = run.outcome;
+        let ending = vtk_points(run.lattice).ending();
         let at = |k: usize| outcome.images.reaction_coordinate_rad.get(k).copied().unwrap_or(0.0);
-        let files = (0..outcome.path.images()).map(|k| (at(k), numbered("vtk", k, "vtp")));
+        let files = (0..outcome.path.images()).map(|k| (at(k), numbered("vtk", k, ending)));
         Ok(files::write_pvd(&files.collect::<Vec<_>>()))
     }
 
@@ -157,7 +158,7 @@ impl Format for Vtk {
         let path = &run.outcome.path;
         let points = vtk_points(run.lattice);
         let image = |k: usize| points.file(&without_idle(run.lattice, path.spins(k).vectors()));
-        Ok((0..path.images()).map(|k| File { name: numbered("vtk", k, "vtp"), bytes: image(k) }).collect())
+        Ok((0..path.images()).map(|k| File { name: numbered("vtk", k, points.ending()), bytes: image(k) }).collect())
     }
 }
 
@@ -198,7 +199,7 @@ pub(super) fn places(lattice: &Lattice) -> Option<(String, Array)> {
     (!lattice.is_row()).then(|| (name.into(), Array { shape: vec![lattice.sites, 3], numbers: numbers() }))
 }
 
-/// The sites as points: a row joined by a line, a film by the triangles between neighbours.
+/// The sites as points: a row joined by a line, a film by the triangles between neighbours, a crystal of one atom a cell by hexahedra.
 pub(super) fn vtk_points(lattice: &Lattice) -> VtkPoints {
     let n = lattice.sites;
     let triangles = lattice.triangles();
@@ -207,6 +208,7 @@ pub(super) fn vtk_points(lattice: &Lattice) -> VtkPoints {
         unit: lattice.unit(),
         line: if lattice.is_row() && n > 1 { (0..n).chain(lattice.is_ring().then_some(0)).collect() } else { vec![] },
         triangles: if triangles.layers == 1 { triangles.corners } else { Vec::new() },
+        hexahedra: lattice.hexahedra(),
     }
 }
 

@@ -24,6 +24,7 @@ FILMS = {
     "grid": {"grid": {"cells": [8, 6, 2], "cell": ["2 nm", "3 nm", "0.6 nm"], "vacant": [0, 50]}},
     "honeycomb": {"honeycomb": {"cells": [6, 5], "spacing": "0.3 nm", "vacant": [7]}},
     "hcp": {"hcp": {"cells": [4, 3, 2], "spacing": "0.3 nm"}},
+    "cubic": {"cubic": {"cells": [4, 3, 3], "spacing": "0.4 nm", "vacant": [5]}},
 }
 
 
@@ -135,7 +136,7 @@ def films(spinneb, folder, df):
         vtk_film(kind, result, spins, places, there)
         if df and kind in ("square", "grid"):
             df_film(df, kind, result, lattice, spins, places, there)
-        elif kind not in ("square", "grid"):
+        elif kind not in ("square", "grid", "cubic"):
             rows = [line.split() for line in (result / "ovf/image_002.ovf").read_text().splitlines() if not line.startswith("#")]
             numbers = np.array(rows, dtype=float)
             same(f"{kind}: irregular ovf, positions (nm)", 1e9 * numbers[:, :3], places, 1e-12)
@@ -151,13 +152,19 @@ def films(spinneb, folder, df):
 
 def vtk_film(kind, result, spins, places, there):
     from vtkmodules.util.numpy_support import vtk_to_numpy
-    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
 
-    reader = vtkXMLPolyDataReader()
-    reader.SetFileName(str(result / "vtk/image_002.vtp"))
+    is_solid = kind in ("grid", "cubic")
+    reader = vtkXMLUnstructuredGridReader() if is_solid else vtkXMLPolyDataReader()
+    reader.SetFileName(str(result / ("vtk/image_002.vtu" if is_solid else "vtk/image_002.vtp")))
+    assert f'file="{"/".join(reader.GetFileName().split("/")[-2:])}"' in (result / "path.pvd").read_text()
     reader.Update()
     data = reader.GetOutput()
-    assert data.GetNumberOfPoints() == data.GetNumberOfVerts() == len(places) and data.GetNumberOfLines() == 0
+    assert data.GetNumberOfPoints() == len(places)
+    if is_solid:
+        vtk_solid(kind, data, places, there)
+    else:
+        assert data.GetNumberOfVerts() == len(places) and data.GetNumberOfLines() == 0
     same(f"{kind}: vtk, positions (nm)", vtk_to_numpy(data.GetPoints().GetData()), places)
     expected = spins[2].copy()
     expected[np.setdiff1d(np.arange(len(places)), there)] = 0.0
@@ -171,8 +178,40 @@ def vtk_film(kind, result, spins, places, there):
         solid = 2 * np.arctan2((a * np.cross(b, c)).sum(1), below)
         charge = np.genfromtxt(result / "path.csv", delimiter=",", names=True)["charge"][2]
         same(f"{kind}: vtk, charge of its triangles", solid.sum() / (4 * np.pi), charge, 1e-12)
-    else:
+    elif not is_solid:
         assert data.GetNumberOfPolys() == 0
+
+
+def vtk_solid(kind, data, places, there):
+    """A vertex a site, and hexahedra that fill the box between the outermost sites, where no corner is vacant."""
+    corners, volumes = [], []
+    for k in range(data.GetNumberOfCells()):
+        cell = data.GetCell(k)  # the same object each time
+        assert cell.GetClassName() == ("vtkVertex" if k < len(places) else "vtkHexahedron")
+        if k >= len(places):
+            corners.append([cell.GetPointId(i) for i in range(8)])
+            volumes.append(vtk_volume(cell))
+    corners = np.array(corners)
+    assert np.isin(corners, there).all()
+    vacant = places[np.setdiff1d(np.arange(len(places)), there)]
+    steps = [np.unique(np.round(places[:, d], 9)) for d in range(3)]
+    boxes = np.array(np.meshgrid(*[(s[1:] + s[:-1]) / 2 for s in steps], indexing="ij")).reshape(3, -1).T
+    half = np.array([(s[1] - s[0]) / 2 for s in steps])
+    whole = [b for b in boxes if not (np.abs(vacant - b) < 1.01 * half).all(axis=1).any()]
+    middles = places[corners].mean(axis=1)
+    same(f"{kind}: vtk, hexahedra", sorted(map(tuple, np.round(middles, 9))), sorted(map(tuple, np.round(whole, 9))), 1e-9)
+    same(f"{kind}: vtk, volumes (nm³)", volumes, np.full(len(whole), 8 * half.prod()), 1e-9)
+
+
+def vtk_volume(cell):
+    """The volume of a cell by VTK's own tetrahedra."""
+    from vtkmodules.vtkCommonCore import vtkIdList, vtkPoints
+
+    ids, points = vtkIdList(), vtkPoints()
+    points.SetDataTypeToDouble()
+    cell.Triangulate(0, ids, points)
+    p = np.array([points.GetPoint(i) for i in range(points.GetNumberOfPoints())]).reshape(-1, 4, 3)
+    return abs(np.linalg.det(p[:, 1:] - p[:, :1])).sum() / 6
 
 
 def df_film(df, kind, result, lattice, spins, places, there):
