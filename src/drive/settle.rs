@@ -230,7 +230,8 @@ impl<'a> Run<'a, '_> {
         let h = self.problem.evaluator();
         let mut found: Vec<Saddle> = Vec::new();
         for top in peaks(&c.band, WINDOW * height(&c.band), scale) {
-            let f = match c.found.as_ref().filter(|f| is_seated(&c.band, top.image, f)) {
+            let from_there = |f: &&Saddle| f.top.m == top.m && f.top.tau == top.tau;
+            let f = match c.found.as_ref().filter(|f| is_seated(&c.band, top.image, f) || from_there(f)) {
                 Some(f) => Saddle { top, refined: f.refined.clone() },
                 None => Saddle::recorded(h, top, scale, self.scales.half_site_rad())?,
             };
