@@ -57,7 +57,7 @@ pub fn write_npy(array: &Array) -> Vec<u8> {
     bytes.extend_from_slice(&[1, 0]);
     bytes.extend_from_slice(&(header.len() as u16).to_le_bytes());
     bytes.extend_from_slice(header.as_bytes());
-    bytes.extend(array.numbers.iter().flat_map(|x| x.to_le_bytes()));
+    array.numbers.iter().for_each(|x| bytes.extend_from_slice(&x.to_le_bytes()));
     bytes
 }
 

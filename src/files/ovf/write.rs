@@ -148,12 +148,12 @@ fn write_data<'a>(out: &mut Vec<u8>, data: OvfData, rows: impl Iterator<Item = &
         }
         OvfData::Binary4 => {
             out.extend_from_slice(&CHECK_4.to_le_bytes());
-            out.extend(rows.flatten().flat_map(|x| (*x as f32).to_le_bytes()));
+            rows.flatten().for_each(|x| out.extend_from_slice(&(*x as f32).to_le_bytes()));
             out.push(b'\n');
         }
         OvfData::Binary8 => {
             out.extend_from_slice(&CHECK_8.to_le_bytes());
-            out.extend(rows.flatten().flat_map(|x| x.to_le_bytes()));
+            rows.flatten().for_each(|x| out.extend_from_slice(&x.to_le_bytes()));
             out.push(b'\n');
         }
     }
