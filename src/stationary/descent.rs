@@ -42,11 +42,6 @@ const FLAT: f64 = 256.0 * f64::EPSILON;
 const ROUGH: f64 = 1e-3;
 /// Most steps across a valley more, where that is so.
 const SETTLE: usize = 2;
-/// A direction across the valley that falls too, but less than a mode of this part of c: steps across are held back by so much, and
-/// the valley is still one. (A skyrmion that leaves the top between two sites may slide either way.)
-const SHALLOW: f64 = 1e-3;
-/// The least rate of the first step down the gradient after a valley, in parts of c.
-const LEAST: f64 = 1e-6;
 /// Most steps down the gradient.
 const STEPS: usize = 20_000;
 /// So many steps down the gradient shorter than this (rad, any spin) are a crawl.
@@ -78,7 +73,6 @@ pub fn descend(h: Evaluator, saddle: &State, valley: &[f64], c: f64) -> Descent 
         next: Point::default(),
         tau: valley.to_vec(),
         last: None,
-        held: 0.0,
         trail: Trail::from(&saddle.m),
         room: Room::default(),
     };
@@ -97,8 +91,6 @@ struct Walk<'a> {
     tau: Vec<f64>,
     /// The direction at the start of the last step along the valley, a radian a unit of length, and that step's length (rad).
     last: Option<(Vec<f64>, f64)>,
-    /// What holds back steps across this valley (meV).
-    held: f64,
     trail: Trail,
     room: Room,
 }
@@ -127,14 +119,10 @@ impl Walk<'_> {
     fn down(&mut self) -> bool {
         let mut less_steep = LESS_STEEP;
         let mut in_vain = 0;
-        for round in 0..ROUNDS {
+        for _ in 0..ROUNDS {
             let from = self.here.energy_mev;
-            let steepness = self.march(less_steep);
-            let moved = steepness.is_some();
-            // what is steep has fallen in the first round: a first step as long as the last one along the valley is no leap
-            let rate =
-                steepness.filter(|_| round > 0 && !self.is_row()).map_or(self.c, |s| s.clamp(LEAST * self.c, self.c));
-            let end = self.fall(rate);
+            let moved = self.march(less_steep);
+            let end = self.fall();
             in_vain = if moved || self.here.energy_mev != from { 0 } else { in_vain + 1 };
             if matches!(end, Fall::Crawling) {
                 less_steep = 0.0;
@@ -160,25 +148,19 @@ impl Walk<'_> {
         false
     }
 
-    /// A row has no second direction to slide in.
-    fn is_row(&self) -> bool {
-        self.h.lattice().is_row()
-    }
-
-    /// Along the valley as long as it falls, and its slope is more than a part of the steepest; if it went any way, its last slope
-    /// by the length of the last step (meV/rad²).
-    fn march(&mut self, part: f64) -> Option<f64> {
+    /// Along the valley as long as it falls, and its slope is more than a part of the steepest; whether it went any way.
+    fn march(&mut self, part: f64) -> bool {
         let noise = 64.0 * f64::EPSILON * self.h.stiffness_mev();
         let flat = FLAT * self.h.stiffness_mev();
         let (mut slope, mut steepest) = (0.0f64, 0.0f64);
         let mut step = FIRST;
-        let mut moved = None;
-        (self.last, self.held) = (None, 0.0);
+        let mut moved = false;
+        self.last = None;
         for _ in 0..MARCH {
             let length = self.predict(step);
             let kept = self.cross(step) && self.settle(noise, flat);
             let fallen = self.here.above_mev(&self.next);
-            if fallen < -noise && moved.is_none() && step > SHORTEST && !self.h.is_stopped() {
+            if fallen < -noise && !moved && step > SHORTEST && !self.h.is_stopped() {
                 self.turn_back();
                 step /= 4.0;
                 continue;
@@ -197,7 +179,7 @@ impl Walk<'_> {
             slope = there;
             swap(&mut self.here, &mut self.next);
             self.trail.pass(&self.here.m);
-            moved = Some(slope / length);
+            moved = true;
             if slope < part * steepest - flat {
                 break;
             }
@@ -281,16 +263,10 @@ impl Walk<'_> {
     fn correct(&mut self) -> Option<f64> {
         let Room { pinned: p, x, v, .. } = &mut self.room;
         let kappa = (self.h.stiffness_mev() / 3.0).max(self.c);
-        loop {
-            let mut matrix = p.take_memory();
-            self.next.write_hessian(self.h, 1e-6 * self.c + self.held, &mut matrix);
-            self.next.basis.write_coordinates(&self.tau, x);
-            p.factor(matrix, &self.next.zeros, x, kappa);
-            if p.complement_negatives == 0 || self.held > 0.0 || self.h.lattice().is_row() {
-                break;
-            }
-            self.held = SHALLOW * self.c;
-        }
+        let mut matrix = p.take_memory();
+        self.next.write_hessian(self.h, 1e-6 * self.c, &mut matrix);
+        self.next.basis.write_coordinates(&self.tau, x);
+        p.factor(matrix, &self.next.zeros, x, kappa);
         p.write_valley(x);
         if p.complement_negatives > 0 || slab::dot(x, p.soft()).abs() < 0.05 * slab::norm(x) {
             return None;
@@ -308,10 +284,11 @@ impl Walk<'_> {
         Some(rotation)
     }
 
-    /// Implicit Euler down the gradient with this first rate (meV/rad²), to a point where it vanishes.
-    fn fall(&mut self, mut rate: f64) -> Fall {
+    /// Implicit Euler down the gradient, to a point where it vanishes.
+    fn fall(&mut self) -> Fall {
         let scale = self.h.stiffness_mev();
         let tolerance = 4e-15 * scale;
+        let mut rate = self.c;
         let mut short = 0;
         let mut refusals: usize = 0;
         for _ in 0..STEPS {
