@@ -84,7 +84,7 @@ except KeyboardInterrupt:
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals of another kind")
-@pytest.mark.parametrize("wait", [0.2, 2.0])
+@pytest.mark.parametrize("wait", [0.2, 2.0, 6.0])
 def test_ctrl_c_ends_a_run_of_1e5_spins_soon(wait):
     process = subprocess.Popen([sys.executable, "-c", LONG, "100000"], stdout=subprocess.PIPE, text=True)
     assert process.stdout.readline() == "running\n"
@@ -98,8 +98,8 @@ def test_ctrl_c_ends_a_run_of_1e5_spins_soon(wait):
     took = time.monotonic() - sent
     process.wait(30)
     assert said in ("interrupted\n", "finished\n")
-    # a second or two as a rule, and some more on a busy machine
-    assert took < 10.0, took
+    # a second as a rule, and some more on a busy machine
+    assert took < 4.0, took
 
 
 def test_import_is_quick():
