@@ -461,6 +461,15 @@ mod tests {
         Hamiltonian::new(&lattice, terms).unwrap()
     }
 
+    fn state(v: [f64; 3]) -> Spins {
+        Spins::from_vectors(&[v]).unwrap()
+    }
+
+    /// The number of the minimum with this spin.
+    fn find(land: &Landscape, v: [f64; 3]) -> usize {
+        land.known(&Minimum::examine(land.evaluator(), &state(v))).unwrap()
+    }
+
     fn pass(h: &Hamiltonian) -> Pass {
         let start = Spins::from_vectors(&[[0.1, 0.9, 0.2]]).unwrap();
         let limits =
@@ -495,7 +504,6 @@ mod tests {
     #[test]
     fn a_saddle_that_a_symmetry_leaves_as_it_is_joins_the_images_of_its_minima() {
         let h = spin();
-        let state = |v: [f64; 3]| Spins::from_vectors(&[v]).unwrap();
         let mut land = Landscape::new((&h).into(), state([0.0, 0.0, 1.0]).as_slice());
         land.unfold();
         // as if the descent to +z had been left aside: mirrors of x and z leave the saddles on ±y where they are, but not this
@@ -505,11 +513,7 @@ mod tests {
         *end = Minimum::examine((&h).into(), &state([0.3, 0.0, 0.9]));
         assert!(land.add(pass));
         assert_eq!((land.edges().len(), land.edges().iter().filter(|e| e.is_twin).count()), (8, 6));
-        let find = |v: [f64; 3]| {
-            let wanted = Minimum::examine((&h).into(), &state(v));
-            land.minima().iter().position(|known| known.is_identical((&h).into(), &wanted)).unwrap()
-        };
-        let route = land.route(find([-0.3, 0.0, 0.9]), find([0.0, 0.0, -1.0])).unwrap();
+        let route = land.route(find(&land, [-0.3, 0.0, 0.9]), find(&land, [0.0, 0.0, -1.0])).unwrap();
         let passes = land.passes_of(&route);
         assert!(passes.len() == 1 && passes[0].before.spins.as_slice()[0] < -0.2);
     }
@@ -517,12 +521,10 @@ mod tests {
     #[test]
     fn a_flat_valley_joins_the_images_of_its_minima_too() {
         let h = spin();
-        let state = |v: [f64; 3]| Spins::from_vectors(&[v]).unwrap();
         let mut land = Landscape::new((&h).into(), state([0.0, 0.0, 1.0]).as_slice());
         land.unfold();
         let a = land.add_minimum(&Minimum::examine((&h).into(), &state([0.3, 0.0, 0.9])));
         assert_eq!(land.minima().len(), 4);
-        let find = |land: &Landscape, v: [f64; 3]| land.known(&Minimum::examine((&h).into(), &state(v))).unwrap();
         let b = find(&land, [-0.3, 0.0, 0.9]);
         let [c, d] = [[0.3, 0.0, -0.9], [-0.3, 0.0, -0.9]].map(|v| find(&land, v));
         land.merge([a, b], Path::new(&[[0.3, 0.0, 0.9], [0.0, 0.1, 0.9], [-0.3, 0.0, 0.9]].map(state)));
