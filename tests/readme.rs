@@ -54,3 +54,25 @@ fn what_is_linked_exists_and_the_rust_version_is_that_of_the_package() {
         assert_eq!(page.matches(" or later").count(), times);
     }
 }
+
+#[test]
+fn what_it_leads_to_is_in_the_crate_but_for_the_python_package() {
+    let listing = std::process::Command::new(env!("CARGO"))
+        .args(["package", "--list", "--allow-dirty", "--offline", "--manifest-path"])
+        .arg(root().join("Cargo.toml"))
+        .output()
+        .unwrap();
+    assert!(listing.status.success(), "{}", String::from_utf8_lossy(&listing.stderr));
+    let listing = String::from_utf8(listing.stdout).unwrap();
+    let packed: std::collections::BTreeSet<&str> = listing.lines().collect();
+    let readme = readme();
+    for link in readme.links().into_iter().filter(|link| !link.starts_with("https://") && !link.starts_with("python/"))
+    {
+        assert!(packed.contains(link), "{link}: add it to `include` in Cargo.toml");
+    }
+    for folder in ["tests/", "benches/", "results/", "python/", "tools/"] {
+        let odd: Vec<_> =
+            packed.iter().filter(|file| file.starts_with(folder) && !readme.links().contains(file)).collect();
+        assert!(odd.is_empty(), "{odd:?}");
+    }
+}

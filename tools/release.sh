@@ -1,9 +1,10 @@
 #!/bin/sh
 # What a release consists of: tools/release.sh OUT
 # Checks that the work tree is clean, that the versions of the crate, of the Python package and of CITATION.cff are one, and that the
-# changelog has a section of it; then makes in OUT the crate, which is compiled as it is packed, the wheel, the program, and a file of
-# SHA-256 sums. It publishes nothing. Needs the Rust toolchain, git, and Python with maturin
-# (pip install "maturin<2", and ziglang for a wheel that older systems take).
+# changelog has a section of it; then makes in OUT the crate, which is compiled as it is packed, the wheel, the program, on Linux also as
+# one static file, and a file of SHA-256 sums. It publishes nothing. Needs the Rust toolchain, git, and Python with maturin
+# (pip install "maturin<2", and ziglang for a wheel that older systems take); for the static program the target of musl
+# (rustup target add x86_64-unknown-linux-musl) and musl-gcc (Debian: musl-tools): it says so where they are not.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/.." && pwd)
@@ -23,8 +24,24 @@ mkdir -p "$1"
 out=$(cd "$1" && pwd)
 cargo package --locked
 cp "$target/package/spinneb-$version.crate" "$out"
+# without what a debugger reads, which is six times the program
+export CARGO_PROFILE_RELEASE_DEBUG=false CARGO_PROFILE_RELEASE_STRIP=true
+host=$(rustc -vV | sed -n 's/^host: //p')
 cargo build --release --locked
-cp "$target/release/spinneb" "$out/spinneb-$version-$(rustc -vV | sed -n 's/^host: //p')"
+cp "$target/release/spinneb" "$out/spinneb-$version-$host"
+static=${host%-gnu}-musl
+case $host in
+*-linux-gnu)
+    if [ ! -d "$(rustc --print target-libdir --target "$static")" ]; then
+        echo "release: no static program: rustup target add $static" >&2
+    elif ! command -v musl-gcc >/dev/null; then
+        echo "release: no static program: there is no musl-gcc" >&2
+    else
+        cargo build --release --locked --target "$static"
+        cp "$target/$static/release/spinneb" "$out/spinneb-$version-$static"
+    fi
+    ;;
+esac
 # linked by zig, where its package is there (pip install ziglang), the wheel runs on every Linux with glibc 2.17 or later
 zig=
 ! python3 -m ziglang version >/dev/null 2>&1 || [ "$(uname -s)" != Linux ] || zig="--zig --compatibility manylinux2014"
