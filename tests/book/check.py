@@ -1,7 +1,8 @@
 """Checks a built book: check.py ROOT OUT
 
 Every page of ROOT/docs/src/SUMMARY.md is in OUT/docs/book, with a title and the same headings; every link and picture of every page leads
-to a page of the book (and to a place in it), or to a file of ROOT, which is copied to its place in OUT.
+to a page of the book (and to a place in it), or to a file of ROOT, which is copied to its place in OUT. No page asks a network for how
+its examples of Rust could be run.
 """
 
 import re
@@ -36,6 +37,7 @@ def main(root, out):
         assert book / f"{name}.html" in pages, f"{name}.html is missing"
     links = copied = 0
     for path, page in pages.items():
+        assert 'class="playground"' not in path.read_text("utf-8"), f"{path.name} asks play.rust-lang.org: see runnable in docs/book.toml"
         for link in page.links:
             parts = urlsplit(link)
             if parts.scheme or link.startswith("//"):
