@@ -332,6 +332,14 @@ fn a_directory_that_is_a_file_is_refused_in_words() {
     assert!(words.contains("is a file, and results need a directory"), "{words}");
     let (_, words) = kind_of(folder::prepare(&path.join("deeper"), &intent("v", "c", None, &[])));
     assert!(words.contains("the directory cannot be made"), "{words}");
+    #[cfg(unix)]
+    {
+        let link = dir.path().join("link");
+        std::os::unix::fs::symlink("nowhere", &link).unwrap();
+        let (kind, words) = kind_of(folder::prepare(&link, &intent("v", "c", None, &[])));
+        assert_eq!(kind, ErrorKind::NotADirectory);
+        assert!(words.contains("is a link that leads nowhere"), "{words}");
+    }
 }
 
 #[test]

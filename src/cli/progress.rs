@@ -72,6 +72,11 @@ impl<'a> Progress<'a> {
     }
 }
 
+/// An angle in few digits: `0.57`, `1.8e-4`.
+fn angle(radians: f64) -> String {
+    if (0.01..1e3).contains(&radians) { format!("{radians:.2}") } else { format!("{radians:.1e}") }
+}
+
 impl Drop for Progress<'_> {
     fn drop(&mut self) {
         if let Some(bar) = &self.bar {
@@ -94,7 +99,8 @@ impl Observer for Progress<'_> {
         } else if self.last.elapsed() >= Duration::from_secs(1) {
             let left = left();
             self.say(&format!(
-                "iteration {n}, {images} images: highest {highest:.6} meV, still turning by {rotation:.1e} rad{left}"
+                "iteration {n}, {images} images: highest {highest:.6} meV, still turning by {} rad{left}",
+                angle(rotation)
             ));
         }
     }

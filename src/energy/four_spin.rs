@@ -35,7 +35,7 @@ pub struct FourSpinSpec {
 #[serde(deny_unknown_fields)]
 #[allow(non_snake_case)]
 pub struct QuadSpec {
-    /// K.
+    /// Energy of the quadruple, the K of the formulas; positive: parallel spins are lower.
     pub K: Energy,
     /// The cells of i, j, k and l, from the cell of the quadruple.
     pub cells: [Shift; 4],

@@ -54,10 +54,10 @@ pub struct PairSpec {
     /// How many cells on that is.
     #[serde(default)]
     pub cell: Shift,
-    /// J.
+    /// Exchange J, with sign and counting as the convention says.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub J: Option<Energy>,
-    /// D, along x, y and z.
+    /// Vector D of the antisymmetric exchange, along x, y and z.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub D: Option<[Energy; 3]>,
     /// T, row by row: in place of J or beside it.

@@ -213,6 +213,10 @@ fn unwritable(e: &io::Error) -> io::Error {
 }
 
 pub(crate) fn create(dir: &Path) -> Result<()> {
+    if dir.is_symlink() && !dir.exists() {
+        let words = "is a link that leads nowhere, and results need a directory; give another with --out";
+        return Err(io_error(dir, io::Error::new(ErrorKind::NotADirectory, words)));
+    }
     if dir.exists() && !dir.is_dir() {
         let words = "is a file, and results need a directory; give another with --out";
         return Err(io_error(dir, io::Error::new(ErrorKind::NotADirectory, words)));

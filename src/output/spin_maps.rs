@@ -53,7 +53,9 @@ pub fn draw_spin_maps(data: &PlotData, places: &SitePlaces, look: &Look) -> Resu
     let layer = Layer::of(places, &data.vacant);
     let maps = maps(&data.energy.images, path.images());
     let plan = Plan::of(Canvas::styled(look, 10.0).width(), layer.size, maps.len());
-    let mut canvas = Canvas::styled(look, plan.height / MM);
+    let below = layer.words(places.unit);
+    let line = below.as_ref().map_or(0.0, |_| SMALL_PT + 2.0);
+    let mut canvas = Canvas::styled(look, (plan.height + line) / MM);
     for (k, (image, role)) in maps.iter().enumerate() {
         let rect = plan.map(k, layer.size);
         let title = Text::new(format!("{role} (image {image})"), SMALL_PT).align(Align::Centre);
@@ -65,8 +67,11 @@ pub fn draw_spin_maps(data: &PlotData, places: &SitePlaces, look: &Look) -> Resu
     let (left, base, bar) = (MARGIN + plan.left(layer.size), plan.height - MARGIN, round_part(layer.size[0]));
     let end = left + plan.scale * bar;
     canvas.line(&[(left, base - 0.35 * SMALL_PT), (end, base - 0.35 * SMALL_PT)], 1.6, BLACK);
-    canvas
-        .text((end + 4.0, base), Text::new(format!("{bar} {}, {}", places.unit, layer.words(places.unit)), SMALL_PT))?;
+    let scale = format!("{bar} {}, x to the right, y upwards", places.unit);
+    canvas.text((end + 4.0, base), Text::new(scale, SMALL_PT))?;
+    if let Some(words) = below {
+        canvas.text((left, base + line), Text::new(words, SMALL_PT))?;
+    }
     Ok(canvas)
 }
 
@@ -225,10 +230,9 @@ impl Layer {
         canvas.raster(rect, columns, rows, rgb);
     }
 
-    /// What the maps are of.
-    fn words(&self, unit: &str) -> String {
-        let layer = self.z.map(|z| format!(", the layer at z = {} {unit}", rounded(z))).unwrap_or_default();
-        format!("x to the right, y upwards{layer}")
+    /// Which layer of several the maps show. A line of its own: with the rest it is wider than the figure.
+    fn words(&self, unit: &str) -> Option<String> {
+        self.z.map(|z| format!("the layer at z = {} {unit}", rounded(z)))
     }
 }
 
@@ -278,7 +282,9 @@ mod tests {
         assert_eq!(layer.site_at([0.1, 3.9]), Some(4));
         assert_eq!(layer.site_at([0.0, 0.0]), None);
         let layers = SitePlaces { at: (0..3).map(|k| [0.0, 0.0, k as f64]).collect(), unit: "a" };
-        assert_eq!(Layer::of(&layers, &[]).z, Some(1.0));
+        let middle = Layer::of(&layers, &[]);
+        assert_eq!((middle.z, middle.words("a")), (Some(1.0), Some("the layer at z = 1 a".into())));
+        assert_eq!(layer.words("nm"), None);
     }
 
     #[test]

@@ -29,10 +29,16 @@ impl From<f64> for Extent {
 impl fmt::Display for Extent {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Extent::Spacings(x) => f.write_str(&number(*x)),
+            Extent::Spacings(x) => f.write_str(&number(shown(*x))),
             Extent::Length(length) => length.fmt(f),
         }
     }
+}
+
+/// Without the digits that rounding left.
+fn shown(x: f64) -> f64 {
+    let scale = 1e6;
+    if x.abs() < 1e3 && x.abs() > 1e-3 { (x * scale).round() / scale } else { x }
 }
 
 impl fmt::Display for Place {
@@ -108,6 +114,12 @@ impl<'de> Deserialize<'de> for Place {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_place_is_shown_without_what_rounding_left() {
+        let place = Place([0.1 + 0.2, 3.0 * 2f64.sqrt(), 1.25e-7].map(Extent::Spacings).to_vec());
+        assert_eq!(place.to_string(), "[0.3, 4.242641, 1.25e-7]");
+    }
 
     #[test]
     fn a_number_counts_spacings_and_a_string_carries_its_unit() {
