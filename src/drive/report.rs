@@ -265,7 +265,10 @@ fn saddles(problem: &Problem, band: &Band, found: &[Saddle], links: &[Pass], pla
             saddles.sort_by(|p, q| p.reaction_coordinate_rad.total_cmp(&q.reaction_coordinate_rad));
             saddles
         }
-        (links, _) => links.iter().zip(places.iter().step_by(2)).map(of_link).collect(),
+        (links, _) => {
+            let places: Vec<&Place> = places.iter().step_by(2).collect();
+            links.par_iter().zip(places).map(of_link).collect()
+        }
     }
 }
 
@@ -289,7 +292,7 @@ fn saddle_of_link(h: Evaluator, band: &Band, link: &Pass, place: Place) -> Saddl
     SaddlePoint {
         negative_modes: Some(link.spectrum.negative),
         zero_modes: Some(link.spectrum.zero_and_flat()),
-        lowest_eigenvalues_mev: link.spectrum.lowest_mev.clone(),
+        lowest_eigenvalues_mev: link.lowest_eigenvalues_mev(h),
         ..saddle_of(h, band, &link.saddle, place)
     }
 }

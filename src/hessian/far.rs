@@ -9,7 +9,7 @@
 use super::TangentBasis;
 use crate::energy::{AllPairs, Hamiltonian};
 use crate::geometry::{Vector, vector};
-use crate::linalg::{Decays, Matrix, Tail};
+use crate::linalg::{Decays, Dense, Matrix, Tail};
 use std::sync::Arc;
 
 /// r of every site: two rows of three; zero where a site is frozen.
@@ -19,11 +19,16 @@ type Rows = Vec<[Vector; 2]>;
 pub(super) fn add(h: &Hamiltonian, basis: &TangentBasis, precise: bool, matrix: &mut Matrix) {
     let Some(pairs) = h.coupling().pairs() else { return };
     let rows = rows(h, pairs, basis);
-    let Some(sum) = h.coupling().tail(precise) else { return add_pairs(pairs, &rows, matrix) };
+    let Some(sum) = h.coupling().tail(precise) else {
+        if let Matrix::Dense(dense) = matrix {
+            add_pairs(pairs, &rows, dense);
+        }
+        return;
+    };
     for n in 1..=sum.shells {
         let back = sum.at(n).map(|k| -k);
         for i in 0..rows.len() - n {
-            add_pair(i, i + n, back, &rows, matrix);
+            matrix.add_block(i + n, i, block(&rows[i], &rows[i + n], back));
         }
     }
     let decays = Arc::new(Decays { q: sum.decays.clone(), weights: sum.weights.clone() });
@@ -31,19 +36,17 @@ pub(super) fn add(h: &Hamiltonian, basis: &TangentBasis, precise: bool, matrix: 
 }
 
 /// All pairs but those of neighbours that have a block.
-fn add_pairs(pairs: &dyn AllPairs, rows: &Rows, matrix: &mut Matrix) {
-    for j in 0..rows.len() {
-        for i in 0..j {
-            add_pair(i, j, pairs.pair(i, j), rows, matrix);
-        }
+fn add_pairs(pairs: &dyn AllPairs, rows: &Rows, matrix: &mut Dense) {
+    for (j, row) in rows.iter().enumerate() {
+        matrix.add_blocks_before(j, |i| block(&rows[i], row, pairs.pair(i, j)));
     }
 }
 
+/// The couplings of a site to a later one: the later one's rows, the earlier one's columns.
 #[inline]
-fn add_pair(i: usize, j: usize, k: [f64; 3], rows: &Rows, matrix: &mut Matrix) {
+fn block([e, f]: &[Vector; 2], [p, q]: &[Vector; 2], k: [f64; 3]) -> [[f64; 2]; 2] {
     let entry = |p: &Vector, q: &Vector| p[0] * k[0] * q[0] + p[1] * k[1] * q[1] + p[2] * k[2] * q[2];
-    let ([e, f], [p, q]) = (&rows[i], &rows[j]);
-    matrix.add_block(j, i, [[entry(e, p), entry(f, p)], [entry(e, q), entry(f, q)]]);
+    [[entry(e, p), entry(f, p)], [entry(e, q), entry(f, q)]]
 }
 
 fn rows(h: &Hamiltonian, pairs: &dyn AllPairs, basis: &TangentBasis) -> Rows {

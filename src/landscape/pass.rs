@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::linalg::slab;
 use crate::rates::Crossing;
 use crate::spins::Spins;
-use crate::stationary::{Spectrum, descend, relax_to_minimum};
+use crate::stationary::{Spectrum, descend, lowest_eigenvalues_mev, relax_to_minimum};
 use crate::symmetry::{Group, Operation};
 use serde::{Deserialize, Serialize};
 
@@ -14,8 +14,6 @@ use serde::{Deserialize, Serialize};
 pub const FLAT: f64 = 1e-11;
 /// How many eigenvalues of a saddle are reported.
 const REPORTED: usize = 6;
-/// Of more sites the modes and the descents are not followed at the same time.
-const MANY: usize = 200_000;
 /// A valley with less than this (of its curvature) left over when the Hessian acts on it is a mode.
 const PURE: f64 = 0.1;
 
@@ -43,7 +41,7 @@ fn falling(saddle: &Saddle) -> Vec<f64> {
 pub struct Pass {
     /// The saddle.
     pub saddle: Saddle,
-    /// Its modes.
+    /// The signs of its modes.
     pub spectrum: Spectrum,
     /// The minimum that the descent against the path's direction reaches.
     pub before: Minimum,
@@ -70,10 +68,8 @@ impl Pass {
             let way = d.way.into_iter().map(|m| Spins::from_unit_components(&m)).collect();
             Ok((Minimum::examine(h, &relaxed.spins), d.fallen_mev, way))
         };
-        let descents = || rayon::join(|| side(-1.0), || side(1.0));
-        let modes = || Spectrum::of(h, state, REPORTED);
-        // on long chains the modes take much memory, which is given back before the descents
-        let (spectrum, sides) = if h.sites() > MANY { (modes(), descents()) } else { rayon::join(modes, descents) };
+        let spectrum = Spectrum::of(h, state, 0);
+        let sides = rayon::join(|| side(-1.0), || side(1.0));
         let ((before, f, back), (after, g, on)) = (sides.0?, sides.1?);
         Ok(Pass { spectrum, before, after, fallen_mev: [f, g], ways: [back, on], saddle, given: false })
     }
@@ -82,7 +78,7 @@ impl Pass {
     /// descending direction is too flat for that.
     pub fn between(h: Evaluator, saddle: Saddle, [before, after]: [Minimum; 2]) -> Option<Pass> {
         let state = &saddle.refined.state;
-        let spectrum = Spectrum::of(h, state, REPORTED);
+        let spectrum = Spectrum::of(h, state, 0);
         if spectrum.negative == 0 {
             return None;
         }
@@ -95,6 +91,12 @@ impl Pass {
         let Saddle { top, refined } = &saddle;
         let [m, valley, tau] = [&refined.state.m, &refined.valley, &top.tau].map(Vec::clone);
         recorded(h, "descents", &[&m, &valley, &tau], || Pass::of(h, saddle, c))
+    }
+
+    /// The saddle's lowest eigenvalues (meV), ascending, as many as are reported: what takes longest to find of all that is told of
+    /// it, and no search asks for it.
+    pub fn lowest_eigenvalues_mev(&self, h: Evaluator) -> Vec<f64> {
+        lowest_eigenvalues_mev(h, &self.saddle.refined.state, REPORTED)
     }
 
     /// As the theories of rates take it. `doubt`: what stands against its certificate.

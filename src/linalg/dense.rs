@@ -54,6 +54,18 @@ impl Dense {
         }
     }
 
+    /// Adds to the rows 2i, 2i + 1 the block that each site j before i gives, and to its mirror image.
+    #[inline]
+    pub fn add_blocks_before(&mut self, i: usize, block: impl Fn(usize) -> [[f64; 2]; 2]) {
+        let (first, second) = self.entries[2 * i * self.order..].split_at_mut(self.order);
+        let pairs = first[..2 * i].as_chunks_mut().0.iter_mut().zip(second[..2 * i].as_chunks_mut().0);
+        for (j, ([a, b], [c, d])) in pairs.enumerate() {
+            let [above, below] = block(j);
+            (*a, *b) = (*a + above[0], *b + above[1]);
+            (*c, *d) = (*c + below[0], *d + below[1]);
+        }
+    }
+
     /// Entry (i, j).
     pub fn get(&self, i: usize, j: usize) -> f64 {
         self.entries[i.max(j) * self.order + i.min(j)]

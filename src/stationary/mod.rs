@@ -28,6 +28,6 @@ pub use point::Point;
 pub use polish::polish;
 pub use relax::{Relaxed, WayDown, relax_to_minimum};
 pub use search::{Climb, GaveUp, Limits, Saddle, climb, relax_nearby};
-pub use spectrum::Spectrum;
+pub use spectrum::{Spectrum, lowest_eigenvalues_mev};
 pub use state::State;
 pub use valley::{Refined, Verdict, refine};

@@ -36,10 +36,7 @@ impl Spectrum {
         let below = |shift: f64| pinned(h, state.hessian.clone(), &state.zeros, shift).negatives();
         let negative = below(floor_mev);
         let flat = below(-floor_mev).saturating_sub(negative);
-        let frozen = (0..h.sites()).filter(|&i| h.is_frozen(i)).count();
-        let free = state.hessian.order() - 2 * frozen - state.zeros.len().min(state.hessian.order() - 2 * frozen);
-        let modes = lowest_modes(&state.hessian, count.min(free), &state.zeros);
-        let lowest_mev = modes.into_iter().map(|m| m.value).collect();
+        let lowest_mev = lowest_eigenvalues_mev(h, state, count);
         Spectrum { negative, flat, zero: state.zeros.len(), floor_mev, norm_mev, lowest_mev }
     }
 
@@ -62,6 +59,14 @@ impl Spectrum {
     pub fn is_stationary(&self, torque_mev: f64) -> bool {
         torque_mev <= 1e-12 * self.norm_mev
     }
+}
+
+/// The lowest eigenvalues of a state's Hessian (meV), so many if there are, ascending, zero modes and frozen spins apart.
+pub fn lowest_eigenvalues_mev(h: Evaluator, state: &State, count: usize) -> Vec<f64> {
+    let frozen = (0..h.sites()).filter(|&i| h.is_frozen(i)).count();
+    let free = (state.hessian.order() - 2 * frozen).saturating_sub(state.zeros.len());
+    let modes = lowest_modes(&state.hessian, count.min(free), &state.zeros);
+    modes.into_iter().map(|m| m.value).collect()
 }
 
 /// The factors of a Hessian + shift·1 whose zero modes are pinned.

@@ -7,6 +7,7 @@ use crate::landscape::{Landscape, Searched, is_same_state};
 use crate::spins::Spins;
 use crate::stationary::Spectrum;
 use crate::symmetry::Group;
+use rayon::prelude::*;
 
 /// States that symmetry makes of one.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,7 +86,10 @@ impl Survey {
         let lowest = land.lowest_mev();
         let view = View { land, group, lowest, top: lowest + asked.window_mev };
         let (minimum_kinds, minima, number) = view.minima();
-        let (saddle_kinds, saddles, passes) = view.saddles(&number);
+        let (mut saddle_kinds, saddles, passes) = view.saddles(&number);
+        saddle_kinds.par_iter_mut().zip(&passes).for_each(|(kind, pass)| {
+            kind.spectrum.lowest_mev = land.passes()[*pass].lowest_eigenvalues_mev(land.evaluator());
+        });
         let mut survey = Survey {
             minimum_kinds,
             saddle_kinds,
