@@ -94,7 +94,7 @@ impl Matrix {
     }
 
     /// Adds `v` to the entry (i, j) and, off the diagonal, to its mirror image. The entry must be one that the matrix keeps.
-    #[inline]
+    #[inline(always)]
     pub fn add(&mut self, i: usize, j: usize, v: f64) {
         match self {
             Matrix::Band(band, places) => {
@@ -108,7 +108,7 @@ impl Matrix {
     }
 
     /// Adds a block to the rows of site i and the columns of another site j, and to its mirror image.
-    #[inline]
+    #[inline(always)]
     pub fn add_block(&mut self, i: usize, j: usize, block: [[f64; 2]; 2]) {
         match self {
             Matrix::Band(band, places) => band.add_block(places.of(i), places.of(j), block),
