@@ -2,20 +2,18 @@
 
 use crate::buffer::Buffer;
 use crate::errors::raised;
+use crate::handing::{dictionary, places};
 use crate::landscape::Landscape;
 use crate::outcome::Outcome;
 use crate::supervise::supervised;
 use crate::term::{Term, Trouble};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict};
-use spinneb::config::{Loaded, Source, VERSION, discard_leftovers};
+use pyo3::types::PyDict;
+use spinneb::config::{Loaded, Source, VERSION};
 use spinneb::drive::survey::survey;
 use spinneb::drive::{self, relaxed_state};
 use spinneb::energy::{CustomEnergy, Evaluator};
-use spinneb::error::Error;
-use spinneb::files::disk::File;
 use spinneb::output::RelaxReport;
-use spinneb::output::folder::{self, NewResult};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -34,33 +32,6 @@ pub struct Config {
     /// It has a final state.
     with_final: bool,
     trouble: Trouble,
-}
-
-/// Files by name.
-pub fn dictionary<'py>(py: Python<'py>, files: &[File]) -> PyResult<Bound<'py, PyDict>> {
-    let all = PyDict::new(py);
-    for file in files {
-        all.set_item(&file.name, PyBytes::new(py, &file.bytes))?;
-    }
-    Ok(all)
-}
-
-/// Puts files where the config's results go, with the care of the command line for what is there.
-pub fn save(loaded: &Loaded, dir: PathBuf, names: &[String], force: bool, files: &[File]) -> Result<(), Error> {
-    let mut force = force;
-    let _lock = match loaded.reserve(&dir, names, force)? {
-        Some(lock) => lock,
-        None => {
-            // a result of the same config, perhaps with other files, or other functions of its own terms
-            force = true;
-            let Some(lock) = loaded.reserve(&dir, names, force)? else { return Ok(()) };
-            lock
-        }
-    };
-    let source = loaded.source_name();
-    let new = NewResult { files, source: source.as_deref(), keep_earlier: !force, force };
-    folder::write_result(&dir, &new)?;
-    discard_leftovers(&dir)
 }
 
 #[pymethods]
@@ -200,12 +171,4 @@ impl Config {
         })?;
         Ok(Landscape { loaded: self.loaded.clone(), files })
     }
-}
-
-/// Places of the sites of a config.
-pub fn places(loaded: &Loaded) -> Buffer {
-    let lattice = &loaded.lattice;
-    let all: Vec<[f64; 3]> = (0..lattice.sites).map(|i| lattice.place(i)).collect();
-    let components: Vec<f64> = (0..3).flat_map(|c| all.iter().map(move |r| r[c])).collect();
-    Buffer::spins(&Arc::new(components), |numbers: &Vec<f64>| numbers, None)
 }

@@ -1,7 +1,7 @@
 //! A landscape as its files tell it.
 
-use crate::config::{dictionary, save};
 use crate::errors::raised;
+use crate::handing::{dictionary, save};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use spinneb::config::Loaded;

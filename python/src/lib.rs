@@ -6,6 +6,7 @@
 mod buffer;
 mod config;
 mod errors;
+mod handing;
 mod landscape;
 mod outcome;
 mod supervise;

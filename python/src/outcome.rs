@@ -1,8 +1,8 @@
 //! What a run has found.
 
 use crate::buffer::Buffer;
-use crate::config::{dictionary, places, save};
 use crate::errors::{failed, raised};
+use crate::handing::{dictionary, places, save};
 use crate::supervise::supervised;
 use crate::term::Trouble;
 use pyo3::prelude::*;

@@ -3,7 +3,7 @@
 
 use super::krylov::{Krylov, MOST, Modes};
 use super::orthonormal::orthonormal;
-use super::ritz::{APART, Mode, rayleigh_ritz};
+use super::ritz::{Mode, none_is_missed, rayleigh_ritz};
 use super::slices::sliced;
 use super::together::together;
 use super::{Factors, Inverse, Matrix};
@@ -109,16 +109,6 @@ fn lanczos(matrix: &Matrix, count: usize, known: &[Vec<f64>], below: f64) -> (Ve
         }
     }
     (modes, false)
-}
-
-/// Whether no eigenvalue below the last of these modes was left out.
-pub(super) fn none_is_missed(matrix: &Matrix, modes: &[Mode], known: &[Vec<f64>], scale: f64) -> bool {
-    let Some(last) = modes.last().filter(|_| modes.len() > 1) else { return true };
-    let below = last.value - APART * scale;
-    let mut shifted = matrix.clone();
-    shifted.shift(-below);
-    let counted = rayleigh_ritz(matrix, known).iter().chain(modes).filter(|mode| mode.value < below).count();
-    shifted.factor().negatives() <= counted
 }
 
 /// s with A + s·1 positive definite and its lowest eigenvalue small beside that of A: halves an interval by the inertia.

@@ -49,3 +49,13 @@ pub(super) fn combination(weights: &[f64], vectors: &[Vec<f64>]) -> Vec<f64> {
     slab::add_all(&mut v, weights, vectors);
     v
 }
+
+/// Whether no eigenvalue below the last of these modes was left out.
+pub(super) fn none_is_missed(matrix: &Matrix, modes: &[Mode], known: &[Vec<f64>], scale: f64) -> bool {
+    let Some(last) = modes.last().filter(|_| modes.len() > 1) else { return true };
+    let below = last.value - APART * scale;
+    let mut shifted = matrix.clone();
+    shifted.shift(-below);
+    let counted = rayleigh_ritz(matrix, known).iter().chain(modes).filter(|mode| mode.value < below).count();
+    shifted.factor().negatives() <= counted
+}

@@ -8,8 +8,7 @@
 //! doi:10.1137/1.9781611971163, §§4.5, 4.6.)
 
 use super::krylov::{Krylov, MOST, Modes};
-use super::lowest::none_is_missed;
-use super::ritz::{Mode, rayleigh_ritz};
+use super::ritz::{Mode, none_is_missed, rayleigh_ritz};
 use super::{Matrix, remove, slab};
 
 /// Most factorisations.

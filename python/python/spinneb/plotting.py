@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from .results import Rates, Result
-
 Array = NDArray[np.float64]
 #: blue and vermilion of Okabe and Ito, which all eyes can tell apart
 CURVE, TOP = "#0072b2", "#d55e00"
@@ -21,40 +19,27 @@ CURVE, TOP = "#0072b2", "#d55e00"
 _ARROWS = 120
 
 
-def energy_path(result: Result, ax: Axes | None = None, **style: Any) -> Axes:
-    """See :meth:`spinneb.Result.plot`."""
+def energy_path(
+    profile: tuple[Array, Array],
+    images: tuple[Array, Array],
+    saddles: Sequence[tuple[float, float]],
+    title: str,
+    ax: Axes | None = None,
+    **style: Any,
+) -> Axes:
+    """See :meth:`spinneb.Result.plot`; all in radians and meV."""
     import matplotlib.pyplot as plt
 
     ax = plt.subplots(figsize=(4.8, 3.2), layout="constrained")[1] if ax is None else ax
     style = {"color": CURVE, "linewidth": 1.5, **style}
-    s, e = result.profile
-    (line,) = ax.plot(s, e, **style)
-    ax.plot(result.reaction_coordinate_rad, result.above_initial_meV, "o", ms=3.5, color=line.get_color())
-    for saddle in result.saddles:
-        ax.plot(saddle.reaction_coordinate_rad, saddle.above_initial_meV, "D", ms=5, color=TOP, zorder=3)
-    doubt = "" if result.certified else " (not certified)"
-    if result.barrier_meV is not None:
-        forward, backward = result.barrier_meV["forward"], result.barrier_meV["backward"]
-        words = f"barrier {forward:.4g} meV" + ("" if np.isclose(forward, backward, rtol=1e-6) else f", back {backward:.4g} meV")
-    else:
-        words = "no barrier"
-    ax.set_title(f"{result.name}: {words}{doubt}", fontsize="medium")
+    (line,) = ax.plot(*profile, **style)
+    ax.plot(*images, "o", ms=3.5, color=line.get_color())
+    for place, height in saddles:
+        ax.plot(place, height, "D", ms=5, color=TOP, zorder=3)
+    ax.set_title(title, fontsize="medium")
     ax.set_xlabel("reaction coordinate (rad)")
     ax.set_ylabel("energy above the initial state (meV)")
     return ax
-
-
-def chosen(result: Result, images: Sequence[int] | None) -> tuple[list[Array], list[str]]:
-    """Images of a path and what they are called: the initial state, those at the saddles and the final state, if none are named."""
-    path, e = result.spins, result.above_initial_meV
-    last = len(path) - 1
-    tops = [saddle.image for saddle in result.saddles]
-    if images is None:
-        images = sorted({0, *(tops if len(tops) <= 3 else [int(np.argmax(e))]), last})
-    picked = [range(len(path))[k] for k in images]
-    words = {0: "initial", last: "final"}
-    titles = [f"{words.get(k, 'saddle' if k in tops else f'image {k}')}\n{e[k]:.4g} meV" for k in picked]
-    return [path[k] for k in picked], titles
 
 
 def maps(states: Sequence[Array], places: Array, titles: Sequence[str], axes: Sequence[Axes] | None = None) -> list[Axes]:
@@ -135,14 +120,13 @@ def _is_square(r: Array, distance: float) -> bool:
     return bool(np.all(np.min(np.abs(near), axis=1) < 1e-6))
 
 
-def lifetimes(rates: Rates, ax: Axes | None = None, **style: Any) -> Axes:
+def lifetimes(temperatures_K: Array, log10_s: Array, ax: Axes | None = None, **style: Any) -> Axes:
     """See :meth:`spinneb.Rates.plot`."""
     import matplotlib.pyplot as plt
 
     ax = plt.subplots(figsize=(4.8, 3.2), layout="constrained")[1] if ax is None else ax
-    t = rates.temperatures_K
     style = {"color": CURVE, "marker": "o", "ms": 4, **style}
-    ax.plot(t, rates.lifetimes_s(log10=True), **style)
+    ax.plot(temperatures_K, log10_s, **style)
     ax.set_xlabel("temperature (K)")
     ax.set_ylabel("log₁₀ lifetime (s)")
     for seconds, words in [(0.0, "1 s"), (np.log10(10 * 365.25 * 86400), "10 years")]:

@@ -242,16 +242,36 @@ class Result:
         """
         from .plotting import energy_path
 
-        return energy_path(self, ax, **style)
+        doubt = "" if self.certified else " (not certified)"
+        words = "no barrier"
+        if self.barrier_meV is not None:
+            forward, backward = self.barrier_meV["forward"], self.barrier_meV["backward"]
+            words = f"barrier {forward:.4g} meV" + ("" if np.isclose(forward, backward, rtol=1e-6) else f", back {backward:.4g} meV")
+        saddles = [(saddle.reaction_coordinate_rad, saddle.above_initial_meV) for saddle in self.saddles]
+        images = self.reaction_coordinate_rad, self.above_initial_meV
+        return energy_path(self.profile, images, saddles, f"{self.name}: {words}{doubt}", ax, **style)
+
+    def _chosen(self, images: Sequence[int] | None) -> tuple[list[Array], list[str]]:
+        """Images of the path and what they are called: the initial state, those at the saddles and the final state, if none are
+        named."""
+        path, e = self.spins, self.above_initial_meV
+        last = len(path) - 1
+        tops = [saddle.image for saddle in self.saddles]
+        if images is None:
+            images = sorted({0, *(tops if len(tops) <= 3 else [int(np.argmax(e))]), last})
+        picked = [range(len(path))[k] for k in images]
+        words = {0: "initial", last: "final"}
+        titles = [f"{words.get(k, 'saddle' if k in tops else f'image {k}')}\n{e[k]:.4g} meV" for k in picked]
+        return [path[k] for k in picked], titles
 
     def plot_spins(self, images: Sequence[int] | None = None, axes: Sequence[Axes] | None = None) -> list[Axes]:
         """The spins of some images side by side, on matplotlib axes: hue for the direction in the plane, lightness for m_z.
 
         Left out, ``images`` are the initial state, those at the saddles, and the final state.
         """
-        from .plotting import chosen, maps
+        from .plotting import maps
 
-        states, titles = chosen(self, images)
+        states, titles = self._chosen(images)
         return maps(states, self.places, titles, axes)
 
     def plot_3d(self, images: Sequence[int] | None = None, plotter: Any = None, **style: Any) -> Any:
@@ -270,10 +290,9 @@ class Result:
         style
             For pyvista's ``add_mesh``: ``opacity=``, ``color="red", rgb=False, scalars=None`` …
         """
-        from .plotting import chosen
         from .scenes import arrows
 
-        states, titles = chosen(self, images)
+        states, titles = self._chosen(images)
         return arrows(states, self.places, titles, plotter, **style)
 
     def html(self) -> str:
@@ -471,7 +490,7 @@ class Rates:
         """Lifetimes against temperature, on matplotlib axes."""
         from .plotting import lifetimes
 
-        return lifetimes(self, ax, **style)
+        return lifetimes(self.temperatures_K, self.lifetimes_s(log10=True), ax, **style)
 
     def __repr__(self) -> str:
         lines = [f"<Rates {self.result.name}"]
