@@ -24,8 +24,8 @@ mkdir -p "$1"
 out=$(cd "$1" && pwd)
 cargo package --locked
 cp "$target/package/spinneb-$version.crate" "$out"
-# without what a debugger reads, which is six times the program
-export CARGO_PROFILE_RELEASE_DEBUG=false CARGO_PROFILE_RELEASE_STRIP=true
+# without the names that a debugger reads
+export CARGO_PROFILE_RELEASE_STRIP=true
 host=$(rustc -vV | sed -n 's/^host: //p')
 cargo build --release --locked
 cp "$target/release/spinneb" "$out/spinneb-$version-$host"
