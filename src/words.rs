@@ -71,6 +71,11 @@ pub fn number(x: f64) -> String {
     if x == 0.0 || (1e-4..1e15).contains(&x.abs()) || !x.is_finite() { format!("{x}") } else { format!("{x:e}") }
 }
 
+/// A number with so many significant digits: 0.3, and not the 0.30000000000000004 that rounding left.
+pub fn rounded(x: f64, digits: usize) -> f64 {
+    format!("{x:.*e}", digits - 1).parse().unwrap_or(x)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -113,5 +118,19 @@ mod tests {
         for (x, expected) in [(0.0, "0"), (10.0, "10"), (-0.25, "-0.25"), (1e-22, "1e-22"), (1.3e20, "1.3e20")] {
             assert_eq!(number(x), expected);
         }
+    }
+
+    #[test]
+    fn digits_that_rounding_left_are_cut_and_numbers_keep_their_size() {
+        for (x, digits, expected) in [
+            (0.1 + 0.2, 12, 0.3),
+            (3.0 * 1.1e-22, 12, 3.3e-22),
+            (1234.5678, 6, 1234.57),
+            (-0.7, 1, -0.7),
+            (0.0, 3, 0.0),
+        ] {
+            assert_eq!(rounded(x, digits), expected);
+        }
+        assert!(rounded(f64::NAN, 3).is_nan() && rounded(f64::INFINITY, 3) == f64::INFINITY);
     }
 }

@@ -78,13 +78,16 @@ pub fn outcome(
     let initial = band.path().image(0);
     let above_final = h.difference_mev(band.path().image(band.images() - 1), initial);
     let places = places_of(band.path(), &proof.links);
-    let saddles = saddles(run.problem, band, found, &proof.links, &places);
+    let mut saddles = saddles(run.problem, band, found, &proof.links, &places);
     let seen = Seen { problem: run.problem, band, saddles: &saddles, above_final, ends: &proof.ends };
     let Judgement { verdict, barrier, doubts } = seen.judge(&c, proof.doubts);
     // nothing is crossed in a flat valley
     let (saddles, links) = match verdict {
         Verdict::FlatValley => (Vec::new(), &[][..]),
-        _ => (saddles, &proof.links[..]),
+        _ => {
+            tell_eigenvalues(h, &mut saddles, &proof.links);
+            (saddles, &proof.links[..])
+        }
     };
     let rates = run.problem.rates.as_ref().map(|settings| {
         let no_barrier = barrier.is_none().then_some(&verdict);
@@ -292,9 +295,14 @@ fn saddle_of_link(h: Evaluator, band: &Band, link: &Pass, place: Place) -> Saddl
     SaddlePoint {
         negative_modes: Some(link.spectrum.negative),
         zero_modes: Some(link.spectrum.zero_and_flat()),
-        lowest_eigenvalues_mev: link.lowest_eigenvalues_mev(h),
         ..saddle_of(h, band, &link.saddle, place)
     }
+}
+
+/// The lowest eigenvalues of the saddles of proven passes: what takes longest to find of all that is told of them.
+fn tell_eigenvalues(h: Evaluator, saddles: &mut [SaddlePoint], links: &[Pass]) {
+    let told = saddles.par_iter_mut().zip(links);
+    told.for_each(|(saddle, link)| saddle.lowest_eigenvalues_mev = link.lowest_eigenvalues_mev(h));
 }
 
 /// The prominent maxima as the band shows them: the interpolated ones beside the highest images.

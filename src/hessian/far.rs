@@ -9,7 +9,7 @@
 use super::TangentBasis;
 use crate::energy::{AllPairs, Hamiltonian};
 use crate::geometry::{Vector, vector};
-use crate::linalg::{Decays, Dense, Matrix, Tail};
+use crate::linalg::{Decays, Matrix, Tail};
 use std::sync::Arc;
 
 /// r of every site: two rows of three; zero where a site is frozen.
@@ -20,10 +20,7 @@ pub(super) fn add(h: &Hamiltonian, basis: &TangentBasis, precise: bool, matrix: 
     let Some(pairs) = h.coupling().pairs() else { return };
     let rows = rows(h, pairs, basis);
     let Some(sum) = h.coupling().tail(precise) else {
-        if let Matrix::Dense(dense) = matrix {
-            add_pairs(pairs, &rows, dense);
-        }
-        return;
+        return add_pairs(pairs, &rows, matrix);
     };
     for n in 1..=sum.shells {
         let back = sum.at(n).map(|k| -k);
@@ -36,7 +33,7 @@ pub(super) fn add(h: &Hamiltonian, basis: &TangentBasis, precise: bool, matrix: 
 }
 
 /// All pairs but those of neighbours that have a block.
-fn add_pairs(pairs: &dyn AllPairs, rows: &Rows, matrix: &mut Dense) {
+fn add_pairs(pairs: &dyn AllPairs, rows: &Rows, matrix: &mut Matrix) {
     for (j, row) in rows.iter().enumerate() {
         matrix.add_blocks_before(j, |i| block(&rows[i], row, pairs.pair(i, j)));
     }

@@ -122,6 +122,14 @@ impl Matrix {
         }
     }
 
+    /// Adds to the rows of site i a block for each earlier site j, in its columns, and the mirror images.
+    pub fn add_blocks_before(&mut self, i: usize, block: impl Fn(usize) -> [[f64; 2]; 2]) {
+        match self {
+            Matrix::Dense(dense) => dense.add_blocks_before(i, block),
+            _ => (0..i).for_each(|j| self.add_block(i, j, block(j))),
+        }
+    }
+
     /// Entry (i, j); zero where the matrix keeps none.
     pub fn get(&self, i: usize, j: usize) -> f64 {
         match self {
@@ -287,6 +295,32 @@ mod tests {
             assert_eq!(a.size(), full.iter().fold(0.0f64, |m, v| m.max(v.abs())));
             copy.copy_from(&a);
             assert!((0..n * n).all(|k| copy.get(k / n, k % n) == full[k]));
+        }
+    }
+
+    #[test]
+    fn blocks_of_all_earlier_sites_are_added_to_every_kind_that_keeps_them() {
+        let sites = 5;
+        let plan = Symbolic::of(
+            Graph::new(sites, (0..sites).flat_map(|i| (0..i).map(move |j| (i, j)))),
+            &[0, 1, 2, 3, 4].map(|x| [f64::from(x), 0.0, 0.0]),
+        );
+        let folded = folded(sites);
+        for layout in [
+            Layout::Dense,
+            Layout::Sparse(plan.into()),
+            Layout::Band { span: sites - 1, places: Places::default() },
+            Layout::Band { span: sites - 1, places: folded },
+        ] {
+            let mut a = Matrix::default();
+            a.reset(&layout, sites, 0);
+            (0..sites).for_each(|i| {
+                a.add_blocks_before(i, |j| [[1.0, 2.0], [3.0, 4.0]].map(|r| r.map(|x| x + (10 * i + j) as f64)))
+            });
+            for (i, j) in (0..2 * sites).flat_map(|i| (0..i).map(move |j| (i, j))) {
+                let block = if i / 2 == j / 2 { 0.0 } else { (10 * (i / 2) + j / 2 + 2 * (i % 2) + j % 2 + 1) as f64 };
+                assert_eq!((a.get(i, j), a.get(j, i)), (block, block), "{layout:?} {i} {j}");
+            }
         }
     }
 

@@ -13,6 +13,7 @@ use crate::error::{Error, Result};
 use crate::field::Components;
 use crate::geometry::Vector;
 use crate::lattice::Lattice;
+use crate::words::rounded;
 use std::collections::BTreeMap;
 
 /// Where the sites are.
@@ -127,16 +128,11 @@ impl Plan {
     }
 }
 
-/// Without the last digits.
-fn rounded(x: f64) -> f64 {
-    format!("{x:.6}").parse().unwrap_or(x)
-}
-
 /// A round length, of about a quarter of another one.
 fn round_part(length: f64) -> f64 {
     let power = libm::pow(10.0, (0.3 * length).log10().floor());
     let steps = [5.0, 2.0, 1.0].into_iter().map(|step| step * power);
-    rounded(steps.into_iter().find(|x| *x <= 0.3 * length).unwrap_or(power))
+    rounded(steps.into_iter().find(|x| *x <= 0.3 * length).unwrap_or(power), 1)
 }
 
 /// The images that are shown, each with what it is; points of the path are (reaction coordinate, energy).
@@ -232,7 +228,7 @@ impl Layer {
 
     /// Which layer of several the maps show. A line of its own: with the rest it is wider than the figure.
     fn words(&self, unit: &str) -> Option<String> {
-        self.z.map(|z| format!("the layer at z = {} {unit}", rounded(z)))
+        self.z.map(|z| format!("the layer at z = {} {unit}", rounded(z, 6)))
     }
 }
 

@@ -1,7 +1,7 @@
 //! The values of a swept key: a list, or a range with both ends.
 
 use crate::units::AnyQuantity;
-use crate::words::quoted;
+use crate::words::{quoted, rounded};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Error, MapAccess, SeqAccess, Visitor};
@@ -133,8 +133,8 @@ impl Range {
         let at = |k: usize| match (k as f64 / last, self.scale) {
             (0.0, _) => from,
             (1.0, _) => to,
-            (t, Scale::Linear) => rounded(from + (to - from) * t),
-            (t, Scale::Log) => rounded(from * libm::exp(libm::log(to / from) * t)),
+            (t, Scale::Linear) => rounded(from + (to - from) * t, DIGITS),
+            (t, Scale::Log) => rounded(from * libm::exp(libm::log(to / from) * t), DIGITS),
         };
         Ok((0..self.points).map(|k| self.shown(at(k))).collect())
     }
@@ -148,11 +148,6 @@ impl Range {
             End::Number(_) => x.into(),
         }
     }
-}
-
-/// The number with [`DIGITS`] digits.
-fn rounded(x: f64) -> f64 {
-    format!("{x:.*e}", DIGITS - 1).parse().unwrap_or(x)
 }
 
 impl<'de> Deserialize<'de> for Values {
