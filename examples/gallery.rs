@@ -8,10 +8,12 @@
 //! changed, its `summary.json` stays as it is, so that a gallery without news is the same bytes.
 
 use serde_json::Value;
+use spinneb::config::sweep::Sweep;
 use spinneb::config::{Loaded, load, load_landscape};
 use spinneb::drive::survey::survey;
 use spinneb::drive::{Outcome, Silent, run};
 use spinneb::files::disk::{self, File};
+use spinneb::output::sweep::{draw_map, lifetime_table, look};
 use spinneb::output::{LandscapeReport, render_files};
 use std::error::Error;
 use std::fmt::Write;
@@ -47,6 +49,7 @@ fn main() -> Result<()> {
         println!("{}: {:.1} s", loaded.name, outcome.work.seconds);
     }
     page.push_str(&landscapes(root)?);
+    page.push_str(&lifetime_map(root)?);
     page.push_str(&examples(root)?);
     fs::write(root.join("results/gallery/README.md"), page)?;
     Ok(())
@@ -204,6 +207,38 @@ fn landscapes(root: &Path) -> Result<String> {
         println!("landscape {name}");
     }
     Ok(page)
+}
+
+/// The sweep over field and temperature, its table and its figure.
+const MAP: &str = "skyrmion_lifetime";
+
+/// Runs the sweep as `spinneb sweep` does; how long a skyrmion lives over field and temperature.
+fn lifetime_map(root: &Path) -> Result<String> {
+    let sweep = Sweep::load(&root.join("configs/sweeps").join(format!("{MAP}.json")))?;
+    let results = tempfile::tempdir()?;
+    let mut hashes = Vec::new();
+    for point in 0..sweep.len() {
+        let loaded = sweep.load_point(point)?;
+        let outcome = run(&sweep.problem(point, &loaded)?, &mut Silent)?;
+        let files = render_files(&loaded.report(&outcome)?, |kind| kind.name == "csv")?;
+        disk::replace(&results.path().join(sweep.directory(point)), &files, |_, _| true, true)?;
+        hashes.push(loaded.sha256);
+    }
+    let index = sweep.index(hashes);
+    let states =
+        (0..sweep.len()).map(|k| look(results.path(), &index, k)).collect::<std::result::Result<Vec<_>, _>>()?;
+    let table = lifetime_table(&index, &states)?.ok_or("no lifetimes")?;
+    let figure = draw_map(&index, &states)?.ok_or("no map of lifetimes")?.svg()?;
+    let dir = root.join("results/gallery/sweeps").join(MAP);
+    fs::create_dir_all(&dir)?;
+    fs::write(dir.join("lifetimes.csv"), table)?;
+    fs::write(dir.join("lifetime_map.svg"), figure)?;
+    println!("sweep {MAP}");
+    Ok(format!(
+        "\n## Lifetimes over field and temperature\n\nWhat `spinneb sweep` makes of \
+         [`{MAP}`](../../configs/sweeps/{MAP}.json): [numbers](sweeps/{MAP}/lifetimes.csv).\n\n\
+         <img src=\"sweeps/{MAP}/lifetime_map.svg\" alt=\"Mean time until a skyrmion collapses, over field and temperature\" width=\"48%\">\n"
+    ))
 }
 
 /// Links to what the numbered examples wrote.

@@ -13,6 +13,7 @@ mod progress;
 mod rate;
 mod relax;
 mod run;
+mod shares;
 mod signals;
 mod start;
 mod sweep;
@@ -107,7 +108,7 @@ pub(crate) enum Command {
     Landscape(landscape::Arguments),
     /// Run a config at many values of its keys
     Sweep(sweep::Arguments),
-    /// Put the results of a sweep into one table and one figure
+    /// Put the results of a sweep into one table and one figure, or the shares of a landscape into its results
     Collect(collect::Collect),
     /// Validate configs and print what would run: sites, energy scales, wall width, images, memory
     Check(Check),

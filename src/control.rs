@@ -2,7 +2,7 @@
 //! recorded of it.
 
 use crate::error::{Error, Result};
-use crate::record::{Count, Fingerprint, Keep, Recorder, Ticket};
+use crate::record::{Count, Fingerprint, Keep, Recorder, Share, Ticket};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -155,6 +155,46 @@ impl<'a> Call<'a> {
     pub fn finish<T: Serialize>(&self, result: impl FnOnce() -> T) {
         if let Some((recorder, ticket)) = self.record {
             recorder.add(ticket.sealed(self.count(), &result()));
+            self.heed();
+        }
+    }
+
+    /// What is asked of how processes share it; nothing where it is one process's alone.
+    pub(crate) fn shared<T>(&self, ask: impl FnOnce(&mut dyn Share, usize) -> T) -> Option<T> {
+        self.record?.0.shared(ask)
+    }
+
+    /// A part of it, if some process has made it and `check` takes it, and what it evaluated.
+    pub(crate) fn part<T: DeserializeOwned>(
+        &self,
+        part: usize,
+        check: impl FnOnce(T) -> Option<T>,
+    ) -> Option<(T, Count)> {
+        let record = self.shared(|share, k| share.part(k, part))??;
+        self.record?.1.opened(&record, check)
+    }
+
+    /// Records a part that was made here, and what it evaluated.
+    pub(crate) fn add_part(&self, part: usize, count: Count, content: &impl Serialize) {
+        if let Some((_, ticket)) = self.record {
+            let sealed = ticket.sealed(count, content);
+            self.shared(|share, k| share.add_part(k, part, sealed));
+            self.heed();
+        }
+    }
+
+    /// All parts are there; so much was evaluated for them, whoever did.
+    pub(crate) fn end_parts(&self, count: Count) {
+        self.counted(((), count));
+        if let Some((recorder, _)) = self.record {
+            recorder.end_parts();
+        }
+    }
+
+    /// Stops where others have computed something else.
+    fn heed(&self) {
+        if let (Some(control), Some(Some(reason))) = (self.control, self.shared(|share, _| share.fault())) {
+            control.give_up(|| reason);
         }
     }
 

@@ -27,6 +27,7 @@ mod guesses;
 mod interrupted;
 mod kills;
 mod landscape_command;
+mod landscape_shares;
 mod lattices;
 mod longrange;
 mod lowest;

@@ -329,3 +329,41 @@ fn a_killed_sweep_leaves_no_points_at_work_and_they_go_on_afterwards() {
         assert!(point.join("partial.json").is_file() && point.join("checkpoint/journal").is_file(), "{sites}");
     }
 }
+
+#[test]
+fn a_sweep_with_rates_has_a_table_and_a_map_of_lifetimes_over_its_key_and_temperature() {
+    let folder = tempfile::tempdir().unwrap();
+    let config = r#"{"material": {"name": "one", "moment": "2 mu_B", "energy": [{"anisotropy": {"K": "4 meV", "axis": [0, 0, 1]}},
+        {"anisotropy": {"K": "-2 meV", "axis": [1, 0, 0]}}]}, "lattice": {"chain": {"sites": 1}},
+        "energy": [{"zeeman": {"B": ["0 T", "0 T", "0 T"]}}], "initial": {"uniform": {"direction": [0, 0, 1]}},
+        "final": {"uniform": {"direction": [0, 0, -1]}}, "rates": {"temperatures": ["2 K", "4 K", "45 K"], "damping": 0.5}}"#;
+    fs::write(folder.path().join("one.json"), config).unwrap();
+    let sweep = r#"{"config": "one.json", "set": {"output": {"formats": ["csv"], "plots": []}},
+        "grid": {"energy[0].zeeman.B[2]": {"from": "0 T", "to": "-20 T", "points": 3}}}"#;
+    fs::write(folder.path().join("life.json"), sweep).unwrap();
+    let (code, _, said) = spinneb(folder.path(), &["sweep", "life.json"]);
+    assert!(code == Some(0) && said.contains("lifetimes.csv, lifetime_map.svg, lifetime_map.png too"), "{said}");
+    let table = text(folder.path(), "results/life/lifetimes.csv");
+    let rows: Vec<Vec<&str>> = table.lines().map(|line| line.split(',').collect()).collect();
+    let column =
+        |name: &str| rows[0].iter().position(|head| *head == name).unwrap_or_else(|| panic!("{name}: {table}"));
+    // three points, two directions, three temperatures
+    assert_eq!(rows.len(), 1 + 18, "{table}");
+    for row in &rows[1..] {
+        let number = |name: &str| row[column(name)].parse::<f64>().ok();
+        let kelvin = number("temperature_K").unwrap();
+        // one spin of 4 meV, less in a field: at 45 K there is less than k_BT of it in the way it goes
+        let [time, log] = ["escape_lifetime_s", "log10_escape_lifetime_s"].map(number);
+        assert_eq!(time.is_some(), number("barrier_over_kT").unwrap() >= 1.0, "{row:?}");
+        assert!(time.is_none_or(|t| (t.log10() - log.unwrap()).abs() < 1e-9 && kelvin > 0.0), "{row:?}");
+    }
+    let map = text(folder.path(), "results/life/lifetime_map.svg");
+    for words in ["Mean first passage (s)", "Temperature (K)", "B[2] (T)", "Grey: no lifetime"] {
+        assert!(map.contains(words), "{words}");
+    }
+    // what was collected is known and replaced; two keys make no map
+    assert_eq!(spinneb(folder.path(), &["collect", "life.json", "-q"]).0, Some(0));
+    fs::write(folder.path().join("results/life/lifetimes.csv"), "mine").unwrap();
+    let (code, _, said) = spinneb(folder.path(), &["collect", "life.json"]);
+    assert!(code == Some(2) && said.contains("lifetimes.csv"), "{code:?} {said}");
+}

@@ -1,11 +1,13 @@
-//! `collect`: the results of a sweep as one table and one figure.
+//! `collect`: the results of a sweep as one table and one figure; the shares of a landscape as its results.
 
 use super::points::{checked, folder};
-use super::{UNFINISHED, USAGE, note};
+use super::{UNFINISHED, USAGE, note, shares};
 use crate::config::sweep::Sweep;
 use crate::files::disk::File;
 use crate::output::Picture;
-use crate::output::sweep::{Found, POINTS, PointState, SweepIndex, draw_sweep, look, sweep_table};
+use crate::output::sweep::{
+    Found, POINTS, PointState, SweepIndex, draw_map, draw_sweep, lifetime_table, look, sweep_table,
+};
 use anyhow::Result;
 use clap::Args;
 use serde_json::{Value, json};
@@ -20,19 +22,26 @@ const TOLD: usize = 12;
 #[command(after_help = "\
 barriers.csv has a row a point: index, swept values with their units, barriers in meV, whether they are certified, prefactors if
 there are rates, and the folder. A point without a result has empty cells. barriers.svg and .png show the forward barrier
-against the key with the most values, a curve for each value of the others. Older ones are replaced, unless they were changed.
+against the key with the most values, a curve for each value of the others. With \"rates\", lifetimes.csv has a row a point, direction
+and temperature; where one key alone has several values and there are several temperatures, lifetime_map.svg and .png show the
+mean first passage to the final state over both. Older files are replaced, unless they were changed.
+
+Of a landscape that was searched in shares (`landscape --index`) the results are written, and the shares taken away.
 
 Examples:
   spinneb collect field.json
   spinneb collect results/field
+  spinneb collect island.json
+  spinneb collect results/island_landscape
 
-Exit codes: 0 every point is there and certified, 3 otherwise, 2 the command line or the sweep is wrong")]
+Exit codes: 0 every point is there and certified, or the search came to its stop; 3 otherwise, also where shares are at work
+still; 2 the command line, the sweep or the config is wrong")]
 pub struct Collect {
-    /// The sweep's file, or the folder of its results
-    #[arg(value_name = "SWEEP|DIR")]
+    /// The sweep's file, the landscape's config, or the folder of the results
+    #[arg(value_name = "SWEEP|CONFIG|DIR")]
     pub target: PathBuf,
 
-    /// Folder of the results, where a file is given [default: results/<name of the sweep>]
+    /// Folder of the results, where a file is given [default: results/<name of the sweep>, results/<name>_landscape]
     #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 
@@ -40,19 +49,23 @@ pub struct Collect {
     #[arg(short, long)]
     pub quiet: bool,
 
-    /// Print one line of JSON for each point on stdout
+    /// Print one line of JSON for each point, or for the landscape, on stdout
     #[arg(long)]
     pub json: bool,
 }
 
-/// Collects a sweep's results.
+/// Collects a sweep's results, or a landscape's.
 pub fn collect(arguments: &Collect) -> Result<u8> {
+    if shares::is_landscape(&arguments.target)? {
+        return shares::collect(arguments);
+    }
     let (index, dir) = if arguments.target.is_dir() {
         let dir = arguments.target.clone();
         let Some(index) = SweepIndex::read(&dir)? else {
             let (dir, file) = (dir.display(), POINTS);
             note(&format!(
-                "error: {dir} is not the folder of a sweep's results: there is no {file} in it; give the sweep's file"
+                "error: {dir} is not the folder of a sweep's results: there is no {file} in it; give the sweep's file, or the config \
+                 of a landscape that was searched in shares"
             ));
             return Ok(USAGE);
         };
@@ -112,8 +125,22 @@ pub(super) fn write(index: &SweepIndex, dir: &Path, states: &[PointState], quiet
             files.push(File { name, bytes: picture.render(&canvas)? });
         }
     }
+    let barriers = files.len();
+    if let Some(bytes) = lifetime_table(index, states)? {
+        files.push(File { name: "lifetimes.csv".into(), bytes });
+    }
+    if let Some(canvas) = draw_map(index, states)? {
+        for picture in [Picture::Svg, Picture::Png] {
+            let name = format!("lifetime_map.{}", picture.extension());
+            files.push(File { name, bytes: picture.render(&canvas)? });
+        }
+    }
     index.collect(dir, &files, force)?;
-    match files.len() {
+    let more: Vec<&str> = files[barriers..].iter().map(|file| file.name.as_str()).collect();
+    if !more.is_empty() {
+        say(&format!("{} too", more.join(", ")));
+    }
+    match barriers {
         1 => say(&format!("{} is written; no point has a barrier to draw", place.display())),
         _ => say(&format!("{}, barriers.svg and barriers.png are written", place.display())),
     }

@@ -2,11 +2,12 @@
 
 use super::progress::Progress;
 use super::run::{Keeping, checkpoint};
+use super::shares::{ShareOf, share, take};
 use super::signals::Signals;
 use super::threads::start_threads;
 use super::{EVERY, Interval, Looking, UNFINISHED, interval, note, report};
-use crate::config::{discard_leftovers, load_landscape};
-use crate::drive::survey::survey;
+use crate::config::{Loaded, discard_leftovers, load_landscape};
+use crate::drive::survey::{Survey, survey};
 use crate::error::Error;
 use crate::files::disk;
 use crate::output::folder::{self, NewResult};
@@ -25,12 +26,20 @@ use std::path::{Path, PathBuf};
 A config of landscape needs no \"initial\" and no \"final\" state; its block \"landscape\" says how far above the lowest minimum is
 looked (energy_window), for how long (effort), from which further states, and at which temperatures lifetimes are wanted.
 
+With --index the search is shared by several processes, on as many machines as see the folder: each makes its share of all climbs
+and takes over what the others have made. A share that does not come in time is made by those that are there, so any of them may
+start late, be killed or be missing. What is found depends on the number of shares alone, to the bit.
+
 Examples:
   spinneb landscape island.json
   spinneb landscape island.json --set 'landscape.energy_window=\"20 meV\"' --effort thorough
   spinneb landscape island.json --resume
+  spinneb landscape island.json --index 3/8     one of eight shares: with a Slurm array, --index $SLURM_ARRAY_TASK_ID/8
+  spinneb landscape island.json --index 0-3/8   the first four of them
+  spinneb collect island.json                   the results of a shared search
 
-Exit codes: 0 the search came to its stop, 3 the work that it may do was spent before, 2 the command line or a config is wrong")]
+Exit codes: 0 the search came to its stop, 3 the work that it may do, or the states that it may find, were spent before, 2 the
+command line or a config is wrong")]
 pub struct Arguments {
     /// The config
     #[arg(value_name = "CONFIG")]
@@ -64,6 +73,10 @@ pub struct Arguments {
     #[arg(long)]
     pub json: bool,
 
+    /// Make this share of the search, counted from 0, or those from one to another: 0-3/8
+    #[arg(short, long, value_name = "SHARE/SHARES", value_parser = share, conflicts_with_all = ["force", "resume", "checkpoint_every"])]
+    pub index: Option<ShareOf>,
+
     /// Go on from the last checkpoint in the folder; without one, start anew
     #[arg(long)]
     pub resume: bool,
@@ -76,11 +89,12 @@ pub struct Arguments {
 /// Surveys a config into its folder, or says that it is done.
 pub fn landscape(arguments: &Arguments) -> Result<u8> {
     start_threads(arguments.threads)?;
-    let effort = arguments.effort.map(|effort| effort.setting("landscape"));
-    let set: Vec<String> = arguments.set.iter().cloned().chain(effort).collect();
-    let loaded = load_landscape(&arguments.config, &set)?;
+    if let Some(index) = arguments.index {
+        return take(arguments, index);
+    }
+    let loaded = load_landscape(&arguments.config, &arguments.set())?;
     let name = &loaded.name;
-    let directory = arguments.out.clone().unwrap_or_else(|| Path::new("results").join(format!("{name}_landscape")));
+    let directory = folder_of(name, arguments.out.as_deref());
     let say = |line: &str| {
         if !arguments.quiet {
             note(line)
@@ -94,7 +108,7 @@ pub fn landscape(arguments: &Arguments) -> Result<u8> {
             "{name}: {} holds the finished result of this config already; --force makes it again",
             directory.display()
         ));
-        return print(arguments, name, &directory);
+        return print(arguments.json, name, &directory);
     };
     if !lock.is_sure() {
         say(&format!(
@@ -124,11 +138,7 @@ pub fn landscape(arguments: &Arguments) -> Result<u8> {
         },
     };
     drop(progress);
-    let files = loaded.survey_report(&found)?.files()?;
-    let source = loaded.source_name();
-    let new =
-        NewResult { files: &files, source: source.as_deref(), keep_earlier: !arguments.force, force: arguments.force };
-    if let Err(error) = folder::write_result(&directory, &new) {
+    if let Err(error) = write(&loaded, &found, &directory, arguments.force) {
         // what was computed is not lost with the files
         asked.problem.control.recorder().save();
         return Err(error.into());
@@ -138,11 +148,32 @@ pub fn landscape(arguments: &Arguments) -> Result<u8> {
         report(&error.into());
     }
     found.warnings.iter().for_each(|warning| say(&format!("{name}: warning: {warning}")));
-    print(arguments, name, &directory)
+    print(arguments.json, name, &directory)
+}
+
+impl Arguments {
+    /// What of the config is changed first.
+    pub(super) fn set(&self) -> Vec<String> {
+        let effort = self.effort.map(|effort| effort.setting("landscape"));
+        self.set.iter().cloned().chain(effort).collect()
+    }
+}
+
+/// Where the results of a landscape go.
+pub(super) fn folder_of(name: &str, out: Option<&Path>) -> PathBuf {
+    out.map_or_else(|| Path::new("results").join(format!("{name}_landscape")), Path::to_path_buf)
+}
+
+/// Writes all files of a survey; by `force` in place of whatever is there.
+pub(super) fn write(loaded: &Loaded, found: &Survey, directory: &Path, force: bool) -> crate::error::Result<()> {
+    let files = loaded.survey_report(found)?.files()?;
+    let source = loaded.source_name();
+    let new = NewResult { files: &files, source: source.as_deref(), keep_earlier: !force, force };
+    folder::write_result(directory, &new).map(|_| ())
 }
 
 /// The line about a result on standard output; the exit code.
-fn print(arguments: &Arguments, name: &str, directory: &Path) -> Result<u8> {
+pub(super) fn print(as_json: bool, name: &str, directory: &Path) -> Result<u8> {
     let read = |file: &str| -> Result<Value> { Ok(serde_json::from_str(&fs::read_to_string(directory.join(file))?)?) };
     let summary = read(disk::MARK)?;
     let code = if summary["converged"] == true { 0 } else { UNFINISHED };
@@ -156,7 +187,7 @@ fn print(arguments: &Arguments, name: &str, directory: &Path) -> Result<u8> {
         summary["stop_reason"].as_str().unwrap_or_default(),
         directory.display()
     );
-    let line = match arguments.json {
+    let line = match as_json {
         true => json!({
             "name": name,
             "minima": count("minima"),

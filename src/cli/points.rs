@@ -1,4 +1,4 @@
-//! The points of a sweep, checked, and where their results are.
+//! The points of a sweep, checked, where their results are, and how some of them are named.
 
 use super::{note, report};
 use crate::config::sweep::Sweep;
@@ -44,4 +44,28 @@ pub(super) fn checked(sweep: &Sweep, build: bool) -> Result<Option<SweepIndex>> 
         note(&format!("error: and {more} more"));
     }
     Ok((!any).then(|| sweep.index(hashes)))
+}
+
+/// The points from one to another, both with it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Part {
+    /// The first.
+    pub first: usize,
+    /// The last.
+    pub last: usize,
+}
+
+/// `17` or `20-39`.
+pub(super) fn part(text: &str) -> std::result::Result<Part, String> {
+    let number = |text: &str| {
+        text.parse::<usize>().map_err(|_| format!("found {text:?}, expected a point's number, or two: 20-39"))
+    };
+    match text.split_once('-') {
+        None => number(text).map(|k| Part { first: k, last: k }),
+        Some((first, last)) => {
+            let (first, last) = (number(first)?, number(last)?);
+            let reversed = || format!("found {text}, expected the smaller number first");
+            (first <= last).then_some(Part { first, last }).ok_or_else(reversed)
+        }
+    }
 }

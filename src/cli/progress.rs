@@ -2,6 +2,7 @@
 
 use super::note;
 use crate::drive::{Goal, HistoryRow, Observer, Partial};
+use crate::landscape::Standing;
 use crate::path::Path;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::collections::VecDeque;
@@ -101,6 +102,23 @@ impl Observer for Progress<'_> {
             self.say(&format!(
                 "iteration {n}, {images} images: highest {highest:.6} meV, still turning by {} rad{left}",
                 angle(rotation)
+            ));
+        }
+    }
+
+    fn searching(&mut self, standing: &Standing) {
+        let Standing { done, wanted, spent, known: [minima, passes] } = *standing;
+        let far = (done.quiet as f64 / wanted.max(1) as f64).max(spent).min(1.0);
+        if let Some(bar) = &self.bar {
+            bar.set_message(format!("{} climbs, {minima} minima, {passes} passes; {}", done.searches, self.stage));
+            bar.set_position((far * PARTS as f64) as u64);
+        } else if self.last.elapsed() >= Duration::from_secs(5) {
+            self.say(&format!(
+                "{} climbs, the last {} without news ({wanted} end the search); {minima} minima and {passes} passes, images counted; \
+                 {:.1} % of what it may do",
+                done.searches,
+                done.quiet,
+                1e2 * spent
             ));
         }
     }

@@ -5,7 +5,7 @@
 
 use super::collect::{self, json_line, states};
 use super::jobs::{Ended, run_all};
-use super::points::{checked, folder};
+use super::points::{Part, checked, folder, part};
 use super::run::run_one;
 use super::signals::Signals;
 use super::threads::{check_threads, start_threads};
@@ -92,27 +92,6 @@ pub struct Arguments {
     /// Stop, as when terminated, at the end of standard input: the whole sweep has ended
     #[arg(long, hide = true, requires = "index")]
     pub leashed: bool,
-}
-
-/// The points from one to another, both with it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Part {
-    first: usize,
-    last: usize,
-}
-
-fn part(text: &str) -> std::result::Result<Part, String> {
-    let number = |text: &str| {
-        text.parse::<usize>().map_err(|_| format!("found {text:?}, expected a point's number, or two: 20-39"))
-    };
-    match text.split_once('-') {
-        None => number(text).map(|k| Part { first: k, last: k }),
-        Some((first, last)) => {
-            let (first, last) = (number(first)?, number(last)?);
-            let reversed = || format!("found {text}, expected the smaller number first");
-            (first <= last).then_some(Part { first, last }).ok_or_else(reversed)
-        }
-    }
 }
 
 impl Arguments {

@@ -81,19 +81,7 @@ impl Loaded {
     /// Sees that files of these names can be written, and that nobody else writes there; nothing if the finished result is there
     /// already.
     pub fn reserve(&self, directory: &Path, names: &[String], force: bool) -> Result<Option<Lock>> {
-        let source = self.source_name();
-        let known = self.known_files();
-        let intent = Intent {
-            version: VERSION,
-            config_sha256: &self.sha256,
-            source: source.as_deref(),
-            names,
-            known: &known,
-            made_from: &self.made_from,
-            force,
-        };
-        let finished =
-            || -> Result<bool> { Ok(matches!(folder::prepare(directory, &intent)?, Destination::Finished(_))) };
+        let finished = || self.is_finished(directory, names, force);
         if finished()? {
             // a run that was killed between its last file and the end leaves some
             let left = Checkpoint::is_left(directory) || Lock::is_left(directory) || is_partial_left(directory);
@@ -114,6 +102,22 @@ impl Loaded {
         let all = file_names(|_| true);
         all.iter().filter_map(|name| name.strip_suffix('/')).try_for_each(|name| disk::clean(&directory.join(name)))?;
         Ok(Some(lock))
+    }
+
+    /// Whether the finished result is there already; an error where files of these names cannot be written.
+    pub fn is_finished(&self, directory: &Path, names: &[String], force: bool) -> Result<bool> {
+        let source = self.source_name();
+        let known = self.known_files();
+        let intent = Intent {
+            version: VERSION,
+            config_sha256: &self.sha256,
+            source: source.as_deref(),
+            names,
+            known: &known,
+            made_from: &self.made_from,
+            force,
+        };
+        Ok(matches!(folder::prepare(directory, &intent)?, Destination::Finished(_)))
     }
 
     /// The files of the result that are known before the work.

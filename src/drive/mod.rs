@@ -36,6 +36,7 @@ pub use search::third_states;
 pub use stop::Stop;
 pub use verdict::{StopCode, Verdict};
 
+use crate::landscape::Standing;
 use crate::path::Path;
 
 /// A band as it stood when a run was stopped.
@@ -54,6 +55,9 @@ pub trait Observer: Send {
 
     /// A stage begins, in words.
     fn stage(&mut self, _what: &str) {}
+
+    /// A search has made another batch of climbs.
+    fn searching(&mut self, _standing: &Standing) {}
 
     /// A band as its relaxation left it, finished or stopped.
     fn relaxed(&mut self, _path: &Path, _history: &[HistoryRow]) {}

@@ -48,8 +48,17 @@ impl<'a> Run<'a, '_> {
         if most.evaluations > 0 {
             self.through_third_states(top_mev)?;
         }
-        let settings = Settings { effort, most, c: self.scales.stiffness_mev, context: self.context() };
-        let searched = search(&mut self.land, Aim::Route(ends, top_mev), &settings)?;
+        let settings = Settings {
+            effort,
+            shares: 1,
+            most,
+            most_kinds: usize::MAX,
+            c: self.scales.stiffness_mev,
+            context: self.context(),
+        };
+        let searched = search(&mut self.land, Aim::Route(ends, top_mev), &settings, &mut |standing| {
+            self.observer.searching(standing)
+        })?;
         report.searches = searched.searches;
         report.quiet = searched.quiet;
         report.spent = searched.spent;

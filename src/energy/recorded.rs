@@ -1,7 +1,9 @@
 //! Computations whose results are recorded, or taken from the record of an interrupted run.
 
 use super::Evaluator;
+use crate::control::Call;
 use crate::error::Result;
+use crate::record::Fingerprint;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -18,7 +20,16 @@ pub fn recorded<T: Stored>(
     input: &[&[f64]],
     compute: impl FnOnce() -> Result<T>,
 ) -> Result<T> {
-    let call = h.call(kind, |print| input.iter().fold(print, |print, row| print.row(row)));
+    through(h, &h.call(kind, |print| rows(print, input)), compute)
+}
+
+/// What tells an input from another.
+pub(super) fn rows(print: Fingerprint, input: &[&[f64]]) -> Fingerprint {
+    input.iter().fold(print, |print, row| print.row(row))
+}
+
+/// The result of a call.
+pub(super) fn through<T: Stored>(h: Evaluator, call: &Call, compute: impl FnOnce() -> Result<T>) -> Result<T> {
     call.obey(|| None::<T>)?;
     if let Some(found) = call.answer(|found: T| found.restored(h)) {
         return Ok(found);

@@ -269,6 +269,11 @@ impl<'a> Landscape<'a> {
         self.orbits[k]
     }
 
+    /// How many minima there are of which no symmetry makes another one.
+    pub fn kinds(&self) -> usize {
+        (0..self.minima.len()).filter(|k| self.orbits[*k] == *k).count()
+    }
+
     /// How many minima below a height there are (meV above the reference) of which no symmetry makes another one.
     pub fn orbits_below(&self, height_mev: f64) -> usize {
         let counts =

@@ -6,19 +6,21 @@
 //! Searches are made in batches, each batch from what is known before it, its searches side by side: what is found does not depend
 //! on how many threads there are.
 //!
+//! Processes that share a search make batches as many times as large, each its part of every batch; what is found depends on how
+//! many shares there are, not on who makes them.
+//!
 //! Where all passes below an energy are looked for, T is that, every new saddle is news, and the number of searches without any
 //! grows with the number of states to search from.
 
 use super::rivals::{Cut, Rival, rivals, scouts};
 use super::{Landscape, Pass, Saddle};
-use crate::energy::{Evaluator, Stored, recorded};
+use crate::energy::{Evaluator, Stored, recorded_each};
 use crate::error::Result;
 use crate::path::guess::GuessContext;
 use crate::record::Count;
 use crate::stationary::Limits;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -117,8 +119,12 @@ impl Aim {
 pub struct Settings<'a> {
     /// How long.
     pub effort: Effort,
+    /// Batches are so many times as large.
+    pub shares: usize,
     /// Most gradients and Hessians of single states.
     pub most: Count,
+    /// Most kinds of minima: with their number grows what each further climb costs beside what it evaluates.
+    pub most_kinds: usize,
     /// Stiffness scale c (meV).
     pub c: f64,
     /// What first paths need to know.
@@ -136,8 +142,26 @@ pub struct Searched {
     pub spent: bool,
 }
 
-/// Looks for passes below the top of the route between two minima, or for all below an energy.
-pub fn search(land: &mut Landscape, aim: Aim, settings: &Settings) -> Result<Searched> {
+/// How a search gets on.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Standing {
+    /// What it came to so far.
+    pub done: Searched,
+    /// So many searches in a row without news end it.
+    pub wanted: usize,
+    /// Part of the work that it may do.
+    pub spent: f64,
+    /// Minima and passes known, images counted.
+    pub known: [usize; 2],
+}
+
+/// Looks for passes below the top of the route between two minima, or for all below an energy; after each batch tells how it gets on.
+pub fn search(
+    land: &mut Landscape,
+    aim: Aim,
+    settings: &Settings,
+    tell: &mut dyn FnMut(&Standing),
+) -> Result<Searched> {
     let h = land.evaluator();
     land.unfold();
     let mut done = Searched::default();
@@ -145,9 +169,13 @@ pub fn search(land: &mut Landscape, aim: Aim, settings: &Settings) -> Result<Sea
     let passes = land.edges().len();
     let mut lowest = f64::INFINITY;
     let before = h.evaluated();
-    let is_spent = |now: Count| {
-        now.evaluations - before.evaluations >= settings.most.evaluations
-            || now.hessians - before.hessians >= settings.most.hessians
+    let part = |now: usize, before: usize, most: usize| (now - before) as f64 / most.max(1) as f64;
+    let spent = |now: Count| {
+        let [own, hessians] = [
+            part(now.evaluations, before.evaluations, settings.most.evaluations),
+            part(now.hessians, before.hessians, settings.most.hessians),
+        ];
+        if settings.most.evaluations.min(settings.most.hessians) == 0 { 1.0 } else { own.max(hessians) }
     };
     loop {
         let top_mev = aim.top_mev(land);
@@ -155,21 +183,21 @@ pub fn search(land: &mut Landscape, aim: Aim, settings: &Settings) -> Result<Sea
             (lowest, done.quiet) = (top_mev, 0);
         }
         let wanted = aim.quiet(settings.effort, land.edges().len() > passes, land);
-        done.spent = is_spent(h.evaluated());
+        let spent = spent(h.evaluated()).max(land.kinds() as f64 / settings.most_kinds as f64);
+        done.spent = spent >= 1.0;
+        tell(&Standing { done, wanted, spent, known: [land.minima().len(), land.edges().len()] });
         if done.quiet >= wanted || done.spent {
             break;
         }
         let cut = Cut::of(land, aim.ends(), aim.below_mev(land, top_mev), settings.context);
-        let count = BATCH.min(wanted - done.quiet);
+        let count = (BATCH * settings.shares).min(wanted - done.quiet);
         let (starts, count_as_quiet): (Vec<Vec<f64>>, Vec<bool>) = (0..count).map_while(|_| turns.next(&cut)).unzip();
         if starts.is_empty() {
             break;
         }
         let input: Vec<&[f64]> = starts.iter().map(Vec::as_slice).collect();
         let below = cut.top_mev;
-        let caught: Vec<Caught> = recorded(h, "searches", &input, || {
-            starts.par_iter().map(|start| climb(land, start, below, settings.c)).collect()
-        })?;
+        let caught: Vec<Caught> = recorded_each(h, "searches", &input, |k| climb(land, &starts[k], below, settings.c))?;
         for (Caught(pass), counts) in caught.into_iter().zip(count_as_quiet) {
             let news = pass.is_some_and(|pass| bring(land, *pass, below, aim));
             done.searches += 1;

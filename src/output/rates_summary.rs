@@ -86,10 +86,10 @@ pub(super) struct PassageEntry {
     pub htst_rate_per_s: Option<Number>,
     pub langer_rate_per_s: Option<Number>,
     pub escape_lifetime_s: Option<Number>,
-    log10_escape_lifetime_s: Option<Number>,
+    pub log10_escape_lifetime_s: Option<Number>,
     first_passage_s: Option<Number>,
-    log10_first_passage_s: Option<Number>,
-    known_within_factor: Option<Number>,
+    pub log10_first_passage_s: Option<Number>,
+    pub known_within_factor: Option<Number>,
     reason: Option<String>,
 }
 

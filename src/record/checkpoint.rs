@@ -46,7 +46,7 @@ impl Identity {
     }
 
     /// What another one was, if it was another.
-    fn differs(&self, other: &Identity) -> Option<String> {
+    pub(super) fn differs(&self, other: &Identity) -> Option<String> {
         if self.config_sha256 != other.config_sha256 {
             Some("another config".into())
         } else if self.version != other.version {

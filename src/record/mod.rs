@@ -10,13 +10,15 @@
 //! Records are what `serde` derives, as [`postcard`] writes it: every number to the bit. Whoever takes one over says what it is to
 //! be like, so that the computation goes on with numbers that it can bear, whatever the bytes are.
 //!
-//! A [`Checkpoint`] keeps a record on the disk, a [`Lock`] keeps a second run out of a folder.
+//! A [`Checkpoint`] keeps a record on the disk, a [`Lock`] keeps a second run out of a folder. [`Shares`] keep one that several
+//! processes fill together.
 
 mod checkpoint;
 mod fingerprint;
 mod frame;
 mod lock;
 mod recorder;
+mod shares;
 
 pub use checkpoint::{Checkpoint, FOLDER, Identity};
 pub use fingerprint::Fingerprint;
@@ -24,6 +26,7 @@ pub use lock::Lock;
 pub use recorder::Count;
 pub use recorder::Recorder;
 pub(crate) use recorder::{MOST, Ticket};
+pub use shares::{ShareHead, Shares};
 
 /// Where the record of a run is kept. Calls are counted from 0.
 pub trait Keep: Send {
@@ -41,4 +44,30 @@ pub trait Keep: Send {
 
     /// Saves all that was added and, if call `k` is a relaxation in progress, where that stands.
     fn save(&mut self, k: usize, underway: Option<Vec<u8>>);
+
+    /// Where processes share their calls, how they do.
+    fn share(&mut self) -> Option<&mut dyn Share> {
+        None
+    }
+}
+
+/// Calls of many things alike in parts, each recorded by itself by one of several processes that all make the same calls.
+pub trait Share {
+    /// How many parts.
+    fn parts(&self) -> usize;
+
+    /// Whether it is for this process to make a part.
+    fn is_mine(&self, part: usize) -> bool;
+
+    /// Whether whoever is to make a part did not in time before.
+    fn is_late(&self, part: usize) -> bool;
+
+    /// The record of a part of call `k`, if some process has made it.
+    fn part(&mut self, k: usize, part: usize) -> Option<Vec<u8>>;
+
+    /// A part of call `k` has been made here.
+    fn add_part(&mut self, k: usize, part: usize, record: Vec<u8>);
+
+    /// Why this process cannot go on together with the others, if it cannot.
+    fn fault(&self) -> Option<String>;
 }

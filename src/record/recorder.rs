@@ -1,6 +1,6 @@
 //! Answers calls from a record, and records them.
 
-use super::{Fingerprint, Keep};
+use super::{Fingerprint, Keep, Share};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -122,6 +122,20 @@ impl Recorder {
             }
         }
     }
+
+    /// What is asked of how processes share the next call; nothing where they do not.
+    pub(crate) fn shared<T>(&self, ask: impl FnOnce(&mut dyn Share, usize) -> T) -> Option<T> {
+        let mut record = self.record()?;
+        let k = record.done;
+        record.keep.share().map(|share| ask(share, k))
+    }
+
+    /// All parts of the next call are there.
+    pub(crate) fn end_parts(&self) {
+        if let Some(mut record) = self.record() {
+            record.done += 1;
+        }
+    }
 }
 
 /// What was evaluated of single states.
@@ -145,7 +159,11 @@ impl Ticket {
     }
 
     /// What a record holds, with its evaluations; nothing if it is of another input, or not understood to its last byte.
-    fn opened<T: DeserializeOwned>(self, record: &[u8], check: impl FnOnce(T) -> Option<T>) -> Option<(T, Count)> {
+    pub(crate) fn opened<T: DeserializeOwned>(
+        self,
+        record: &[u8],
+        check: impl FnOnce(T) -> Option<T>,
+    ) -> Option<(T, Count)> {
         // the input first: where it is another, what follows need not be understood
         let (print, _) = postcard::take_from_bytes::<u32>(record).ok()?;
         if print != self.0 {

@@ -63,6 +63,8 @@ pub struct Survey {
     pub effort: Effort,
     /// What the search came to.
     pub searched: Searched,
+    /// Into how many shares the search was split.
+    pub shares: usize,
     /// States that it started from.
     pub seeds: usize,
     /// What the random ones of them say of minima that may be missing.
@@ -97,13 +99,14 @@ impl Survey {
             saddles,
             effort: asked.effort,
             searched,
+            shares: asked.shares,
             seeds,
             unseen,
             symmetry_order: group.order(),
             lifetimes: None,
             warnings: Vec::new(),
         };
-        survey.judge();
+        survey.judge(asked.window_mev);
         if let Some(settings) = &asked.rates {
             let passes: Vec<_> = passes.into_iter().map(|k| &land.passes()[k]).collect();
             let lifetimes = Lifetimes::of(&survey, asked, settings, land, group, &passes);
@@ -138,7 +141,7 @@ impl Survey {
         !self.searched.spent
     }
 
-    fn judge(&mut self) {
+    fn judge(&mut self, window_mev: f64) {
         if !self.is_whole() {
             let count = |kinds: &[Kind]| kinds.iter().filter(|kind| kind.listed != kind.multiplicity).count();
             self.warnings.push(format!(
@@ -149,10 +152,12 @@ impl Survey {
             ));
         }
         if self.searched.spent {
-            self.warnings.push(
-                "the search ended because it had done as much work as it may: more may be found with more effort"
-                    .into(),
-            );
+            let more = match window_mev.is_finite() {
+                true => "with more effort",
+                false => "with more effort; no energy_window bounds what is looked for, and one would",
+            };
+            let words = "the search ended because it had done as much work, or found as many states, as it may: more may be found";
+            self.warnings.push(format!("{words} {more}"));
         }
         let estimated = self.unseen.estimated_kinds();
         if estimated >= self.minimum_kinds.len() as f64 + 1.0 {

@@ -14,7 +14,7 @@ pub use unseen::Unseen;
 
 use super::run::{END_TOLERANCE, Run};
 use super::{Observer, Problem};
-use crate::energy::recorded;
+use crate::energy::recorded_each;
 use crate::error::Result;
 use crate::field::Components;
 use crate::geometry::{Direction, vector};
@@ -25,7 +25,6 @@ use crate::record::Count;
 use crate::spins::Spins;
 use crate::stationary::relax_to_minimum;
 use crate::symmetry::Group;
-use rayon::prelude::*;
 use std::collections::BTreeSet;
 
 /// Images by symmetry of every minimum and pass, at most.
@@ -34,6 +33,8 @@ const IMAGES: usize = 1000;
 const ROUNDS: usize = 4;
 /// Of spins, so many are evaluated at most for each step of effort, and so many times as many of a Hessian's blocks.
 const SPINS: usize = 50_000_000;
+/// Kinds of minima, at most, for each step of effort.
+const KINDS: usize = 1000;
 
 /// What a survey is asked for.
 #[derive(Debug)]
@@ -50,6 +51,8 @@ pub struct SurveyProblem {
     pub groups: Vec<(String, Label)>,
     /// Lifetimes; none if absent.
     pub rates: Option<RateSettings>,
+    /// Into how many shares the search is split, for as many processes; 1 is not split.
+    pub shares: usize,
 }
 
 /// What the states of a group have in common.
@@ -91,6 +94,23 @@ fn share(effort: Effort) -> [usize; 2] {
 /// Finds the minima and passes of a problem below an energy. One that its control stops ends with
 /// [`Error::Stopped`](crate::error::Error::Stopped).
 pub fn survey(asked: &SurveyProblem, observer: &mut dyn Observer) -> Result<Survey> {
+    searched(asked, observer, |run, group, planted, searched| {
+        // how the ends relaxed is no news: they are states to start from, and perhaps not even given
+        Survey::of(asked, &run.land, group, planted, searched)
+    })
+}
+
+/// The search of [`survey`] alone, as one of the processes that share it makes it, and what it came to.
+pub fn take_part(asked: &SurveyProblem, observer: &mut dyn Observer) -> Result<Searched> {
+    searched(asked, observer, |_, _, _, searched| Ok(searched))
+}
+
+/// Searches, and tells what it came to.
+fn searched<T: Send>(
+    asked: &SurveyProblem,
+    observer: &mut dyn Observer,
+    tell: impl FnOnce(Run, &Group, (usize, Unseen), Searched) -> Result<T> + Send,
+) -> Result<T> {
     asked.problem.control.recorder().begin(|| asked.fingerprint());
     asked.problem.control.relied_on(rayon::scope(|_| {
         let mut run = Run::prepare(&asked.problem, observer)?;
@@ -99,15 +119,14 @@ pub fn survey(asked: &SurveyProblem, observer: &mut dyn Observer) -> Result<Surv
         run.land.unfold_by(&group, IMAGES);
         let planted = run.plant(asked)?;
         let searched = run.explore(asked)?;
-        // how the ends relaxed is no news: they are states to start from, and perhaps not even given
-        Survey::of(asked, &run.land, &group, planted, searched)
+        tell(run, &group, planted, searched)
     }))
 }
 
 impl SurveyProblem {
     fn fingerprint(&self) -> crate::record::Fingerprint {
-        let SurveyProblem { problem, seeds, window_mev, effort, groups, rates } = self;
-        let print = problem.fingerprint().text(&format!("{window_mev:?} {effort:?} {groups:?} {rates:?}"));
+        let SurveyProblem { problem, seeds, window_mev, effort, groups, rates, shares } = self;
+        let print = problem.fingerprint().text(&format!("{window_mev:?} {effort:?} {groups:?} {rates:?} {shares}"));
         seeds.iter().fold(print, |print, seed| print.row(seed.as_slice()))
     }
 
@@ -137,11 +156,11 @@ impl Run<'_, '_> {
         let h = self.problem.evaluator();
         let starts = asked.starts();
         let input: Vec<&[f64]> = starts.iter().map(Spins::as_slice).collect();
-        let relaxed = |start: &Spins| -> Result<Minimum> {
-            let relaxed = relax_to_minimum(h, start, END_TOLERANCE * h.stiffness_mev())?;
+        let relaxed = |k: usize| -> Result<Minimum> {
+            let relaxed = relax_to_minimum(h, &starts[k], END_TOLERANCE * h.stiffness_mev())?;
             Ok(Minimum::examine(h, &relaxed.spins))
         };
-        let minima: Vec<Minimum> = recorded(h, "seeds", &input, || starts.par_iter().map(relaxed).collect())?;
+        let minima: Vec<Minimum> = recorded_each(h, "seeds", &input, relaxed)?;
         let heights: Vec<f64> = minima.iter().map(|m| self.land.height_mev(m.spins.as_slice())).collect();
         let top = heights.iter().copied().fold(self.land.lowest_mev(), f64::min) + asked.window_mev;
         let [random, _] = share(asked.effort);
@@ -161,11 +180,22 @@ impl Run<'_, '_> {
         let before = self.problem.evaluator().evaluated();
         let mut tried = BTreeSet::new();
         for _ in 0..ROUNDS {
-            self.observer.stage("looking for minima and passes");
+            self.observer.stage(match asked.window_mev.is_finite() {
+                true => "looking for minima and passes",
+                false => "looking for minima and passes of any energy (landscape.energy_window is not given)",
+            });
             let most = self.left_of_budget(asked, before);
-            let settings =
-                Settings { effort: asked.effort, most, c: self.scales.stiffness_mev, context: self.context() };
-            let round = search(&mut self.land, Aim::All(asked.window_mev), &settings)?;
+            let (c, context) = (self.scales.stiffness_mev, self.context());
+            let settings = Settings {
+                effort: asked.effort,
+                shares: asked.shares,
+                most,
+                most_kinds: KINDS * share(asked.effort)[1],
+                c,
+                context,
+            };
+            let aim = Aim::All(asked.window_mev);
+            let round = search(&mut self.land, aim, &settings, &mut |standing| self.observer.searching(standing))?;
             all = Searched { searches: all.searches + round.searches, ..round };
             let known = [self.land.minima().len(), self.land.edges().len()];
             if round.spent || asked.effort == Effort::None {

@@ -206,7 +206,7 @@ impl Canvas {
     }
 
     /// A filled rectangle whose colour is data, the same in every style.
-    pub(super) fn cell(&mut self, rect: Rect, colour: Colour) {
+    pub(in crate::output) fn cell(&mut self, rect: Rect, colour: Colour) {
         self.shapes.push(Shape::Box { rect, colour });
     }
 

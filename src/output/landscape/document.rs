@@ -31,6 +31,9 @@ struct Document<'a> {
 #[derive(Serialize)]
 struct Search {
     effort: Effort,
+    /// Of a search in shares, whose batches are larger, how many there were.
+    #[serde(skip_serializing_if = "is_one")]
+    shares: usize,
     seeds: usize,
     searches: usize,
     quiet: usize,
@@ -99,6 +102,10 @@ struct LifetimeEntry<'a> {
     reason: Option<&'a str>,
 }
 
+fn is_one(shares: &usize) -> bool {
+    *shares == 1
+}
+
 pub fn render(report: &LandscapeReport) -> Result<Vec<u8>> {
     let s = report.survey;
     let lifetimes = s.lifetimes.as_ref();
@@ -111,6 +118,7 @@ pub fn render(report: &LandscapeReport) -> Result<Vec<u8>> {
         symmetry_order: s.symmetry_order,
         search: Search {
             effort: s.effort,
+            shares: s.shares,
             seeds: s.seeds,
             searches: s.searched.searches,
             quiet: s.searched.quiet,

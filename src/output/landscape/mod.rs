@@ -95,7 +95,10 @@ impl LandscapeReport<'_> {
         let s = self.survey;
         match s.is_finished() {
             true => format!("the last {} of {} searches brought nothing new", s.searched.quiet, s.searched.searches),
-            false => format!("the work that it may do was spent after {} searches", s.searched.searches),
+            false => format!(
+                "the work that it may do, or the states that it may find, were spent after {} searches",
+                s.searched.searches
+            ),
         }
     }
 

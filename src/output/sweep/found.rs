@@ -19,7 +19,7 @@ pub enum PointState {
     /// A result whose files are not as they were written.
     Damaged,
     /// Its result.
-    Found(Found),
+    Found(Box<Found>),
 }
 
 impl PointState {
@@ -37,7 +37,7 @@ impl PointState {
     /// The result, if it is there.
     pub fn found(&self) -> Option<&Found> {
         match self {
-            PointState::Found(found) => Some(found),
+            PointState::Found(found) => Some(&**found),
             _ => None,
         }
     }
@@ -56,8 +56,27 @@ pub struct Found {
     pub negative_modes: Option<usize>,
     /// Prefactors over the highest saddle (Hz), where rates were asked for.
     pub prefactors: Option<Prefactors>,
+    /// How long the states live, forward and then backward, where rates were asked for.
+    pub times: Vec<Times>,
     /// What the user should know.
     pub warnings: Vec<String>,
+}
+
+/// Mean times of a whole path at one temperature, as decimal logarithms of seconds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Times {
+    /// From which end.
+    pub way: Way,
+    /// Temperature (K).
+    pub temperature_k: f64,
+    /// Δ = ΔE/k_BT.
+    pub barrier_over_kt: f64,
+    /// Escape from that end over the first saddle.
+    pub log10_escape_s: Option<f64>,
+    /// First passage to the other end.
+    pub log10_passage_s: Option<f64>,
+    /// Both may be longer or shorter by this factor.
+    pub known_within: Option<f64>,
 }
 
 /// Prefactors over a saddle (Hz): forward and backward.
@@ -78,7 +97,7 @@ pub fn look(dir: &Path, index: &SweepIndex, point: usize) -> Result<PointState> 
     }
     let summary = Summary::read(&dir)?;
     Ok(match summary.head.config_sha256 == point.config_sha256 {
-        true => PointState::Found(found(summary)),
+        true => PointState::Found(Box::new(found(summary))),
         false => PointState::Other,
     })
 }
@@ -95,7 +114,19 @@ fn found(summary: Summary) -> Found {
         htst_hz: both.map(|r| Some(r?.htst_prefactor_Hz?.0)),
         langer_hz: both.map(|r| Some(r?.langer_prefactor_Hz?.0)),
     });
+    let times = summary.transition_rates.iter().flatten().flat_map(|t| {
+        t.temperatures.iter().map(|row| Times {
+            way: t.direction,
+            temperature_k: row.temperature_K.0,
+            barrier_over_kt: row.barrier_over_kT.0,
+            log10_escape_s: row.log10_escape_lifetime_s.map(|n| n.0),
+            log10_passage_s: row.log10_first_passage_s.map(|n| n.0),
+            known_within: row.known_within_factor.map(|n| n.0),
+        })
+    });
+    let times = times.collect();
     Found {
+        times,
         barrier: summary.barrier_meV.map(Barrier::from),
         saddles: summary.saddles.len(),
         negative_modes: highest.and_then(|(_, s)| s.negative_modes),

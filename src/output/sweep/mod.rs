@@ -1,13 +1,17 @@
 //! The results of a sweep together: `points.json` says which folder holds which values, `barriers.csv` has a row a point, and
-//! `barriers.svg` and `.png` show the barrier against a swept key.
+//! `barriers.svg` and `.png` show the barrier against a swept key. Where rates are asked for, `lifetimes.csv` has a row a point, direction
+//! and temperature, and `lifetime_map.svg` and `.png` show how long the initial state lives over the key and temperature.
 
+mod contours;
 mod found;
+mod map;
 mod plot;
 mod table;
 
-pub use found::{Found, PointState, look};
+pub use found::{Found, PointState, Times, look};
+pub use map::draw_map;
 pub use plot::draw_sweep;
-pub use table::sweep_table;
+pub use table::{lifetime_table, sweep_table};
 
 use super::disk;
 use super::manifest::{Owned, There, hash};
@@ -22,7 +26,8 @@ use std::path::Path;
 /// The file that says what is where.
 pub const POINTS: &str = "points.json";
 /// What is collected.
-const COLLECTED: [&str; 3] = ["barriers.csv", "barriers.svg", "barriers.png"];
+const COLLECTED: [&str; 6] =
+    ["barriers.csv", "barriers.svg", "barriers.png", "lifetimes.csv", "lifetime_map.svg", "lifetime_map.png"];
 
 /// The points of a sweep, as the folder of their results keeps them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -82,7 +82,7 @@ pub fn draw_sweep(index: &SweepIndex, states: &[PointState]) -> Result<Option<Ca
 }
 
 /// The key of numbers with the most values, the last of several.
-fn longest(parameters: &[Parameter]) -> Option<usize> {
+pub(super) fn longest(parameters: &[Parameter]) -> Option<usize> {
     let distinct = |numbers: &[f64]| numbers.iter().map(|x| x.to_bits()).collect::<BTreeSet<_>>().len();
     let counts = parameters.iter().enumerate().filter_map(|(k, p)| Some((k, distinct(p.numbers.as_ref()?))));
     counts.max_by_key(|(_, count)| *count).map(|(k, _)| k)
