@@ -4,49 +4,44 @@
 //! ```text
 //! P A P x = P (F⊥ + σ y_u − A d τ),   P = 1 − C Cᵀ,   A = H + (σ + μ)·1,   y = d τ + x
 //! ```
-//! preconditioned by P M⁻¹ P (see `stand_in`), until a hundredth of the residual is left: the next evaluation changes the right-hand
+//! (see [`Complement`]), until a hundredth of the residual is left: the next evaluation changes the right-hand
 //! side by more. A direction of negative curvature on the way makes μ grow, as a negative pivot does where there are factors. (T.
 //! Steihaug, SIAM J. Numer. Anal. 20, 626 (1983), doi:10.1137/0720042, for conjugate gradients that end so; R. S. Dembo, S. C.
 //! Eisenstat, T. Steihaug, SIAM J. Numer. Anal. 19, 400 (1982), doi:10.1137/0719025, for how far they are to go.)
 
 use super::Band;
 use super::linearised::{LEAST, Move, SHIFT_TRIES, first_shift, upwind_rate};
-use super::stand_in::StandIn;
-use crate::field::{Components, project};
+use crate::field::Components;
 use crate::geometry::{Vector, vector};
-use crate::linalg::{orthonormal, remove, slab};
+use crate::hessian::{Complement, Place, StandIn};
+use crate::linalg::{orthonormal, slab};
 use std::sync::Arc;
 
 /// The residual that is left.
 const TOLERANCE: f64 = 1e-2;
-/// Most products with A.
-const PRODUCTS: usize = 100;
 
-/// An image with room for its linear algebra: fields of 3N numbers.
+/// An image with room for its linear algebra.
 #[derive(Debug)]
 pub struct Iterated {
     /// M.
     stand_in: Arc<StandIn>,
-    /// C.
-    border: Vec<Vec<f64>>,
+    equations: Complement,
     sigma: f64,
     shift: f64,
-    right: Vec<f64>,
-    x: Vec<f64>,
-    residual: Vec<f64>,
-    /// P M⁻¹ P of the residual.
-    towards: Vec<f64>,
-    direction: Vec<f64>,
     image: Vec<f64>,
-    room: Vec<f64>,
 }
 
 impl Iterated {
     /// Nothing yet, but for M.
     pub fn by(stand_in: Arc<StandIn>) -> Iterated {
-        let [right, x, residual, towards, direction, image, room] = [(); 7].map(|()| Vec::new());
-        let (border, sigma, shift) = (Vec::new(), 0.0, 0.0);
-        Iterated { stand_in, border, sigma, shift, right, x, residual, towards, direction, image, room }
+        Iterated { stand_in, equations: Complement::default(), sigma: 0.0, shift: 0.0, image: Vec::new() }
+    }
+
+    /// M for the images of a band, where factors of their Hessians take long.
+    pub fn stand_in(band: &Band, c: f64) -> Option<StandIn> {
+        let h = band.hamiltonian();
+        let end = |k: usize| (band.path().image(k), band.gradient(k));
+        h.has_dear_factors().then(|| StandIn::between(h, &[end(0), end(band.images() - 1)], c))
     }
 
     /// For image k, with symmetry axes `axes` and the shift μ of its last visit (meV).
@@ -62,10 +57,7 @@ impl Iterated {
             slab::scale(&mut z, 1.0 / size.max(LEAST));
             columns.push(z);
         }
-        self.border = orthonormal(columns, LEAST);
-        for field in [&mut self.x, &mut self.towards, &mut self.direction, &mut self.image] {
-            field.resize(3 * m.sites(), 0.0);
-        }
+        self.equations.border = orthonormal(columns, LEAST);
     }
 
     /// Writes the move `y` (3N, rad) of image k, pushed across the path, shifted along it, and dragged by σ times the move of its
@@ -73,76 +65,38 @@ impl Iterated {
     pub fn relax(&mut self, band: &Band, k: usize, uphill: Option<&[f64]>, y: &mut [f64]) -> Move {
         self.set_right_side(band, k, uphill);
         for _ in 1..SHIFT_TRIES {
-            if self.solve(band, k) {
-                break;
-            }
-            self.shift = (4.0 * self.shift).max(self.stand_in.c);
+            let (h, m, g) = (band.hamiltonian(), band.path().image(k), band.gradient(k));
+            let place = Place { h, m, g, shift: self.sigma + self.shift };
+            let Err(negative) = self.equations.solve(place, &self.stand_in, TOLERANCE) else { break };
+            // no more than it takes: a mode that is all but free is left soon where it is not held
+            self.shift = (4.0 * self.shift).max(self.shift + 2.0 * negative);
         }
-        let rotation = longest(&self.x);
-        y.copy_from_slice(&self.x);
+        let x = &self.equations.x;
+        y.copy_from_slice(x);
         slab::add_scaled(y, band.local_shift(k), band.tangent(k));
-        Move { rotation, shift: self.shift, factorisations: 0 }
+        Move { rotation: longest(x), shift: self.shift, factorisations: 0 }
     }
 
-    /// P (F⊥ + σ y_u − A d τ).
+    /// F⊥ + σ y_u − A d τ.
     fn set_right_side(&mut self, band: &Band, k: usize, uphill: Option<&[f64]>) {
-        let m = band.path().image(k);
-        self.right.clear();
-        self.right.extend_from_slice(band.perpendicular(k));
+        let right = &mut self.equations.right;
+        right.clear();
+        right.extend_from_slice(band.perpendicular(k));
         if let Some(uphill) = uphill {
-            slab::add_scaled(&mut self.right, self.sigma, uphill);
+            slab::add_scaled(right, self.sigma, uphill);
         }
         let along = band.local_shift(k);
         if along != 0.0 {
             // what A adds to H d τ is along τ
-            band.hamiltonian().hessian_product(m, band.gradient(k), band.tangent(k), &mut self.image);
-            slab::add_scaled(&mut self.right, -along, &self.image);
+            self.image.resize(right.len(), 0.0);
+            band.hamiltonian().hessian_product(
+                band.path().image(k),
+                band.gradient(k),
+                band.tangent(k),
+                &mut self.image,
+            );
+            slab::add_scaled(right, -along, &self.image);
         }
-        project(m, &mut self.right);
-        band.hamiltonian().hold_frozen(&mut self.right);
-        remove(&mut self.right, &self.border);
-    }
-
-    /// Solves for x; whether no direction of negative curvature was met.
-    fn solve(&mut self, band: &Band, k: usize) -> bool {
-        let (h, m, g) = (band.hamiltonian(), band.path().image(k), band.gradient(k));
-        self.x.fill(0.0);
-        self.residual.clone_from(&self.right);
-        self.precondition(m);
-        self.direction.copy_from_slice(&self.towards);
-        let mut fall = slab::dot(&self.residual, &self.towards);
-        let enough = TOLERANCE * slab::norm(&self.residual);
-        for _ in 0..PRODUCTS {
-            if fall <= 0.0 {
-                // what is left turns no spin; what is no number goes on, to be seen by who asked
-                break;
-            }
-            h.hessian_product(m, g, &self.direction, &mut self.image);
-            slab::add_scaled(&mut self.image, self.sigma + self.shift, &self.direction);
-            remove(&mut self.image, &self.border);
-            let curvature = slab::dot(&self.direction, &self.image);
-            if curvature <= 0.0 {
-                return false;
-            }
-            let step = fall / curvature;
-            slab::add_scaled(&mut self.x, step, &self.direction);
-            slab::add_scaled(&mut self.residual, -step, &self.image);
-            let left = slab::norm(&self.residual);
-            if left <= enough || left.is_nan() {
-                break;
-            }
-            self.precondition(m);
-            let before = std::mem::replace(&mut fall, slab::dot(&self.residual, &self.towards));
-            slab::scale(&mut self.direction, fall / before);
-            slab::add_scaled(&mut self.direction, 1.0, &self.towards);
-        }
-        true
-    }
-
-    fn precondition(&mut self, m: &[f64]) {
-        self.stand_in.solve(self.sigma + self.shift, &self.residual, &mut self.towards, &mut self.room);
-        project(m, &mut self.towards);
-        remove(&mut self.towards, &self.border);
     }
 }
 
@@ -163,6 +117,7 @@ mod tests {
     use super::*;
     use crate::energy::{Hamiltonian, Medium, TermSpec};
     use crate::lattice::{Lattice, LatticeSpec};
+    use crate::linalg::remove;
     use crate::path::Path;
     use crate::spins::Spins;
     use rand::{RngExt, SeedableRng};
@@ -202,7 +157,7 @@ mod tests {
         });
         let mut band = Band::new(&h, Path::new(&images));
         band.evaluate();
-        let mut room = Iterated::by(Arc::new(StandIn::of(&band, 0.16).expect("factors are dear")));
+        let mut room = Iterated::by(Arc::new(Iterated::stand_in(&band, 0.16).expect("factors are dear")));
         let mut y = vec![0.0; 3 * h.sites()];
         for k in 1..5 {
             room.prepare(&band, k, h.symmetry_axes(), 0.0);
@@ -230,7 +185,7 @@ mod tests {
                 let h = film(&lattice, terms);
                 let mut band = Band::new(&h, walls(&lattice, noise));
                 band.evaluate();
-                let mut room = Iterated::by(Arc::new(StandIn::of(&band, 0.16).expect("factors are dear")));
+                let mut room = Iterated::by(Arc::new(Iterated::stand_in(&band, 0.16).expect("factors are dear")));
                 let mut y = vec![0.0; 3 * h.sites()];
                 for k in 1..4 {
                     let uphill = y.clone();
@@ -239,16 +194,16 @@ mod tests {
                     (tried, shifted) = (tried + 1, shifted + usize::from(done.shift > 0.1));
                     let (m, g) = (band.path().image(k), band.gradient(k));
                     assert!((slab::dot(&y, band.tangent(k)) - band.local_shift(k)).abs() < 1e-12);
-                    assert!(room.border[1..].iter().all(|z| slab::dot(z, &y).abs() < 1e-12));
+                    assert!(room.equations.border[1..].iter().all(|z| slab::dot(z, &y).abs() < 1e-12));
                     let mut x = y.clone();
                     slab::add_scaled(&mut x, -band.local_shift(k), band.tangent(k));
                     assert!((longest(&x) - done.rotation).abs() < 1e-12);
                     let mut rest = vec![0.0; x.len()];
                     h.hessian_product(m, g, &x, &mut rest);
                     slab::add_scaled(&mut rest, room.sigma + done.shift, &x);
-                    slab::add_scaled(&mut rest, -1.0, &room.right);
-                    remove(&mut rest, &room.border);
-                    let part = slab::norm(&rest) / slab::norm(&room.right);
+                    slab::add_scaled(&mut rest, -1.0, &room.equations.right);
+                    remove(&mut rest, &room.equations.border);
+                    let part = slab::norm(&rest) / slab::norm(&room.equations.right);
                     assert!(part < 1.001 * TOLERANCE, "{kind} {k}: {part:e}");
                 }
             }

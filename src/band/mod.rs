@@ -17,7 +17,6 @@ mod linearised;
 mod profile;
 mod split;
 mod springs;
-mod stand_in;
 mod sweep;
 mod tangent;
 

@@ -18,8 +18,8 @@
 use super::Band;
 use super::iterated::Iterated;
 use super::linearised::{Linearised, Move, SHIFT_FLOOR};
-use super::stand_in::StandIn;
 use crate::geometry::Vector;
+use crate::hessian::StandIn;
 use crate::threads::MADE;
 use rayon::prelude::*;
 use std::collections::VecDeque;
@@ -187,7 +187,7 @@ impl Sweep {
         slabs.iter_mut().enumerate().filter(|(k, _)| band.is_held(k + 1)).for_each(|(_, y)| y.fill(0.0));
         let threads = if small { 1 } else { rayon::current_num_threads() };
         let (shifts, rooms) = (&self.shifts[..], &self.rooms);
-        let stand_in = self.stand_in.get_or_init(|| StandIn::of(band, self.stiffness).map(Arc::new)).as_ref();
+        let stand_in = self.stand_in.get_or_init(|| Iterated::stand_in(band, self.stiffness).map(Arc::new)).as_ref();
         let task = Task { band, axes, stiffness: self.stiffness, shifts, rooms, stand_in, threads };
         let (tops, slopes) = tops_and_slopes(band);
         let mut at_top: Vec<&mut [f64]> = tops.iter().map(|k| take(&mut slabs[k - 1])).collect();

@@ -5,12 +5,12 @@ use crate::error::{Error, Result};
 use crate::field::{Components, ComponentsMut, TILE, project_row, tiles};
 use crate::geometry::{Direction, Vector, vector};
 use crate::lattice::{BondFamily, Lattice};
-use crate::linalg::{Layout, Singles, slab};
+use crate::linalg::{Layout, slab};
 use crate::spins::Spins;
 use multiversion::multiversion;
 use rayon::prelude::*;
 use std::ops::Range;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 /// From this many sites on, the tiles of one image are shared among threads.
 pub const LONG: usize = 32 * 1024;
@@ -35,8 +35,6 @@ pub struct Hamiltonian {
     whole: Vec<bool>,
     blocks: Blocks,
     layout: Layout,
-    /// For matrices of one unknown a site, once they are wanted.
-    singles: OnceLock<Arc<Singles>>,
     reach: usize,
     stiffness: f64,
     axes: Vec<Vector>,
@@ -60,7 +58,6 @@ impl Hamiltonian {
             frozen,
             axes: symmetry_axes(&terms, sites),
             layout: lattice.layout(&blocks.bond.iter().map(|bonds| &bonds.family).collect::<Vec<_>>()),
-            singles: OnceLock::new(),
             blocks,
             whole: terms.iter().map(|t| t.is_whole()).collect(),
             terms,
@@ -103,12 +100,9 @@ impl Hamiltonian {
         &self.layout
     }
 
-    /// How a matrix of one unknown a site is kept and factorised, where factors of one of two take long.
-    pub fn singles(&self) -> Option<&Arc<Singles>> {
-        let Layout::Sparse(plan) = &self.layout else { return None };
-        let place = |i: usize| self.lattice.position(i);
-        let singles = || Singles::of(plan.graph(), &(0..self.sites).map(place).collect::<Vec<_>>()).into();
-        (plan.solutions() > CHEAP).then(|| self.singles.get_or_init(singles))
+    /// Whether factors of a matrix of its bonds take so long that solutions by iteration are quicker.
+    pub fn has_dear_factors(&self) -> bool {
+        matches!(&self.layout, Layout::Sparse(plan) if plan.solutions() > CHEAP)
     }
 
     /// Whether site `i` never moves.

@@ -13,12 +13,16 @@
 mod any_lattice;
 mod assembly;
 mod basis;
+mod complement;
 mod far;
 mod free;
+mod stand_in;
 
 pub use assembly::{Assembly, assemble, assemble_into, assemble_shifted};
 pub use basis::{BasisTile, TangentBasis};
+pub use complement::{Complement, Place};
 pub use free::Free;
+pub use stand_in::StandIn;
 
 use crate::energy::Hamiltonian;
 use crate::linalg::Layout;

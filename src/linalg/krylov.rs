@@ -185,6 +185,14 @@ impl<'a> Krylov<'a> {
         wanted.rev().map(vector).collect()
     }
 
+    /// How many of the first `count` vectors of [`largest`](Self::largest) are eigenvectors, one after the other.
+    pub fn converged(&self, count: usize) -> usize {
+        let (values, weights) = eigen_symmetric(&self.projected(), self.basis.len());
+        let is_one =
+            |(theta, w): (&f64, &Vec<f64>)| self.is_eigenvector(*theta, w, &combination(w, &self.basis), RESIDUAL);
+        values.iter().zip(&weights).rev().take(count).take_while(|pair| is_one(*pair)).count()
+    }
+
     /// Whether v = Σ w_k b_k is an eigenvector of the inverse, to a part of its eigenvalue θ.
     fn is_eigenvector(&self, theta: f64, w: &[f64], v: &[f64], part: f64) -> bool {
         let mut rest = combination(w, &self.images);

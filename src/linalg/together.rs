@@ -4,7 +4,8 @@
 //! θ = uᵀAu,  ρ = |Au − θu|,   s = θ − ρ:   block Lanczos on (A − s)⁻¹
 //! ```
 //! The inertia of A − s proves that no eigenvalue lies below s. The nearer s is to the lowest one, the fewer vectors the modes take: so
-//! the space of a few gives the next s, where that is much nearer. (Parlett, "The Symmetric Eigenvalue Problem", SIAM 1998,
+//! the space of a few gives the next s, where that is much nearer; and where some modes are found, the next s lies between them and the
+//! others, which may be as close together as spin waves of a wide film. (Parlett, "The Symmetric Eigenvalue Problem", SIAM 1998,
 //! doi:10.1137/1.9781611971163, §§4.5, 4.6.)
 
 use super::krylov::{Krylov, MOST, Modes};
@@ -28,39 +29,59 @@ pub(super) fn together(matrix: &Matrix, known: &[Vec<f64>], wanted: Modes) -> (V
     let scale = matrix.norm1().max(1e-280);
     let known_values: Vec<f64> = known.iter().map(|k| quotient(matrix, k, &[]).0).collect();
     let mut modes: Vec<Mode> = Vec::new();
-    // no eigenvalue below the one, some below the other
+    // the lowest ones that are found, and with them all that is known
+    let (mut sure, mut apart) = (0, known.to_vec());
+    // no other eigenvalue below the one, some below the other
     let (mut low, mut high, mut down) = (f64::NEG_INFINITY, f64::INFINITY, FAR * scale);
     let (mut shift, mut memory) = (-down, Matrix::default());
     for _ in 0..ROUNDS {
         memory.copy_from(matrix);
         memory.shift(-shift);
         let factors = memory.factor();
-        if factors.negatives() > known_values.iter().filter(|v| **v < shift).count() {
+        if factors.negatives() > sure + known_values.iter().filter(|v| **v < shift).count() {
             high = shift;
+            if sure > 0 {
+                // one of the modes below was missed: all of them once more
+                (sure, low) = (0, f64::NEG_INFINITY);
+                apart.truncate(known.len());
+            }
             shift = if low.is_finite() { 0.5 * (low + high) } else { high - down };
             down *= 4.0;
             memory = factors.into_memory();
             continue;
         }
         low = shift;
-        let mut krylov = Krylov::new(&factors, known, SPARE + modes.len());
-        krylov.starts = modes.iter().map(|mode| mode.vector.clone()).collect();
+        let mut krylov = Krylov::new(&factors, &apart, SPARE + modes.len() - sure);
+        krylov.starts = modes[sure..].iter().map(|mode| mode.vector.clone()).collect();
+        let rest = Modes { count: wanted.count - sure, below: wanted.below - low };
         let mut most = (BLOCKS + 1) * (SPARE + wanted.count);
         loop {
-            let (space, settled) = krylov.largest(Modes { below: wanted.below - low, ..wanted }, most);
-            modes = rayleigh_ritz(matrix, &space);
+            let (space, settled) = krylov.largest(rest, most);
+            let here = krylov.converged(space.len());
+            modes = rayleigh_ritz(matrix, &[&apart[known.len()..], &space].concat());
             let complete = settled && none_is_missed(matrix, &modes, known, scale);
-            let Some(first) = modes.first().filter(|_| !complete && !krylov.is_full(MOST)) else {
+            if complete || krylov.is_full(MOST) || modes.len() <= sure {
+                // the first of those beside the ones found may lie above the limit
+                let within = modes.iter().skip(1).take_while(|mode| mode.value < wanted.below).count();
+                modes.truncate(1 + within);
                 return (modes, complete);
-            };
+            }
             if settled {
                 // more are degenerate than the block has vectors: the next one has more
                 shift = low;
                 break;
             }
-            let (theta, rest) = quotient(matrix, &first.vector, known);
-            shift = theta - rest.max(APART * scale);
-            if shift < high && theta - shift < NEARER * (theta - low) {
+            let next = nearer(matrix, &modes, sure, known, low, scale).filter(|s| *s < high);
+            let beyond = nearer(matrix, &modes, sure + here, known, low, scale).filter(|_| here > 0);
+            if let Some(nearer) = beyond {
+                // below that one lie the modes that are found, and no other, as the next factors tell
+                sure += here;
+                apart.extend(modes[apart.len() - known.len()..sure].iter().map(|mode| mode.vector.clone()));
+                (shift, high) = (nearer, f64::INFINITY);
+                break;
+            }
+            if let Some(nearer) = next {
+                shift = nearer;
                 break;
             }
             most = (2 * most).min(MOST);
@@ -68,6 +89,15 @@ pub(super) fn together(matrix: &Matrix, known: &[Vec<f64>], wanted: Modes) -> (V
         memory = factors.into_memory();
     }
     (modes, false)
+}
+
+/// s below mode k, above the modes before it, and much nearer to it than `low` is.
+fn nearer(matrix: &Matrix, modes: &[Mode], k: usize, known: &[Vec<f64>], low: f64, scale: f64) -> Option<f64> {
+    let mode = modes.get(k)?;
+    let (theta, rest) = quotient(matrix, &mode.vector, known);
+    let shift = theta - rest.max(APART * scale);
+    let above = k.checked_sub(1).is_none_or(|before| modes[before].value < shift);
+    (above && theta - shift < NEARER * (theta - low)).then_some(shift)
 }
 
 /// uᵀAu and the size of what else Au has, known vectors apart.

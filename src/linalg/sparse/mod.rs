@@ -19,7 +19,6 @@ mod memory;
 mod panels;
 #[cfg(test)]
 mod samples;
-mod singles;
 mod solve;
 mod supernodes;
 mod symbolic;
@@ -28,5 +27,4 @@ pub use dissection::nested_dissection;
 pub use graph::Graph;
 pub use ldl::SparseLdl;
 pub use matrix::SparseMatrix;
-pub use singles::Singles;
 pub use symbolic::Symbolic;

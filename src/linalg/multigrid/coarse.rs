@@ -1,0 +1,131 @@
+//! Which unknowns stay on the next level, and how the others follow from them.
+
+use super::Rows;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// An entry couples strongly that is at least this part of the largest of its row.
+const STRONG: f64 = 0.25;
+
+/// What an unknown is to the next level.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Open,
+    Stays,
+    Follows,
+}
+
+/// P: one row an unknown, one column each that stays.
+///
+/// ```text
+/// stays     P_ii = 1
+/// follows   P_ij = −α A_ij / A_ii,   α = Σ_k A_ik / Σ_j A_ij over entries of the sign of A_ij, all of them and those that stay and
+///                                    couple strongly; where none of a sign does, entries of this sign count for A_ii
+/// ```
+pub fn interpolation(matrix: &Rows) -> Rows {
+    let strong = strong(matrix);
+    let kinds = split(&strong);
+    let mut number = vec![0; kinds.len()];
+    let mut columns = 0;
+    for (number, _) in number.iter_mut().zip(&kinds).filter(|(_, kind)| **kind == Kind::Stays) {
+        *number = columns;
+        columns += 1;
+    }
+    let row = |i: usize| match kinds[i] {
+        Kind::Stays => vec![(number[i], 1.0)],
+        _ => {
+            let stays = |j: usize| kinds[j] == Kind::Stays && strong.row(i).any(|(k, _)| k == j);
+            follow(matrix, i, stays).into_iter().map(|(j, w)| (number[j], w)).collect()
+        }
+    };
+    Rows::new(columns, (0..kinds.len()).map(row).collect::<Vec<_>>())
+}
+
+/// The strong entries.
+fn strong(matrix: &Rows) -> Rows {
+    let row = |i: usize| {
+        let others = || matrix.row(i).filter(move |(j, _)| *j != i);
+        let largest = others().fold(0.0f64, |most, (_, a)| most.max(a.abs()));
+        others().filter(|(_, a)| *a != 0.0 && a.abs() >= STRONG * largest).collect()
+    };
+    Rows::new(matrix.order(), (0..matrix.order()).map(row).collect::<Vec<_>>())
+}
+
+/// Unknown by unknown, the one first that most of the others hang on: it stays, those follow.
+fn split(strong: &Rows) -> Vec<Kind> {
+    let on = strong.transposed();
+    let mut kinds = vec![Kind::Open; strong.order()];
+    let mut wanted: Vec<usize> = (0..kinds.len()).map(|i| on.row(i).count()).collect();
+    let mut queue: BinaryHeap<(usize, Reverse<usize>)> = wanted.iter().copied().zip((0..).map(Reverse)).collect();
+    while let Some((want, Reverse(i))) = queue.pop() {
+        if kinds[i] != Kind::Open || want != wanted[i] {
+            continue;
+        }
+        // nothing hangs on it and it hangs on nothing: neighbours tell it all there is
+        kinds[i] = if want == 0 && strong.row(i).next().is_none() { Kind::Follows } else { Kind::Stays };
+        for (j, _) in on.row(i) {
+            if kinds[j] != Kind::Open {
+                continue;
+            }
+            kinds[j] = Kind::Follows;
+            for (k, _) in strong.row(j).filter(|(k, _)| kinds[*k] == Kind::Open) {
+                wanted[k] += 1;
+                queue.push((wanted[k], Reverse(k)));
+            }
+        }
+    }
+    kinds
+}
+
+/// The weights of the unknowns from which this one follows.
+fn follow(matrix: &Rows, i: usize, stays: impl Fn(usize) -> bool) -> Vec<(usize, f64)> {
+    let (mut all, mut those, mut own) = ([0.0; 2], [0.0; 2], 0.0);
+    let sign = |a: f64| usize::from(a > 0.0);
+    let mut from = Vec::new();
+    for (j, a) in matrix.row(i) {
+        if j == i {
+            own = a;
+            continue;
+        }
+        all[sign(a)] += a;
+        if stays(j) {
+            those[sign(a)] += a;
+            from.push((j, a));
+        }
+    }
+    for s in [0, 1] {
+        own += if those[s] == 0.0 { all[s] } else { 0.0 };
+    }
+    let own = own.max(1e-3 * matrix.diagonal(i));
+    from.iter().map(|(j, a)| (*j, -a * all[sign(*a)] / (those[sign(*a)] * own))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_second_unknown_of_a_row_stays_and_a_constant_goes_down_and_up() {
+        for sign in [-1.0, 1.0] {
+            let row = |i: usize| {
+                let next = [i.wrapping_sub(1), i + 1].into_iter().filter(|j| *j < 9).map(|j| (j, sign));
+                let next: Vec<_> = next.collect();
+                let own = next.len() as f64;
+                next.into_iter().chain([(i, own)]).collect()
+            };
+            let p = interpolation(&Rows::new(9, (0..9).map(row)));
+            assert!((4..=5).contains(&p.columns()));
+            // from a constant, or one that changes sign from site to site
+            let kept: Vec<usize> = (0..9).filter(|i| p.row(*i).eq([(p.row(*i).next().unwrap().0, 1.0)])).collect();
+            let value = |i: usize| if i.is_multiple_of(2) { 1.0 } else { -sign };
+            let mut coarse = vec![0.0; p.columns()];
+            for i in kept.iter().filter(|i| p.row(**i).count() == 1) {
+                coarse[p.row(*i).next().unwrap().0] = value(*i);
+            }
+            for i in 0..9 {
+                let here: f64 = p.row(i).map(|(j, w)| w * coarse[j]).sum();
+                assert!((here - value(i)).abs() < 1e-14, "{sign} {i}: {here}");
+            }
+        }
+    }
+}
