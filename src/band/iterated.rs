@@ -68,8 +68,9 @@ impl Iterated {
             let (h, m, g) = (band.hamiltonian(), band.path().image(k), band.gradient(k));
             let place = Place { h, m, g, shift: self.sigma + self.shift };
             let Err(negative) = self.equations.solve(place, &self.stand_in, TOLERANCE) else { break };
-            // no more than it takes: a mode that is all but free is left soon where it is not held
-            self.shift = (4.0 * self.shift).max(self.shift + 2.0 * negative);
+            // as much as it takes and as the force asks for: a mode that is all but free is left soon where it is not held
+            let enough = (2.0 * negative).max(band.force(k).min(self.stand_in.c));
+            self.shift = (4.0 * self.shift).max(self.shift + enough);
         }
         let x = &self.equations.x;
         y.copy_from_slice(x);

@@ -89,7 +89,7 @@ impl Multigrid {
     /// Solves on a level and those below it; `room` is theirs.
     fn cycle(&self, k: usize, room: &mut [[Vec<Wide>; 3]]) {
         let level = &self.levels[k];
-        let ([b, x, rest], below) = room.split_first_mut().map(|(here, below)| (here, below)).expect("a room a level");
+        let ([b, x, rest], below) = room.split_first_mut().expect("a room a level");
         match &level.down {
             Some([p, back]) => {
                 first(&level.damped, b, x);
