@@ -4,6 +4,7 @@ use super::arrays::{self, Numbers};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
+use std::f64::consts::PI;
 use std::fs;
 use std::path::Path;
 
@@ -339,6 +340,18 @@ fn saddles(stored: &Stored, faults: &mut Faults) {
     }
 }
 
+/// What translations that are pinned by U take of a state's volume at a temperature (K): the mean of e^(−U (1 − cos φ)/2k_BT) of each.
+fn soft(modes: &Value, t: f64) -> f64 {
+    const POINTS: usize = 4096;
+    let one = |pinning_mev: f64| {
+        let u = 0.5 * pinning_mev / (K_B_MEV * t);
+        let at = |k: usize| (-u * (1.0 - (2.0 * PI * k as f64 / POINTS as f64).cos())).exp();
+        (0..POINTS).map(at).sum::<f64>() / POINTS as f64
+    };
+    let entries = modes.as_array().into_iter().flatten();
+    entries.flat_map(|mode| mode["pinning_meV"].as_array().into_iter().flatten()).map(|mev| one(number(mev))).product()
+}
+
 /// Rates are over proven saddles, and follow from their own prefactors.
 fn rates(stored: &Stored, faults: &mut Faults) {
     let saddles = stored.summary["saddles"].as_array().map_or(&[][..], Vec::as_slice);
@@ -356,6 +369,7 @@ fn rates(stored: &Stored, faults: &mut Faults) {
         let many = number(&entry["equivalent_saddles"]);
         let first = number(&entry["prefactor_temperature_K"]);
         let exponent = number(&entry["prefactor_temperature_exponent"]);
+        let held = |t: f64| soft(&entry["saddle_zero_modes"], t) / soft(&entry["minimum_zero_modes"], t);
         for row in entry["temperatures"].as_array().into_iter().flatten() {
             let (t, delta) = (number(&row["temperature_K"]), number(&row["barrier_over_kT"]));
             faults.near(
@@ -371,7 +385,7 @@ fn rates(stored: &Stored, faults: &mut Faults) {
                 });
                 faults.unless(rate.is_none() || delta >= 1.0, || format!("{what}: a rate at ΔE = {delta} k_BT"));
                 if let (Some(rate), Some(prefactor)) = (rate, prefactor) {
-                    let wanted = many * prefactor * (t / first).powf(exponent) * (-delta).exp();
+                    let wanted = many * prefactor * (t / first).powf(exponent) * held(t) / held(first) * (-delta).exp();
                     faults.near(&format!("{what}: rate by {theory}"), rate, wanted, 1e-9 * wanted + 1e-300);
                 }
             }
