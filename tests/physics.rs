@@ -8,6 +8,7 @@ use spinneb::drive::{Outcome, Problem, StopCode};
 use spinneb::energy::{Anisotropy, Dmi, Exchange, Hamiltonian, Medium, TermSpec, Zeeman};
 use spinneb::geometry::Direction;
 use spinneb::hessian::{TangentBasis, assemble};
+use spinneb::landscape::Minimum;
 use spinneb::lattice::Chain;
 use spinneb::linalg::eigenvalues_symmetric;
 use spinneb::path::guess::{Edge, GuessSpec, Sweep};
@@ -122,6 +123,22 @@ fn states_joined_by_a_flat_valley_have_a_certified_barrier_of_zero_and_the_reaso
         assert!(outcome.certified && outcome.converged && outcome.stop_reason.contains("no barrier"));
         assert!(forward(&outcome) == 0.0 && outcome.saddles.is_empty());
     }
+}
+
+#[test]
+fn of_ends_that_are_one_minimum_turned_each_is_told_with_its_own_energy_and_torque() {
+    let build = Build::open(24).easy(0.3);
+    let wall = |through: [f64; 3]| build.wall(11.6, 3.0, Direction::new(through).expect("a direction"));
+    let problem = build.problem(wall([1.0, 0.0, 0.0]), wall([0.2, 0.9, 0.0]));
+    let outcome = solve(&problem);
+    assert_eq!(outcome.stop_code, StopCode::FlatValley, "{}", outcome.stop_reason);
+    let ends = [(&outcome.initial, 0), (&outcome.final_state, outcome.path.images() - 1)];
+    let torques = ends.map(|(told, image)| {
+        let own = Minimum::examine(problem.evaluator(), &outcome.path.spins(image));
+        assert_eq!((told.energy_mev, told.max_torque_mev), (own.energy_mev, own.max_torque_mev), "image {image}");
+        own.max_torque_mev
+    });
+    assert!(torques[0] != torques[1], "{torques:?}");
 }
 
 #[test]

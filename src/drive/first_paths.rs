@@ -38,6 +38,7 @@ impl<'a> Run<'a, '_> {
     pub(super) fn natural(&mut self) -> Result<Vec<FirstPath<'a>>> {
         let mut tried = Vec::new();
         let context = self.context();
+        self.problem.control.check()?;
         let guesses = natural_guesses(self.problem, &self.ends[0].spins, &self.ends[1].spins, &context);
         for (guess, noise) in &guesses {
             let namesakes =

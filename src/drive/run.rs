@@ -102,6 +102,7 @@ impl<'a, 'o> Run<'a, 'o> {
             needs_laplacian(&problem.neb.optimiser).then(|| Arc::new(Laplacian::new(&h, scales.stiffness_mev)));
         let mut land = Landscape::new(h, a);
         let examined = Minimum::examine_both(h, ends.each_ref().map(|end| &end.spins));
+        problem.control.check()?;
         let minima = examined.each_ref().map(|minimum| land.add_minimum(minimum));
         let mut run = Run {
             problem,
@@ -199,10 +200,13 @@ impl<'a, 'o> Run<'a, 'o> {
         if self.axes.is_empty() || !self.problem.relax_ends {
             return Ok(None);
         }
-        let ends = self.minima.map(|k| self.land.minima()[k].clone());
-        if !ends[0].is_turned(h, &ends[1]) {
+        let [a, b] = self.ends.each_ref().map(|end| &end.spins);
+        let [from, to] = self.minima.map(|k| &self.land.minima()[k]);
+        if !from.is_turned(h, to) {
             return Ok(None);
         }
+        // the landscape keeps one of them for both
+        let ends = Minimum::examine_both(h, [a, b]);
         let images = match self.problem.images {
             Images::Count(n) => n,
             Images::Auto => FEWEST_IMAGES,
@@ -212,7 +216,7 @@ impl<'a, 'o> Run<'a, 'o> {
             [axis] => Direction::new(axis).ok(),
             _ => None,
         };
-        let path = Rotation { axis }.path(&self.ends[0].spins, &self.ends[1].spins, images, &self.context())?;
+        let path = Rotation { axis }.path(a, b, images, &self.context())?;
         let mut band = Band::new(h, path);
         band.evaluate();
         if height(&band) > 1e-9 * h.stiffness_mev() {

@@ -17,6 +17,9 @@ pub fn polish(h: Evaluator, mut here: Point) -> Point {
     let mut region = Region::new(h, Wanted::Minimum, FARTHEST);
     let mut best = here.clone();
     for _ in 0..STEPS {
+        if h.is_stopped() {
+            break;
+        }
         // a NaN is no small rotation either
         let is_near = region.plain(&here) < FARTHEST;
         if best.max_torque_mev() <= 4e-15 * h.stiffness_mev() || !is_near {

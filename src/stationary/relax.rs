@@ -101,6 +101,9 @@ fn stationary(h: Evaluator, mut p: Point, tolerance_mev: f64, steps: &mut usize,
         p = next;
         *steps += 1;
     }
+    if h.is_stopped() {
+        return Err(Error::Stopped);
+    }
     if p.max_torque_mev() > tolerance_mev && p.max_torque_mev() < NEARLY * tolerance_mev {
         // the shift makes steps along a valley that is all but flat short
         p = polish(h, p);
@@ -116,7 +119,7 @@ fn newton_step(h: Evaluator, p: &Point, shift: &mut f64, memory: &mut Matrix) ->
     let slack = 1e-13 * (p.energy_mev.abs() + scale);
     let [first, least, small] = SHIFTS.map(|part| part * scale);
     let mut trial = if *shift > small { *shift } else { 0.0 };
-    while trial < 1e6 * scale {
+    while trial < 1e6 * scale && !h.is_stopped() {
         let mut matrix = take(memory);
         p.write_hessian(h, trial + 1e-12 * scale, &mut matrix);
         let mut x = p.downhill();

@@ -187,7 +187,7 @@ impl<'a> Region<'a> {
     fn shifted(&mut self, here: &Point) {
         let scale = self.h.stiffness_mev();
         let mut shift = 1e-3 * scale;
-        while shift < 1e6 * scale {
+        while shift < 1e6 * scale && !self.h.is_stopped() {
             let mut matrix = take(&mut self.room);
             matrix.copy_from(&self.hessian);
             matrix.shift(shift);
