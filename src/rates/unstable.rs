@@ -8,6 +8,9 @@ use crate::stationary::State;
 
 /// Most factorisations of a search.
 const ROUNDS: usize = 30;
+/// A residual of more than so many times the rounding error of a product still falls. Beside a mode of the same eigenvalue, known to
+/// rounding, it ends higher than on its own; the eigenvalue is right to the square of it.
+const ROUGH: f64 = 4096.0;
 
 /// A negative eigenvalue of the Hessian with its eigenvector.
 #[derive(Clone, Debug)]
@@ -43,7 +46,7 @@ pub(super) fn nearest_mode(saddle: &State, mut x: Vec<f64>, zeros: &[Vec<f64>]) 
         slab::add_scaled(&mut image, -quotient, &x);
         let now = slab::norm(&image);
         // as good as it gets: the residual is rounding, or no longer falls
-        if now <= 0.5 * noise || (now <= 64.0 * noise && now >= 0.5 * residual) {
+        if now <= 0.5 * noise || (now <= ROUGH * noise && now >= 0.5 * residual) {
             return Some((quotient, x));
         }
         residual = now;

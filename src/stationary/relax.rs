@@ -101,9 +101,6 @@ fn stationary(h: Evaluator, mut p: Point, tolerance_mev: f64, steps: &mut usize,
         p = next;
         *steps += 1;
     }
-    if h.is_stopped() {
-        return Err(Error::Stopped);
-    }
     if p.max_torque_mev() > tolerance_mev && p.max_torque_mev() < NEARLY * tolerance_mev {
         // the shift makes steps along a valley that is all but flat short
         p = polish(h, p);
