@@ -129,7 +129,8 @@ fn states_joined_by_a_flat_valley_have_a_certified_barrier_of_zero_and_the_reaso
 fn of_ends_that_are_one_minimum_turned_each_is_told_with_its_own_energy_and_torque() {
     let build = Build::open(24).easy(0.3);
     let wall = |through: [f64; 3]| build.wall(11.6, 3.0, Direction::new(through).expect("a direction"));
-    let problem = build.problem(wall([1.0, 0.0, 0.0]), wall([0.2, 0.9, 0.0]));
+    let [from, to] = [wall([1.0, 0.0, 0.0]), wall([0.2, 0.9, 0.0])];
+    let problem = build.problem(from, to);
     let outcome = solve(&problem);
     assert_eq!(outcome.stop_code, StopCode::FlatValley, "{}", outcome.stop_reason);
     let ends = [(&outcome.initial, 0), (&outcome.final_state, outcome.path.images() - 1)];
