@@ -123,9 +123,12 @@ impl Shares {
         if ShareHead::read(directory)?.is_none() {
             return Ok(());
         }
-        for path in own_files(&folder)?.into_iter().chain([folder.join(ABOUT)]) {
-            disk::remove(&path)?;
+        for path in own_files(&folder)? {
+            if is_share(&path)? {
+                disk::remove(&path)?;
+            }
         }
+        disk::remove(&folder.join(ABOUT))?;
         disk::clean(&folder)?;
         // with something else in it, it stays
         let _ = fs::remove_dir(&folder);
@@ -184,12 +187,16 @@ fn own_files(folder: &Path) -> Result<Vec<PathBuf>> {
     Ok(files)
 }
 
+/// Whether what has the name of a share is one.
+fn is_share(path: &Path) -> Result<bool> {
+    let begun = || frame::is_begun(path).map_err(|source| io_error(path, source));
+    Ok(matches!(disk::kind(path)?, disk::Kind::File) && begun()?)
+}
+
 /// An error where a file has the name of a share and is none.
 fn foreign(folder: &Path) -> Result<()> {
     for path in own_files(folder)? {
-        let is_own = matches!(disk::kind(&path)?, disk::Kind::File)
-            && frame::is_begun(&path).map_err(|source| io_error(&path, source))?;
-        if !is_own {
+        if !is_share(&path)? {
             return Err(disk::refused(
                 &path,
                 "is there and is no share: take it away, or give another directory with --out",

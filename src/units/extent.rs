@@ -1,14 +1,11 @@
 //! Lengths and places in a lattice, as configs have them: numbers count the lattice's own lengths, strings carry a unit.
 
 use super::Length;
-use crate::words::{number, rounded};
+use crate::words::number;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{self, Deserialize, Deserializer, IntoDeserializer, Visitor};
 use std::borrow::Cow;
 use std::fmt;
-
-/// Digits that are shown.
-const DIGITS: usize = 12;
 
 /// A length or a coordinate: `4.5` spacings, or `"12 nm"`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,10 +29,16 @@ impl From<f64> for Extent {
 impl fmt::Display for Extent {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Extent::Spacings(x) => f.write_str(&number(rounded(*x, DIGITS))),
+            Extent::Spacings(x) => f.write_str(&number(shown(*x))),
             Extent::Length(length) => length.fmt(f),
         }
     }
+}
+
+/// Without the digits that rounding left.
+fn shown(x: f64) -> f64 {
+    let scale = 1e6;
+    if x.abs() < 1e3 && x.abs() > 1e-3 { (x * scale).round() / scale } else { x }
 }
 
 impl fmt::Display for Place {
