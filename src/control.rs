@@ -128,8 +128,9 @@ impl<'a> Call<'a> {
 
     fn counted<T>(&self, (found, count): (T, Count)) -> T {
         if let Some(control) = self.control {
-            control.evaluations.store(self.before.evaluations + count.evaluations, Ordering::Relaxed);
-            control.hessians.store(self.before.hessians + count.hessians, Ordering::Relaxed);
+            let now = self.before + count;
+            control.evaluations.store(now.evaluations, Ordering::Relaxed);
+            control.hessians.store(now.hessians, Ordering::Relaxed);
         }
         found
     }
@@ -200,8 +201,7 @@ impl<'a> Call<'a> {
 
     /// So far.
     fn count(&self) -> Count {
-        let now = self.control.map(Control::evaluated).unwrap_or_default();
-        Count { evaluations: now.evaluations - self.before.evaluations, hessians: now.hessians - self.before.hessians }
+        self.control.map(Control::evaluated).unwrap_or_default().since(self.before)
     }
 }
 

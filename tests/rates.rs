@@ -10,7 +10,7 @@ use spinneb::geometry::{Direction, tangent_basis, vector};
 use spinneb::landscape::Effort;
 use spinneb::lattice::Chain;
 use spinneb::linalg::eigen_symmetric;
-use spinneb::rates::{RateSettings, SaddleRate, Theory, Way, ZeroKind};
+use spinneb::rates::{RateSettings, SaddleRate, Theory, Way, ZeroKind, ZeroModes};
 use spinneb::spins::Spins;
 use spinneb::units::{HBAR, K_B};
 use std::f64::consts::PI;
@@ -89,6 +89,30 @@ fn one_spin(k: f64, hard: f64) {
     assert!((prefactors[0][1] / langer - 1.0).abs() < 1e-12);
 }
 
+/// A state that slides in two ways.
+struct Slid {
+    /// ℓ_a·ℓ_b of the ways' parts along the valleys.
+    gram: [f64; 3],
+    /// ℓ_aᵀKℓ_b.
+    stiffness_mev: [f64; 3],
+    /// ln of the Hessian's determinant on the space normal to the valleys.
+    log_determinant: f64,
+}
+
+/// Of the symmetric matrix [[a, b], [b, c]].
+fn determinant([a, b, c]: [f64; 3]) -> f64 {
+    a * c - b * b
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn unit(v: Vec<f64>) -> Vec<f64> {
+    let size = dot(&v, &v).sqrt();
+    v.into_iter().map(|x| x / size).collect()
+}
+
 /// A stationary state in dense arithmetic: its tangent Hessian from products with single vectors, and its eigenvalues.
 struct Dense {
     m: Spins,
@@ -141,6 +165,41 @@ impl Dense {
 
     fn log_determinant(&self, zeros: usize) -> f64 {
         self.without_zeros(zeros).iter().map(|k| self.values[*k].abs().ln()).sum()
+    }
+
+    /// A tangent field in tangent coordinates.
+    fn coordinates(&self, field: &[[f64; 3]]) -> Vec<f64> {
+        let n = self.m.sites();
+        let along = |k: usize| (0..3 * n).map(|c| self.basis[k * 3 * n + c] * field[c % n][c / n]).sum();
+        (0..2 * n).map(along).collect()
+    }
+
+    /// The valleys along two directions: H⁻¹ of them.
+    fn slid(&self, ways: [Vec<f64>; 2]) -> Slid {
+        let inverse = |v: &Vec<f64>| {
+            let part = |(u, value): (&Vec<f64>, &f64)| dot(u, v) / value;
+            let parts: Vec<f64> = self.vectors.iter().zip(&self.values).map(part).collect();
+            (0..v.len()).map(|i| self.vectors.iter().zip(&parts).map(|(u, p)| p * u[i]).sum()).collect::<Vec<f64>>()
+        };
+        let [w, x] = ways.each_ref().map(inverse).map(unit);
+        let overlap = dot(&w, &x);
+        let x = unit(x.iter().zip(&w).map(|(x, w)| x - overlap * w).collect());
+        let symmetric = |f: &dyn Fn(usize, usize) -> f64| [f(0, 0), f(0, 1), f(1, 1)];
+        let valleys = [w, x];
+        let solved = valleys.each_ref().map(inverse);
+        let softness = symmetric(&|a, b| dot(&valleys[a], &solved[b]));
+        let all = determinant(softness);
+        let stiffness = [softness[2] / all, -softness[1] / all, softness[0] / all];
+        let lengths = ways.each_ref().map(|v| valleys.each_ref().map(|w| dot(v, w)));
+        let energy = |a: usize, b: usize| {
+            let [[p, q], [r, s]] = [lengths[a], lengths[b]];
+            stiffness[0] * p * r + stiffness[1] * (p * s + q * r) + stiffness[2] * q * s
+        };
+        Slid {
+            gram: symmetric(&|a, b| dot(&lengths[a], &lengths[b])),
+            stiffness_mev: symmetric(&energy),
+            log_determinant: self.log_determinant(0) + all.ln(),
+        }
     }
 
     /// m × (H e_k), weighted site by site, in tangent coordinates.
@@ -352,38 +411,47 @@ fn a_skyrmion_that_slides_over_its_film_agrees_with_dense_eigenvalues_and_the_vo
     let [top, bottom, up] =
         [outcome.saddles[0].spins.clone(), outcome.path.spins(0), Spins::uniform(size * size, Direction::Z)]
             .map(|m| Dense::new(&problem.hamiltonian, m));
-    let slopes = [false, true].map(|second| slope(&bottom.m, size, second));
-    let dot = |a: &[[f64; 3]], b: &[[f64; 3]]| a.iter().zip(b).map(|(a, b)| vector::dot(*a, *b)).sum::<f64>();
-    let gram = [dot(&slopes[0], &slopes[0]), dot(&slopes[0], &slopes[1]), dot(&slopes[1], &slopes[1])];
-    let cell = (gram[0] * gram[2] - gram[1] * gram[1]).sqrt();
-    let zeros = &forward.minimum_zeros[0];
-    assert_eq!((zeros.kind, zeros.count, backward.minimum_zeros.len()), (ZeroKind::Translation, 2, 0));
-    assert!((zeros.volume / (cell * (size * size) as f64) - 1.0).abs() < 1e-12, "{zeros:?}");
-    let hop = zeros.hop_volume.expect("a hop") / zeros.volume;
-    assert!((0.8..1.1).contains(&hop) && hop != 1.0, "{hop}");
-    // ε ℓ²/2π² along one direction or the other, which symmetry makes the same
-    let soft = bottom.values.iter().copied().fold(f64::INFINITY, f64::min);
-    assert!((zeros.pinning_mev[0] / (soft * gram[0] / (2.0 * PI * PI)) - 1.0).abs() < 0.05, "{zeros:?}");
     let thermal = K_B * kelvin;
     let held = |mev: &f64| {
         let u = 0.5 * mev / thermal;
         1.0 - u + 0.75 * u * u - 5.0 / 12.0 * u.powi(3)
     };
-    let free: f64 = zeros.pinning_mev.iter().map(held).product::<f64>() * cell / (2.0 * PI * thermal);
+    // ∫ e^(−E/k_BT) over two translations, in units of 2πk_BT, and their parts of the determinant
+    let integral = |state: &Dense, zeros: &ZeroModes| {
+        let slopes = [false, true].map(|second| slope(&state.m, size, second));
+        let slid = state.slid(slopes.map(|slope| state.coordinates(&slope)));
+        let cell = determinant(slid.gram).sqrt();
+        assert_eq!((zeros.kind, zeros.count), (ZeroKind::Translation, 2));
+        assert!((zeros.volume / (cell * (size * size) as f64) - 1.0).abs() < 1e-12, "{zeros:?}");
+        // ε ℓ²/2π² along one direction and the other, which symmetry makes the same
+        let both = zeros.pinning_mev.iter().product::<f64>();
+        assert!((both / (determinant(slid.stiffness_mev) / (2.0 * PI * PI).powi(2)) - 1.0).abs() < 1e-8, "{zeros:?}");
+        let free: f64 = zeros.pinning_mev.iter().map(held).product::<f64>() * cell / (2.0 * PI * thermal);
+        free * (-0.5 * slid.log_determinant).exp()
+    };
+    let (zeros, above) = (&forward.minimum_zeros[0], &forward.saddle_zeros[0]);
+    assert!(backward.minimum_zeros.is_empty());
+    let hop = zeros.hop_volume.expect("a hop") / zeros.volume;
+    assert!((0.8..1.1).contains(&hop) && hop != 1.0, "{hop}");
+    let [over, before] = [(&top, above), (&bottom, zeros)].map(|(state, zeros)| integral(state, zeros));
+    let after = (-0.5 * up.log_determinant(0)).exp() / (size * size) as f64;
     let gyration = vec![unit_hz(2.0); size * size];
-    let entropy =
-        |minimum: &Dense, zeros: usize| (0.5 * (minimum.log_determinant(zeros) - top.log_determinant(0))).exp();
     for (theory, frequency) in
         [(Theory::Htst, top.htst_frequency(0, &gyration)), (Theory::Langer, top.growth_rate(&gyration, 0.2))]
     {
-        let expected =
-            [entropy(&bottom, 2) / free, entropy(&up, 0) * (size * size) as f64].map(|e| e * frequency / (2.0 * PI));
+        let expected = [before, after].map(|minimum| over / minimum * frequency / (2.0 * PI));
         for (r, expected) in [forward, backward].into_iter().zip(expected) {
             let rate = r.ln_rate_per_s(theory, kelvin).expect("a rate") - libm::log(r.equivalents.count as f64);
             let found = (rate + r.barrier_mev.expect("a barrier") / thermal).exp();
             assert!((found / expected - 1.0).abs() < 1e-8, "{theory:?} {found} {expected}");
         }
     }
+    // with nothing but k_BT made small, what slides becomes harmonic, to 1/8u for each translation
+    let u = [zeros, above].map(|zeros| 1e6 * zeros.pinning_mev[0] / above.pinning_mev[0]);
+    let prefactor = forward.htst.expect("a prefactor").hz_at(zeros.pinning_mev[0] / (2.0 * u[0] * K_B));
+    let entropy = 0.5 * (bottom.log_determinant(0) - top.log_determinant(0));
+    let harmonic = entropy.exp() * top.htst_frequency(0, &gyration) / (2.0 * PI);
+    assert!((prefactor / harmonic - 1.0 + 0.25 / u[0] - 0.25 / u[1]).abs() < 1e-8, "{prefactor} {harmonic}");
     // cold enough, a minimum is one place
     let cold = solve(&film(&lattice, energy, [skyrmion, UP], 1e-4));
     assert!(rate(&cold, Way::Forward).minimum_zeros.is_empty() && rate(&cold, Way::Forward).htst.is_some());

@@ -361,7 +361,14 @@ fn a_sweep_with_rates_has_a_table_and_a_map_of_lifetimes_over_its_key_and_temper
     for words in ["Mean first passage (s)", "Temperature (K)", "B[2] (T)", "Grey: no lifetime"] {
         assert!(map.contains(words), "{words}");
     }
-    // what was collected is known and replaced; two keys make no map
+    // two keys make no map
+    let two = sweep.replace("\"grid\": {", r#""grid": {"rates.damping": [0.1, 0.5], "#);
+    assert_ne!(two, sweep);
+    fs::write(folder.path().join("two.json"), two).unwrap();
+    let (code, _, said) = spinneb(folder.path(), &["sweep", "two.json"]);
+    assert!(code == Some(0) && said.contains("lifetimes.csv too"), "{said}");
+    assert!(!folder.path().join("results/two/lifetime_map.svg").exists());
+    // what was collected is known and replaced
     assert_eq!(spinneb(folder.path(), &["collect", "life.json", "-q"]).0, Some(0));
     fs::write(folder.path().join("results/life/lifetimes.csv"), "mine").unwrap();
     let (code, _, said) = spinneb(folder.path(), &["collect", "life.json"]);

@@ -66,7 +66,9 @@ def test_what_progress_raises_ends_the_run():
 
 
 LONG = """
-import sys, time
+import signal, sys, time
+# where the tests run in the background the signal comes in as one that is ignored
+signal.signal(signal.SIGINT, signal.default_int_handler)
 import spinneb as sn
 sites = int(sys.argv[1])
 system = sn.System(sn.chain(sites), [sn.exchange(J=["10 meV"]), sn.anisotropy(K="0.5 meV")])

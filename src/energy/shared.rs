@@ -6,6 +6,7 @@ use crate::control::Call;
 use crate::error::Result;
 use crate::record::Count;
 use rayon::prelude::*;
+use std::ops::Add;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -90,9 +91,7 @@ impl<T: Stored + Send> Parts<'_, T> {
         let found = compute((part..self.inputs).step_by(self.found.len()).collect());
         // what a stopped computation returns is no result
         self.call.obey(|| None::<Vec<T>>)?;
-        let (found, now) = (found?, self.h.evaluated());
-        let count =
-            Count { evaluations: now.evaluations - before.evaluations, hessians: now.hessians - before.hessians };
+        let (found, count) = (found?, self.h.evaluated().since(before));
         self.call.add_part(part, count, &(part, &found));
         self.found[part] = Some((found, count));
         Ok(())
@@ -102,10 +101,7 @@ impl<T: Stored + Send> Parts<'_, T> {
     fn end(self) -> Vec<T> {
         let (mut parts, counts): (Vec<_>, Vec<Count>) =
             self.found.into_iter().flatten().map(|(found, count)| (found.into_iter(), count)).unzip();
-        self.call.end_parts(counts.into_iter().fold(Count::default(), |sum, count| Count {
-            evaluations: sum.evaluations + count.evaluations,
-            hessians: sum.hessians + count.hessians,
-        }));
+        self.call.end_parts(counts.into_iter().fold(Count::default(), Add::add));
         let n = parts.len();
         (0..self.inputs).filter_map(|k| parts[k % n].next()).collect()
     }

@@ -271,14 +271,16 @@ impl<'a> Landscape<'a> {
 
     /// How many minima there are of which no symmetry makes another one.
     pub fn kinds(&self) -> usize {
-        (0..self.minima.len()).filter(|k| self.orbits[*k] == *k).count()
+        self.firsts().count()
+    }
+
+    fn firsts(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.minima.len()).filter(|k| self.orbits[*k] == *k)
     }
 
     /// How many minima below a height there are (meV above the reference) of which no symmetry makes another one.
     pub fn orbits_below(&self, height_mev: f64) -> usize {
-        let counts =
-            |k: &usize| self.orbits[*k] == *k && self.stands_for[*k] == *k && self.heights_mev[*k] < height_mev;
-        (0..self.minima.len()).filter(counts).count()
+        self.firsts().filter(|k| self.stands_for[*k] == *k && self.heights_mev[*k] < height_mev).count()
     }
 
     /// The minimum that stands for one of the minima.

@@ -169,21 +169,14 @@ pub fn search(
     let passes = land.edges().len();
     let mut lowest = f64::INFINITY;
     let before = h.evaluated();
-    let part = |now: usize, before: usize, most: usize| (now - before) as f64 / most.max(1) as f64;
-    let spent = |now: Count| {
-        let [own, hessians] = [
-            part(now.evaluations, before.evaluations, settings.most.evaluations),
-            part(now.hessians, before.hessians, settings.most.hessians),
-        ];
-        if settings.most.evaluations.min(settings.most.hessians) == 0 { 1.0 } else { own.max(hessians) }
-    };
     loop {
         let top_mev = aim.top_mev(land);
         if top_mev < lowest - land.tolerance_mev(top_mev) {
             (lowest, done.quiet) = (top_mev, 0);
         }
         let wanted = aim.quiet(settings.effort, land.edges().len() > passes, land);
-        let spent = spent(h.evaluated()).max(land.kinds() as f64 / settings.most_kinds as f64);
+        let spent =
+            h.evaluated().since(before).part_of(settings.most).max(land.kinds() as f64 / settings.most_kinds as f64);
         done.spent = spent >= 1.0;
         tell(&Standing { done, wanted, spent, known: [land.minima().len(), land.edges().len()] });
         if done.quiet >= wanted || done.spent {

@@ -42,7 +42,7 @@ pub use lowest::{lowest_modes, modes_by_factors, soft_modes, soft_space};
 pub use matrix::Matrix;
 pub use multigrid::{Multigrid, Rows};
 pub use orthonormal::{orthonormal, remove};
-pub use ritz::{Mode, rayleigh_ritz};
+pub use ritz::{Mode, combination, rayleigh_ritz};
 pub use small::{eigen_symmetric, eigenvalues_symmetric, solve_dense};
 pub use sparse::{Graph, SparseLdl, SparseMatrix, Symbolic, nested_dissection};
 pub use tail::{Decays, Tail, TailedBand};

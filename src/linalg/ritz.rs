@@ -44,7 +44,7 @@ pub fn rayleigh_ritz(matrix: &Matrix, space: &[Vec<f64>]) -> Vec<Mode> {
 }
 
 /// Σ w_k v_k.
-pub(super) fn combination(weights: &[f64], vectors: &[Vec<f64>]) -> Vec<f64> {
+pub fn combination(weights: &[f64], vectors: &[Vec<f64>]) -> Vec<f64> {
     let mut v = vec![0.0; vectors[0].len()];
     slab::add_all(&mut v, weights, vectors);
     v

@@ -57,7 +57,6 @@ pub(super) fn together(matrix: &Matrix, known: &[Vec<f64>], wanted: Modes) -> (V
         let mut most = (BLOCKS + 1) * (SPARE + wanted.count);
         loop {
             let (space, settled) = krylov.largest(rest, most);
-            let here = krylov.converged(space.len());
             modes = rayleigh_ritz(matrix, &[&apart[known.len()..], &space].concat());
             let complete = settled && none_is_missed(matrix, &modes, known, scale);
             if complete || krylov.is_full(MOST) || modes.len() <= sure {
@@ -71,6 +70,7 @@ pub(super) fn together(matrix: &Matrix, known: &[Vec<f64>], wanted: Modes) -> (V
                 shift = low;
                 break;
             }
+            let here = krylov.converged(space.len());
             let next = nearer(matrix, &modes, sure, known, low, scale).filter(|s| *s < high);
             let beyond = nearer(matrix, &modes, sure + here, known, low, scale).filter(|_| here > 0);
             if let Some(nearer) = beyond {

@@ -7,11 +7,8 @@
 //! ```
 //! exactly: what is added makes the zero eigenvalues positive and of ordinary size, and its effect is divided out in closed form.
 //! The same limit as that of the bordered matrix [H Z; Zᵀ 0], whose determinant is (−1)^P det'H. That holds whatever the eigenvalues of
-//! the modes Z are, so soft ones that are left out because they are integrated otherwise are bordered, on top of their pins:
-//!
-//! ```text
-//! C = [Z, E],  S = diag(0, 1/κ) − Cᵀ(H + κ E Eᵀ)⁻¹C,    |det'H| = κ^P |det(H + κ E Eᵀ) det S|
-//! ```
+//! the modes Z are, and for directions Z that are none, so soft ones that are left out because they are integrated otherwise are
+//! bordered, on top of their pins (see the module `bordered`).
 //!
 //! The descending mode t of a saddle is left out too. Its eigenvalue λ₁ is divided out if it is well above the rounding error; if it
 //! is all but flat, it is pinned as well, and the pin taken back through a second border column, so that no small number is
@@ -22,6 +19,7 @@
 //! ```
 
 use super::Unstable;
+use super::bordered::{Bordered, determinant};
 use crate::linalg::{Factors, Matrix, remove, slab};
 use crate::stationary::{Border, Pin, pin};
 
@@ -65,10 +63,10 @@ impl PinnedHessian {
         };
         let mut log_determinant = factors.log_abs_determinant() - added + own;
         if soft {
-            let bordered = zeros.iter().take(pins.len()).chain(border.as_ref().map(|b| &b.soft));
-            let all_pins = pins.iter().copied().chain(border.as_ref().map(Border::pin));
+            let left_out = zeros.iter().take(pins.len()).chain(border.as_ref().map(|b| &b.soft));
+            let all_pins: Vec<Pin> = pins.iter().copied().chain(border.as_ref().map(Border::pin)).collect();
             let own = if border.is_some() { 0.0 } else { own };
-            log_determinant = bordered_log_determinant(&factors, bordered.zip(all_pins).collect(), kappa) + own;
+            log_determinant = Bordered::new(&factors, left_out.collect(), &all_pins, kappa).log_determinant() + own;
         }
         PinnedHessian { factors, zeros, border, log_determinant }
     }
@@ -98,49 +96,9 @@ fn are_flat(hessian: &Matrix, modes: &[Vec<f64>]) -> bool {
     })
 }
 
-/// ln|det'H| without modes, each with its pin, from the factors of the Hessian with all of these pins.
-fn bordered_log_determinant(factors: &Factors, bordered: Vec<(&Vec<f64>, Pin)>, kappa: f64) -> f64 {
-    let n = bordered.len();
-    let columns = bordered.iter().map(|(z, _)| z.to_vec()).chain(bordered.iter().map(|(z, e)| e.column(z.len())));
-    let solved: Vec<Vec<f64>> = columns
-        .map(|mut column| {
-            factors.solve(&mut column, 1);
-            column
-        })
-        .collect();
-    let entry = |r: usize, c: usize| {
-        let own = if r < n { slab::dot(bordered[r].0, &solved[c]) } else { bordered[r - n].1.dot(&solved[c]) };
-        if r == c && r >= n { 1.0 / kappa - own } else { -own }
-    };
-    let schur: Vec<f64> = (0..2 * n).flat_map(|r| (0..2 * n).map(move |c| (r, c))).map(|(r, c)| entry(r, c)).collect();
-    n as f64 * libm::log(kappa) + factors.log_abs_determinant() + libm::log(determinant(&schur, 2 * n).abs())
-}
-
 /// ln|det'H| (energies in meV) of a Hessian with these orthonormal zero modes; κ is any stiffness of the Hessian's size (meV).
 pub fn log_determinant(hessian: &Matrix, zeros: &[Vec<f64>], kappa: f64) -> f64 {
     PinnedHessian::new(hessian, zeros, None, kappa).log_determinant()
-}
-
-/// The determinant of an n × n matrix of a few rows, by elimination with row exchanges.
-fn determinant(matrix: &[f64], n: usize) -> f64 {
-    let mut a = matrix.to_vec();
-    let mut product = 1.0;
-    for j in 0..n {
-        let p = (j..n).fold(j, |p, r| if a[r * n + j].abs() > a[p * n + j].abs() { r } else { p });
-        if a[p * n + j] == 0.0 {
-            return 0.0;
-        }
-        if p != j {
-            (0..n).for_each(|k| a.swap(j * n + k, p * n + k));
-            product = -product;
-        }
-        product *= a[j * n + j];
-        for i in j + 1..n {
-            let l = a[i * n + j] / a[j * n + j];
-            (j..n).for_each(|k| a[i * n + k] -= l * a[j * n + k]);
-        }
-    }
-    product
 }
 
 #[cfg(test)]
@@ -217,12 +175,5 @@ mod tests {
                 pinned.log_determinant()
             );
         }
-    }
-
-    #[test]
-    fn determinants_of_small_matrices_are_right() {
-        assert_eq!(determinant(&[], 0), 1.0);
-        assert_eq!(determinant(&[0.0, 2.0, 3.0, 0.0], 2), -6.0);
-        assert_eq!(determinant(&[0.0; 4], 2), 0.0);
     }
 }

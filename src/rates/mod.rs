@@ -26,6 +26,7 @@
 //! The moments are classical. With the saddle comes the temperature at which tunnelling through the barrier takes over, see
 //! [`SaddleRate::crossover_k`].
 
+mod bordered;
 mod crossover;
 mod determinant;
 mod growth;

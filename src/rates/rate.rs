@@ -264,6 +264,8 @@ pub fn saddle_rates(h: Evaluator, number: usize, crossing: &Crossing, settings: 
 struct Place<'a> {
     state: State,
     spectrum: &'a Spectrum,
+    /// The descending mode of a saddle.
+    unstable: Option<Unstable>,
     sliding: Sliding,
     name: &'static str,
 }
@@ -283,14 +285,8 @@ struct Well {
 
 impl Well {
     /// Of a place, where so many times each shift is free, if anything slides.
-    fn new(
-        h: Evaluator,
-        place: Place,
-        group: &Group,
-        free: Option<&[usize]>,
-        valley: Option<&[f64]>,
-    ) -> Result<Well, Refusal> {
-        let Place { state, spectrum, sliding, name } = place;
+    fn new(h: Evaluator, place: Place, group: &Group, free: Option<&[usize]>) -> Result<Well, Refusal> {
+        let Place { state, spectrum, unstable, sliding, name } = place;
         let held = free.filter(|_| !sliding.slides()).map_or(1, |steps| places(group, &state.m, steps));
         let alike = match free {
             Some(steps) if sliding.slides() => states_on_the_way(h.lattice(), group, &state.m, steps),
@@ -301,10 +297,6 @@ impl Well {
         let zeros = zero_modes(&h, &state, &sliding.with_places(count), steps, spectrum)
             .map_err(|unknown| Refusal::Volume(name, unknown))?;
         let directions: Vec<Vec<f64>> = zeros.iter().flat_map(|z| z.modes.clone()).collect();
-        let unstable = match valley {
-            None => None,
-            Some(valley) => Some(unstable_mode(&state, valley, &directions).ok_or(Refusal::LostMode)?),
-        };
         let pinned = PinnedHessian::new(&state.hessian, &directions, unstable.as_ref(), h.stiffness_mev() / 3.0);
         let [ln_kept, ln_places] = [held, alike].map(|n| libm::log(n as f64));
         Ok(Well { state, zeros, unstable, pinned, ln_kept, ln_places })
@@ -349,28 +341,33 @@ fn prepared(h: Evaluator, crossing: &Crossing, settings: &RateSettings) -> Resul
         return Err(reason);
     }
     let (group, hottest) = (crossing.group, settings.temperatures_k.iter().copied().fold(0.0, f64::max));
-    let place = |state: State, spectrum, name| {
-        let sliding =
-            Sliding::of(&h, &state, group, spectrum, hottest).map_err(|unknown| Refusal::Volume(name, unknown))?;
-        Ok(Place { state, spectrum, sliding, name })
+    let place = |state: State, unstable: Option<Unstable>, spectrum, name| {
+        let sliding = Sliding::of(&h, &state, unstable.as_ref(), group, hottest);
+        Ok(Place {
+            sliding: sliding.map_err(|unknown| Refusal::Volume(name, unknown))?,
+            state,
+            spectrum,
+            unstable,
+            name,
+        })
     };
-    let top = place(crossing.saddle.clone(), crossing.spectrum, "the saddle")?;
+    let unstable = unstable_mode(crossing.saddle, crossing.valley, &crossing.saddle.zeros).ok_or(Refusal::LostMode)?;
+    let top = place(crossing.saddle.clone(), Some(unstable.clone()), crossing.spectrum, "the saddle")?;
     let minimum = |side: usize| {
         let (state, spectrum) =
             (State::at(h, crossing.minima[side].as_slice().to_vec()), crossing.minima_spectra[side]);
         if let Some(reason) = no_minimum(spectrum, state.max_torque_mev(), ["before", "after"][side]) {
             return Err(reason);
         }
-        place(state, spectrum, ["the minimum before it", "the minimum after it"][side])
+        place(state, None, spectrum, ["the minimum before it", "the minimum after it"][side])
     };
     let minima = [minimum(0)?, minimum(1)?];
     let sliding = [top.sliding.slides(), minima[0].sliding.slides(), minima[1].sliding.slides()];
     let steps = free_shifts(group, crossing.minima.map(|m| m.as_slice()), [sliding[1], sliding[2]]);
     let free = Some(&steps[..]).filter(|_| sliding.contains(&true));
-    let top = Well::new(h, top, group, free, Some(crossing.valley))?;
+    let top = Well::new(h, top, group, free)?;
     let [before, after] = minima;
-    let wells = [Well::new(h, before, group, free, None)?, Well::new(h, after, group, free, None)?];
-    let unstable = top.unstable.clone().ok_or(Refusal::NoDescendingMode)?;
+    let wells = [Well::new(h, before, group, free)?, Well::new(h, after, group, free)?];
     Ok(Prepared { top, unstable, wells, sliding })
 }
 

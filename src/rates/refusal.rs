@@ -47,9 +47,6 @@ pub enum Refusal {
          made of is not known; a shorter chain, a field or a defect gives the top of the path a shape"
     )]
     FlatMode(f64),
-    /// No descending mode of the saddle was found.
-    #[error("the saddle has no descending mode")]
-    NoDescendingMode,
     /// The descending mode of the saddle was not computed.
     #[error("the saddle has a descending mode that could not be computed")]
     LostMode,

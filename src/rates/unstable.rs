@@ -8,9 +8,8 @@ use crate::stationary::State;
 
 /// Most factorisations of a search.
 const ROUNDS: usize = 30;
-/// A residual of more than so many times the rounding error of a product still falls. Beside a mode of the same eigenvalue, known to
-/// rounding, it ends higher than on its own; the eigenvalue is right to the square of it.
-const ROUGH: f64 = 4096.0;
+/// A residual of more than so many times the rounding error of a product still falls.
+const ROUGH: f64 = 64.0;
 
 /// A negative eigenvalue of the Hessian with its eigenvector.
 #[derive(Clone, Debug)]
@@ -34,7 +33,7 @@ pub fn unstable_mode(saddle: &State, valley: &[f64], zeros: &[Vec<f64>]) -> Opti
 
 /// The eigenvalue (meV) and mode to which Rayleigh-quotient iteration leads from x, apart from the modes `zeros`:
 /// x ← (H − ρ)⁻¹ x, ρ = xᵀHx, of cubic convergence.
-pub(super) fn nearest_mode(saddle: &State, mut x: Vec<f64>, zeros: &[Vec<f64>]) -> Option<(f64, Vec<f64>)> {
+fn nearest_mode(saddle: &State, mut x: Vec<f64>, zeros: &[Vec<f64>]) -> Option<(f64, Vec<f64>)> {
     remove(&mut x, zeros);
     unit(&mut x)?;
     let noise = f64::EPSILON * saddle.hessian.norm1();

@@ -3,6 +3,7 @@
 use super::{Fingerprint, Keep, Share};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use std::ops::Add;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Records the calls of a run in a [`Keep`], or does not.
@@ -145,6 +146,38 @@ pub struct Count {
     pub evaluations: usize,
     /// Hessians.
     pub hessians: usize,
+}
+
+impl Count {
+    /// What came after `before`.
+    pub fn since(self, before: Count) -> Count {
+        Count { evaluations: self.evaluations - before.evaluations, hessians: self.hessians - before.hessians }
+    }
+
+    /// What of an allowance is left after it.
+    pub fn left_of(self, allowed: Count) -> Count {
+        Count {
+            evaluations: allowed.evaluations.saturating_sub(self.evaluations),
+            hessians: allowed.hessians.saturating_sub(self.hessians),
+        }
+    }
+
+    /// Which part of an allowance it is, of that of which it is the larger one; all of one of nothing.
+    pub fn part_of(self, allowed: Count) -> f64 {
+        if allowed.evaluations.min(allowed.hessians) == 0 {
+            return 1.0;
+        }
+        let part = |own: usize, of: usize| own as f64 / of as f64;
+        part(self.evaluations, allowed.evaluations).max(part(self.hessians, allowed.hessians))
+    }
+}
+
+impl Add for Count {
+    type Output = Count;
+
+    fn add(self, other: Count) -> Count {
+        Count { evaluations: self.evaluations + other.evaluations, hessians: self.hessians + other.hessians }
+    }
 }
 
 /// What identifies a call: its input.

@@ -30,6 +30,8 @@ echo "python: $(basename "$wheel"), $size bytes"
 [ "$size" -lt $most ] || { echo "python: the wheel is larger than $most bytes" >&2; exit 1; }
 case $wheel in *-cp310-abi3-*) ;; *) echo "python: the wheel is not for every Python from 3.10 on" >&2; exit 1 ;; esac
 wheels "$work/venv" --no-index --no-deps "$wheel"
+# as pip leaves it for its users
+"$bin/python" -m compileall -q "$work"/venv/lib*/python3*/site-packages/spinneb
 export PYTHONDONTWRITEBYTECODE=1 MPLBACKEND=Agg SPINNEB_BIN="$bin/spinneb"
 "$bin/spinneb" --version
 # outside of the sources: what is tested is what is installed

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import html
 import io
 import json
 import os
@@ -300,6 +298,8 @@ class Result:
         return self._core.html()
 
     def _repr_html_(self) -> str:
+        import html
+
         page = html.escape(self.html(), quote=True)
         return f'<iframe srcdoc="{page}" style="width: 100%; height: 720px; border: 0" sandbox="allow-scripts"></iframe>'
 
@@ -564,6 +564,8 @@ class Landscape:
         return self._table("lifetimes.csv") if "lifetimes.csv" in self.files else []
 
     def _table(self, name: str) -> list[dict[str, Any]]:
+        import csv
+
         rows = csv.DictReader(io.StringIO(self.files[name].decode()))
         return [{key: _number(value) for key, value in row.items()} for row in rows]
 
@@ -586,6 +588,8 @@ class Landscape:
         self._core.save(os.fspath(folder), force)
 
     def _repr_html_(self) -> str:
+        import html
+
         svg = self.files.get("disconnectivity.svg", b"").decode()
         return f"<p>{html.escape(repr(self)[1:-1])}</p>{svg[svg.find('<svg') :] if '<svg' in svg else ''}"
 

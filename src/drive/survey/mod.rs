@@ -234,10 +234,8 @@ impl Run<'_, '_> {
     }
 
     fn left_of_budget(&self, asked: &SurveyProblem, before: Count) -> Count {
-        let h = self.problem.evaluator();
-        let (own, [_, parts]) = (h.evaluated(), share(asked.effort));
+        let (h, [_, parts]) = (self.problem.evaluator(), share(asked.effort));
         let allowed = parts * SPINS / h.sites();
-        let left = |now: usize, before: usize| allowed.saturating_sub(now - before);
-        Count { evaluations: left(own.evaluations, before.evaluations), hessians: left(own.hessians, before.hessians) }
+        h.evaluated().since(before).left_of(Count { evaluations: allowed, hessians: allowed })
     }
 }

@@ -3,8 +3,8 @@
 //!
 //! ```text
 //! x ← ω D⁻¹ b                        what neighbours tell one another
-//! x ← x + P B P^T (b − A x)          the rest, on fewer unknowns: B the same of Pᵀ A P, exact on the last few
-//! x ← x + ω D⁻¹ (b − A x)            ω = 4/3 of the least bound on the eigenvalues of D⁻¹A, inverted
+//! x ← x + P B Pᵀ (b − A x)           the rest, on fewer unknowns: B the same of Pᵀ A P, exact on the last few
+//! x ← x + ω D⁻¹ (b − A x)            ω = 4/3 over a bound on the eigenvalues of D⁻¹A, at most 1
 //! ```
 //! Which unknowns stay and how the others follow from them is told by the entries alone (J. W. Ruge, K. Stüben, "Algebraic multigrid",
 //! SIAM 1987, doi:10.1137/1.9781611971057.ch4), so that boundaries, vacancies, several atoms a cell and disorder need no care. An entry of
@@ -40,8 +40,8 @@ struct Level {
     matrix: Rows,
     /// ω / A_ii.
     damped: Vec<f64>,
-    /// P and Pᵀ, where there is a next.
-    down: Option<[Rows; 2]>,
+    /// Pᵀ and P, where there is a next.
+    down: Option<(Rows, Rows)>,
 }
 
 /// Memory of a solution: right-hand sides, solutions and residuals of every level.
@@ -55,10 +55,10 @@ impl Multigrid {
         let mut next = Some(matrix);
         while let Some(matrix) = next.take() {
             let n = matrix.order();
-            let down = if n > FEW { Some(coarse::interpolation(&matrix)) } else { None };
+            let down = (n > FEW).then(|| coarse::interpolation(&matrix));
             let down = down.filter(|p| p.columns() > 0 && (p.columns() as f64) < GAIN * n as f64);
-            let down = down.map(|p| [p.transposed(), p]).map(|[back, p]| [p, back]);
-            next = down.as_ref().map(|[p, back]| back.product(&matrix).product(p));
+            let down = down.map(|p| (p.transposed(), p));
+            next = down.as_ref().map(|(back, p)| back.product(&matrix).product(p));
             levels.push(Level { damped: damped(&matrix), matrix, down });
         }
         let inverse = levels.last().map(|level| inverse(&level.matrix)).unwrap_or_default();
@@ -91,7 +91,7 @@ impl Multigrid {
         let level = &self.levels[k];
         let ([b, x, rest], below) = room.split_first_mut().expect("a room a level");
         match &level.down {
-            Some([p, back]) => {
+            Some((back, p)) => {
                 first(&level.damped, b, x);
                 residual(&level.matrix, b, x, rest);
                 multiply(back, rest, &mut below[0][0]);

@@ -49,16 +49,20 @@ impl Rows {
 
     /// The entry (i, i).
     pub fn diagonal(&self, i: usize) -> f64 {
-        self.row(i).find(|(j, _)| *j == i).map_or(0.0, |(_, a)| a)
+        self.own(i).map_or(0.0, |place| self.entries[place])
+    }
+
+    /// Where the entry (i, i) lies.
+    fn own(&self, i: usize) -> Option<usize> {
+        let here = self.starts[i] as usize..self.starts[i + 1] as usize;
+        here.clone().zip(&self.at[here]).find(|(_, j)| **j as usize == i).map(|(place, _)| place)
     }
 
     /// The same with `s` added to every entry (i, i), which must be there.
     pub fn shifted(&self, s: f64) -> Rows {
         let mut shifted = self.clone();
         for i in 0..self.order() {
-            let here = self.starts[i] as usize..self.starts[i + 1] as usize;
-            let own = here.clone().zip(&self.at[here]).find(|(_, j)| **j as usize == i);
-            own.into_iter().for_each(|(place, _)| shifted.entries[place] += s);
+            self.own(i).into_iter().for_each(|place| shifted.entries[place] += s);
         }
         shifted
     }

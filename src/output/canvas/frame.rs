@@ -34,6 +34,11 @@ impl Rect {
         x >= self.x0 && x <= self.x1 && y >= self.y0 && y <= self.y1
     }
 
+    /// Whether another one lies outside.
+    pub fn is_apart_from(&self, other: &Rect) -> bool {
+        self.x1 < other.x0 || self.x0 > other.x1 || self.y1 < other.y0 || self.y0 > other.y1
+    }
+
     /// Whether another one lies wholly inside.
     pub fn encloses(&self, other: &Rect) -> bool {
         self.contains((other.x0, other.y0)) && self.contains((other.x1, other.y1))

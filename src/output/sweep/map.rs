@@ -1,8 +1,8 @@
 //! `lifetime_map.svg` and `.png`: the mean first passage from the initial to the final state over the swept key and temperature.
 //!
-//! A cell a point and temperature, coloured by the decimal logarithm of the mean first passage to the final state, with contours at powers of ten, interpolated
-//! over the key and 1/T, in which they are nearly straight. Grey: no time, because the barrier is below k_BT, nothing is proven, or
-//! there is no result. The numbers are those of `lifetimes.csv`.
+//! A cell a point and temperature, coloured by the decimal logarithm of the mean first passage to the final state, with contours at
+//! powers of ten, interpolated over the key and 1/T, in which they are nearly straight. Grey: no time, because the barrier is below
+//! k_BT, nothing is proven, or there is no result. The numbers are those of `lifetimes.csv`.
 
 use super::contours::contour;
 use super::plot::longest;
@@ -137,8 +137,7 @@ impl Map {
             let Some((x, y)) = lines.iter().min_by(|p, q| off(p).total_cmp(&off(q))).map(middle) else { continue };
             let (half, high) = (0.5 * wide + 1.5, 0.5 * SMALL_PT + 0.8);
             let own = Rect { x0: x - half, y0: y - high, x1: x + half, y1: y + high };
-            let apart = |other: &Rect| own.x1 < other.x0 || own.x0 > other.x1 || own.y1 < other.y0 || own.y0 > other.y1;
-            if frame.rect.encloses(&own) && labels.iter().all(|(other, _)| apart(other)) {
+            if frame.rect.encloses(&own) && labels.iter().all(|(other, _)| own.is_apart_from(other)) {
                 labels.push((own, name));
             }
         }
