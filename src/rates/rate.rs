@@ -294,7 +294,7 @@ impl Well {
         };
         let steps = free.unwrap_or(&[]);
         let count = if sliding.slides() { places(group, &state.m, steps) } else { 1 };
-        let zeros = zero_modes(&h, &state, &sliding.with_places(count), steps, spectrum)
+        let zeros = zero_modes(&h, &state, &sliding.with_places(count), spectrum)
             .map_err(|unknown| Refusal::Volume(name, unknown))?;
         let directions: Vec<Vec<f64>> = zeros.iter().flat_map(|z| z.modes.clone()).collect();
         let pinned = PinnedHessian::new(&state.hessian, &directions, unstable.as_ref(), h.stiffness_mev() / 3.0);
@@ -341,8 +341,8 @@ fn prepared(h: Evaluator, crossing: &Crossing, settings: &RateSettings) -> Resul
         return Err(reason);
     }
     let (group, hottest) = (crossing.group, settings.temperatures_k.iter().copied().fold(0.0, f64::max));
-    let place = |state: State, unstable: Option<Unstable>, spectrum, name| {
-        let sliding = Sliding::of(&h, &state, unstable.as_ref(), group, hottest);
+    let place = |state: State, unstable: Option<Unstable>, spectrum, name, free: &[bool]| {
+        let sliding = Sliding::of(h, &state, unstable.as_ref(), group, free, hottest);
         Ok(Place {
             sliding: sliding.map_err(|unknown| Refusal::Volume(name, unknown))?,
             state,
@@ -352,18 +352,28 @@ fn prepared(h: Evaluator, crossing: &Crossing, settings: &RateSettings) -> Resul
         })
     };
     let unstable = unstable_mode(crossing.saddle, crossing.valley, &crossing.saddle.zeros).ok_or(Refusal::LostMode)?;
-    let top = place(crossing.saddle.clone(), Some(unstable.clone()), crossing.spectrum, "the saddle")?;
-    let minimum = |side: usize| {
+    let minimum = |side: usize, free: &[bool]| {
         let (state, spectrum) =
             (State::at(h, crossing.minima[side].as_slice().to_vec()), crossing.minima_spectra[side]);
         if let Some(reason) = no_minimum(spectrum, state.max_torque_mev(), ["before", "after"][side]) {
             return Err(reason);
         }
-        place(state, None, spectrum, ["the minimum before it", "the minimum after it"][side])
+        place(state, None, spectrum, ["the minimum before it", "the minimum after it"][side], free)
     };
-    let minima = [minimum(0)?, minimum(1)?];
+    let mut free = vec![true; group.shifts().len()];
+    let (minima, steps) = loop {
+        let minima = [minimum(0, &free)?, minimum(1, &free)?];
+        let slide = minima.each_ref().map(|minimum| minimum.sliding.slides());
+        let steps = free_shifts(group, crossing.minima.map(|m| m.as_slice()), slide);
+        // a shift that does not keep both leads to a saddle between other minima
+        let keep: Vec<bool> = steps.iter().zip(&free).map(|(steps, free)| *free && *steps == 1).collect();
+        if keep == free {
+            break (minima, steps);
+        }
+        free = keep;
+    };
+    let top = place(crossing.saddle.clone(), Some(unstable.clone()), crossing.spectrum, "the saddle", &free)?;
     let sliding = [top.sliding.slides(), minima[0].sliding.slides(), minima[1].sliding.slides()];
-    let steps = free_shifts(group, crossing.minima.map(|m| m.as_slice()), [sliding[1], sliding[2]]);
     let free = Some(&steps[..]).filter(|_| sliding.contains(&true));
     let top = Well::new(h, top, group, free)?;
     let [before, after] = minima;

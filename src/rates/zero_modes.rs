@@ -51,13 +51,12 @@ pub struct ZeroMode {
     pub said: ZeroModes,
 }
 
-/// All zero modes of a stationary state: rotations, and how it slides, of whose shifts `steps` are free. An error, in words, where
+/// All zero modes of a stationary state: rotations, and how it slides. An error, in words, where
 /// more modes are flat to rounding than these, so that nobody knows their volume.
 pub fn zero_modes(
     h: &Hamiltonian,
     state: &State,
     sliding: &Sliding,
-    steps: &[usize],
     spectrum: &Spectrum,
 ) -> Result<Vec<ZeroMode>, UnknownModes> {
     let mut found = Vec::new();
@@ -72,7 +71,7 @@ pub fn zero_modes(
         found.push(ZeroMode { modes: state.zeros.clone(), said });
     }
     let flat = sliding.flat(spectrum.floor_mev);
-    found.extend(sliding.zero_modes(steps));
+    found.extend(sliding.zero_modes());
     match spectrum.flat.saturating_sub(flat) {
         0 => Ok(found),
         modes => Err(UnknownModes::Flat { modes, floor_mev: spectrum.floor_mev }),

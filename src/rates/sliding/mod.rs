@@ -18,15 +18,17 @@
 //! the same. Volumes of skyrmions by a hop: P. F. Bessarab et al., Sci. Rep. 8, 3433 (2018), doi:10.1038/s41598-018-21623-3; the
 //! integral over a cosine: K. S. Pitzer, W. D. Gwinn, J. Chem. Phys. 10, 428 (1942), doi:10.1063/1.1723744.
 //!
-//! A valley is integrated so where its U is below the largest k_BT of interest, and where the hop to the next place goes on from the
-//! hop from the one before: a state as narrow as a spin or two jumps, and each of its places is a state. Which shifts are free: all
-//! that keep each minimum beside the saddle that does not itself slide.
+//! A valley is integrated so where its U is below the largest k_BT of interest. So must be the top between two places, which is higher
+//! than U where a state is narrow: the energy half-way along the hop, after a step of Newton normal to it. And the hop to the next
+//! place must go on from the hop from the one before: a state as narrow as a spin or two jumps, and each of its places is a state.
+//! Nor does a state slide along a way that is mostly its descent or a turn. Which shifts are free: those that keep each minimum beside the
+//! saddle that does not itself slide; the others lead to a saddle between other minima.
 
 mod moves;
 mod valleys;
 
 use super::{UnknownModes, Unstable, ZeroKind, ZeroMode, ZeroModes};
-use crate::energy::Hamiltonian;
+use crate::energy::{Evaluator, Hamiltonian};
 use crate::linalg::{eigen_symmetric, orthonormal, remove, slab};
 use crate::stationary::State;
 use crate::symmetry::Group;
@@ -53,22 +55,23 @@ pub struct Sliding {
 }
 
 impl Sliding {
-    /// Of a state with its descending mode, at temperatures up to `hottest_k` (K). An error where it slides freely and nobody knows
-    /// how far.
+    /// Of a state with its descending mode, at temperatures up to `hottest_k` (K), along those of the group's shifts that are free.
+    /// An error where it slides freely and nobody knows how far.
     pub fn of(
-        h: &Hamiltonian,
+        h: Evaluator,
         state: &State,
         unstable: Option<&Unstable>,
         group: &Group,
+        free: &[bool],
         hottest_k: f64,
     ) -> Result<Sliding, UnknownModes> {
         let held = Held::new(state, unstable, h.stiffness_mev() / 3.0);
         let roomy = (0..3).filter(|d| h.lattice().grid.size[*d] >= FEWEST);
-        let (free, other): (Vec<usize>, Vec<usize>) = roomy.partition(|d| moves::shift_along(group, *d).is_some());
-        for d in other.into_iter().filter(|_| !h.lattice().is_row()) {
-            wanders(h, &held, d, hottest_k)?;
+        let (along, across): (Vec<usize>, Vec<usize>) = roomy.partition(|d| moves::shift_along(group, *d).is_some());
+        for d in across.into_iter().filter(|_| !h.lattice().is_row()) {
+            wanders(&h, &held, d, hottest_k)?;
         }
-        let mut moves = Moves::of(h.lattice(), &held, group, &free);
+        let mut moves = Moves::of(h, &held, group, &along, free, K_B * hottest_k);
         let mut valleys = held.valleys(&orthonormal(moves.derivatives.clone(), 0.0));
         let span: Vec<Vec<f64>> = valleys.iter().map(|w| w.along.clone()).collect();
         for v in &mut moves.derivatives {
@@ -102,12 +105,12 @@ impl Sliding {
         Sliding { places, ..self }
     }
 
-    /// Its zero modes, where so many times each shift is free.
-    pub fn zero_modes(&self, steps: &[usize]) -> Option<ZeroMode> {
+    /// Its zero modes.
+    pub fn zero_modes(&self) -> Option<ZeroMode> {
         if !self.slides() {
             return None;
         }
-        let volume = |moves: &[Vec<f64>]| self.places as f64 * self.between(moves, steps);
+        let volume = |moves: &[Vec<f64>]| self.places as f64 * self.between(moves);
         let said = ZeroModes {
             kind: ZeroKind::Translation,
             count: self.valleys.len(),
@@ -119,15 +122,9 @@ impl Sliding {
     }
 
     /// The volume from a place to the next: of all ways, or, where some of them are not soft, along the valleys that are.
-    fn between(&self, moves: &[Vec<f64>], steps: &[usize]) -> f64 {
-        let scaled = |(v, k): (&Vec<f64>, &usize)| {
-            let mut v = v.clone();
-            slab::scale(&mut v, steps[*k] as f64);
-            v
-        };
-        let moves: Vec<Vec<f64>> = moves.iter().zip(&self.moves.shifts).map(scaled).collect();
+    fn between(&self, moves: &[Vec<f64>]) -> f64 {
         if self.valleys.len() < moves.len() {
-            return self.valleys.iter().map(|w| moves::longest(&moves, &w.along)).product();
+            return self.valleys.iter().map(|w| moves::longest(moves, &w.along)).product();
         }
         let gram: Vec<f64> = moves.iter().flat_map(|a| moves.iter().map(|b| slab::dot(a, b))).collect();
         let (values, _) = eigen_symmetric(&gram, moves.len());

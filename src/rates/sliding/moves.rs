@@ -1,6 +1,7 @@
 //! What shifts do to a state.
 
 use super::valleys::Held;
+use crate::energy::Evaluator;
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{log, vector};
 use crate::lattice::Lattice;
@@ -13,8 +14,6 @@ const OWN: f64 = 1e-3;
 /// The ways in which shifts of a group move a state, each by something of its own; tangent coordinates (2N).
 #[derive(Debug, Default)]
 pub(super) struct Moves {
-    /// Which of the group's shifts.
-    pub shifts: Vec<usize>,
     /// ∂m/∂x by a shift each.
     pub derivatives: Vec<Vec<f64>>,
     /// Log_m(T m).
@@ -22,13 +21,21 @@ pub(super) struct Moves {
 }
 
 impl Moves {
-    /// Along these directions of a lattice.
-    pub fn of(lattice: &Lattice, held: &Held, group: &Group, directions: &[usize]) -> Moves {
-        let mut found = Moves::default();
+    /// Along these directions of the lattice, by shifts that are free, where a k_BT (meV) lifts the state over the top between its places.
+    pub fn of(
+        h: Evaluator,
+        held: &Held,
+        group: &Group,
+        directions: &[usize],
+        free: &[bool],
+        thermal_mev: f64,
+    ) -> Moves {
+        let (lattice, mut found) = (h.lattice(), Moves::default());
         for &d in directions {
-            let Some((k, shift)) = shift_along(group, d) else { continue };
+            let Some((_, shift)) = shift_along(group, d).filter(|(k, _)| free[*k]) else { continue };
             let m = &held.state.m;
             let moved = held.tangent(&derivative(lattice, m, d)).zip(goes_on(shift, m).then(|| hop(shift, m)));
+            let moved = moved.filter(|(_, hop)| held.top_between_mev(h, hop).is_some_and(|top| top < thermal_mev));
             let Some((mut derivative, hop)) = moved.and_then(|(v, hop)| Some((v, held.tangent(&hop)?))) else {
                 continue;
             };
@@ -39,7 +46,6 @@ impl Moves {
             }
             let cells = shift.motion.shifts_by().map_or(1, |by| by[d]);
             slab::scale(&mut derivative, cells as f64);
-            found.shifts.push(k);
             found.derivatives.push(derivative);
             found.hops.push(hop);
         }

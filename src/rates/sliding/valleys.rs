@@ -2,6 +2,9 @@
 
 use super::super::Unstable;
 use super::super::bordered::Bordered;
+use crate::energy::Evaluator;
+use crate::field::{Components, ComponentsMut};
+use crate::geometry::log;
 use crate::linalg::{combination, eigen_symmetric, orthonormal, remove, slab};
 use crate::stationary::{Pin, State, pin};
 
@@ -32,13 +35,35 @@ impl<'a> Held<'a> {
         Held { state, against, kappa }
     }
 
-    /// A field (3N) in tangent coordinates (2N), but for what the state is held against; nothing where that is no motion.
+    /// A field (3N) in tangent coordinates (2N), but for what the state is held against; nothing where that is no motion, or is most of
+    /// it.
     pub fn tangent(&self, field: &[f64]) -> Option<Vec<f64>> {
         let mut along = self.state.basis.coordinates(field);
         let whole = slab::norm(&along);
         remove(&mut along, &self.against);
         let size = slab::norm(&along);
-        (size > 1e-3 * whole && size > 1e-6).then_some(along)
+        (size * size > 0.5 * whole * whole && size > 1e-6).then_some(along)
+    }
+
+    /// How much higher (meV) the state is half-way along a hop (3N), at rest by a step of Newton but for the hop and what it is held
+    /// against.
+    pub fn top_between_mev(&self, h: Evaluator, hop: &[f64]) -> Option<f64> {
+        let half: Vec<f64> = hop.iter().map(|x| 0.5 * x).collect();
+        let between = State::at(h, self.state.moved(&half));
+        let (from, to) = (Components::new(&self.state.m), Components::new(&between.m));
+        let mut ahead = vec![0.0; hop.len()];
+        (0..to.sites()).for_each(|i| ComponentsMut::new(&mut ahead).set(i, log(to.get(i), from.get(i))));
+        let held =
+            self.against[self.state.zeros.len()..].iter().map(|t| between.basis.coordinates(&self.state.field(t)));
+        let own = std::iter::once(between.basis.coordinates(&ahead)).chain(held);
+        let directions = orthonormal(between.zeros.iter().cloned().chain(own).collect(), 0.0);
+        let mut matrix = between.hessian.clone();
+        let mut used = Vec::new();
+        let pins: Vec<Pin> = directions.iter().map(|z| pin(&mut matrix, z, &mut used, self.kappa)).collect();
+        let factors = matrix.factor();
+        let bordered = Bordered::new(&factors, directions.iter().collect(), &pins, self.kappa);
+        let fall = bordered.fall_mev(&between.basis.coordinates(&between.gradient))?;
+        Some(h.difference_mev(&between.m, &self.state.m) - fall)
     }
 
     /// The valleys along a space of orthonormal directions, the softest first.
