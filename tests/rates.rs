@@ -426,6 +426,10 @@ fn a_skyrmion_that_slides_over_its_film_agrees_with_dense_eigenvalues_and_the_vo
         // ε ℓ²/2π² along one direction and the other, which symmetry makes the same
         let both = zeros.pinning_mev.iter().product::<f64>();
         assert!((both / (determinant(slid.stiffness_mev) / (2.0 * PI * PI).powi(2)) - 1.0).abs() < 1e-8, "{zeros:?}");
+        if zeros == &forward.minimum_zeros[0] {
+            let soft = state.values.iter().copied().fold(f64::INFINITY, f64::min);
+            assert!((zeros.pinning_mev[0] / (soft * slid.gram[0] / (2.0 * PI * PI)) - 1.0).abs() < 0.05, "{zeros:?}");
+        }
         let free: f64 = zeros.pinning_mev.iter().map(held).product::<f64>() * cell / (2.0 * PI * thermal);
         free * (-0.5 * slid.log_determinant).exp()
     };
@@ -455,6 +459,25 @@ fn a_skyrmion_that_slides_over_its_film_agrees_with_dense_eigenvalues_and_the_vo
     // cold enough, a minimum is one place
     let cold = solve(&film(&lattice, energy, [skyrmion, UP], 1e-4));
     assert!(rate(&cold, Way::Forward).minimum_zeros.is_empty() && rate(&cold, Way::Forward).htst.is_some());
+}
+
+#[test]
+fn saddles_of_walls_that_hop_do_not_slide_though_the_ring_repeats_and_k_bt_is_above_their_pinning() {
+    let down = |from: usize, to: usize| {
+        let up = |i: usize| [0.0, 0.0, if (from..to).contains(&i) { -1.0 } else { 1.0 }];
+        Spins::from_vectors(&(0..10).map(up).collect::<Vec<_>>()).expect("unit vectors")
+    };
+    let ring = || {
+        let mut ring = Build::ring(10);
+        ring.terms[0] = Box::new(Exchange::uniform(&ring.lattice, &[2.0]));
+        ring.easy(1.5).hard(0.3)
+    };
+    for to in [5, 6] {
+        let outcome = solve(&with(ring().problem(down(2, to), down(2, to + 1)), settings(10, 2.0, 0.1, 12.0)));
+        for r in outcome.rates.expect("rates").saddles {
+            assert!(r.htst.is_some() && r.saddle_zeros.is_empty() && r.minimum_zeros.is_empty(), "{to}: {r:?}");
+        }
+    }
 }
 
 #[test]

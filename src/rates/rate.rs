@@ -367,10 +367,11 @@ fn prepared(h: Evaluator, crossing: &Crossing, settings: &RateSettings) -> Resul
         let steps = free_shifts(group, crossing.minima.map(|m| m.as_slice()), slide);
         // a shift that does not keep both leads to a saddle between other minima
         let keep: Vec<bool> = steps.iter().zip(&free).map(|(steps, free)| *free && *steps == 1).collect();
-        if keep == free {
+        let settled = keep == free || !slide.contains(&true);
+        free = keep;
+        if settled {
             break (minima, steps);
         }
-        free = keep;
     };
     let top = place(crossing.saddle.clone(), Some(unstable.clone()), crossing.spectrum, "the saddle", &free)?;
     let sliding = [top.sliding.slides(), minima[0].sliding.slides(), minima[1].sliding.slides()];

@@ -43,7 +43,7 @@ const FEWEST: usize = 7;
 const ROOM: f64 = 0.25;
 
 /// How a stationary state slides.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Sliding {
     /// The soft ones.
     valleys: Vec<Valley>,
@@ -139,7 +139,7 @@ fn wanders(h: &Hamiltonian, held: &Held, direction: usize, hottest_k: f64) -> Re
     for valley in held.valleys(&orthonormal(vec![v.clone()], 0.0)) {
         let by = slab::dot(&v, &valley.along);
         let cells = (K_B * hottest_k / valley.stiffness_mev.max(f64::MIN_POSITIVE)).sqrt() / by.abs();
-        // a way that is anything but a translation is as long as it is
+        // what is mostly something else may be soft: it moves the state nowhere
         let is_translation = by * by > 0.5 * slab::dot(&v, &v);
         if is_translation && cells > ROOM * h.lattice().grid.size[direction] as f64 {
             return Err(UnknownModes::Wanders { cells, kelvin: hottest_k });

@@ -8,7 +8,7 @@ use crate::lattice::Lattice;
 use crate::linalg::{orthonormal, remove, slab};
 use crate::symmetry::{Group, Operation};
 
-/// A move of which less than this part is its own is none beside the others, and where the state moves by so little (rad), it is none.
+/// A move of which less than this part is its own is none beside the others.
 const OWN: f64 = 1e-3;
 
 /// The ways in which shifts of a group move a state, each by something of its own; tangent coordinates (2N).
@@ -34,11 +34,10 @@ impl Moves {
         for &d in directions {
             let Some((_, shift)) = shift_along(group, d).filter(|(k, _)| free[*k]) else { continue };
             let m = &held.state.m;
-            let moved = held.tangent(&derivative(lattice, m, d)).zip(goes_on(shift, m).then(|| hop(shift, m)));
-            let moved = moved.filter(|(_, hop)| held.top_between_mev(h, hop).is_some_and(|top| top < thermal_mev));
-            let Some((mut derivative, hop)) = moved.and_then(|(v, hop)| Some((v, held.tangent(&hop)?))) else {
-                continue;
-            };
+            let Some(mut derivative) = held.tangent(&derivative(lattice, m, d)) else { continue };
+            let hop = towards(m, &shift.apply(m));
+            let goes = goes_on(shift, m, &hop) && held.top_between_mev(h, &hop).is_some_and(|top| top < thermal_mev);
+            let Some(hop) = held.tangent(&hop).filter(|_| goes) else { continue };
             let mut own = derivative.clone();
             remove(&mut own, &orthonormal(found.derivatives.clone(), 0.0));
             if slab::norm(&own) < OWN * slab::norm(&derivative) {
@@ -64,17 +63,16 @@ pub(super) fn longest(moves: &[Vec<f64>], along: &[f64]) -> f64 {
     moves.iter().map(|v| slab::dot(v, along).abs()).fold(0.0, f64::max)
 }
 
-/// The geodesic from a state to the next place (3N), spin by spin.
-fn hop(shift: &Operation, m: &[f64]) -> Vec<f64> {
-    let (a, mut field) = (Components::new(m), vec![0.0; m.len()]);
-    (0..a.sites()).for_each(|i| ComponentsMut::new(&mut field).set(i, log(a.get(i), shift.at(a, i))));
+/// The geodesic from a state to another (3N), spin by spin.
+pub(super) fn towards(from: &[f64], to: &[f64]) -> Vec<f64> {
+    let (a, b, mut field) = (Components::new(from), Components::new(to), vec![0.0; from.len()]);
+    (0..a.sites()).for_each(|i| ComponentsMut::new(&mut field).set(i, log(a.get(i), b.get(i))));
     field
 }
 
-/// Whether a state goes on to the next place in the direction in which it came from the one before.
-fn goes_on(shift: &Operation, m: &[f64]) -> bool {
-    let (a, ahead) = (Components::new(m), hop(shift, m));
-    let ahead = Components::new(&ahead);
+/// Whether a state goes on by this hop to the next place in the direction in which it came from the one before.
+fn goes_on(shift: &Operation, m: &[f64], hop: &[f64]) -> bool {
+    let (a, ahead) = (Components::new(m), Components::new(hop));
     let back = |i: usize| vector::dot(ahead.get(shift.source(i)), log(a.get(shift.source(i)), a.get(i)));
     (0..a.sites()).map(back).sum::<f64>() < 0.0
 }

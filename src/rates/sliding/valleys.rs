@@ -2,10 +2,9 @@
 
 use super::super::Unstable;
 use super::super::bordered::Bordered;
+use super::moves::towards;
 use crate::energy::Evaluator;
-use crate::field::{Components, ComponentsMut};
-use crate::geometry::log;
-use crate::linalg::{combination, eigen_symmetric, orthonormal, remove, slab};
+use crate::linalg::{Factors, Matrix, combination, eigen_symmetric, orthonormal, remove, slab};
 use crate::stationary::{Pin, State, pin};
 
 /// The way that a state takes when it is moved.
@@ -49,21 +48,23 @@ impl<'a> Held<'a> {
     /// against.
     pub fn top_between_mev(&self, h: Evaluator, hop: &[f64]) -> Option<f64> {
         let half: Vec<f64> = hop.iter().map(|x| 0.5 * x).collect();
-        let between = State::at(h, self.state.moved(&half));
-        let (from, to) = (Components::new(&self.state.m), Components::new(&between.m));
-        let mut ahead = vec![0.0; hop.len()];
-        (0..to.sites()).for_each(|i| ComponentsMut::new(&mut ahead).set(i, log(to.get(i), from.get(i))));
+        let State { point: between, hessian } = State::at(h, self.state.moved(&half));
+        let back = towards(&between.m, &self.state.m);
         let held =
             self.against[self.state.zeros.len()..].iter().map(|t| between.basis.coordinates(&self.state.field(t)));
-        let own = std::iter::once(between.basis.coordinates(&ahead)).chain(held);
+        let own = std::iter::once(between.basis.coordinates(&back)).chain(held);
         let directions = orthonormal(between.zeros.iter().cloned().chain(own).collect(), 0.0);
-        let mut matrix = between.hessian.clone();
-        let mut used = Vec::new();
-        let pins: Vec<Pin> = directions.iter().map(|z| pin(&mut matrix, z, &mut used, self.kappa)).collect();
-        let factors = matrix.factor();
+        let (factors, pins) = self.pinned(hessian, directions.iter());
         let bordered = Bordered::new(&factors, directions.iter().collect(), &pins, self.kappa);
         let fall = bordered.fall_mev(&between.basis.coordinates(&between.gradient))?;
         Some(h.difference_mev(&between.m, &self.state.m) - fall)
+    }
+
+    /// The factors of a Hessian with a pin for each of some directions.
+    fn pinned<'b>(&self, mut hessian: Matrix, directions: impl Iterator<Item = &'b Vec<f64>>) -> (Factors, Vec<Pin>) {
+        let mut used = Vec::new();
+        let pins = directions.map(|z| pin(&mut hessian, z, &mut used, self.kappa)).collect();
+        (hessian.factor(), pins)
     }
 
     /// The valleys along a space of orthonormal directions, the softest first.
@@ -71,10 +72,8 @@ impl<'a> Held<'a> {
         if span.is_empty() {
             return Vec::new();
         }
-        let mut matrix = self.state.hessian.clone();
-        let (zeros, mut used) = (&self.state.zeros, Vec::new());
-        let pins: Vec<Pin> = zeros.iter().chain(span).map(|z| pin(&mut matrix, z, &mut used, self.kappa)).collect();
-        let factors = matrix.factor();
+        let zeros = &self.state.zeros;
+        let (factors, pins) = self.pinned(self.state.hessian.clone(), zeros.iter().chain(span));
         let along = |space: &[Vec<f64>]| -> Vec<(Vec<f64>, Vec<f64>)> {
             let bordered = Bordered::new(&factors, zeros.iter().chain(space).collect(), &pins, self.kappa);
             (zeros.len()..pins.len()).filter_map(|k| bordered.valley(k)).collect()
