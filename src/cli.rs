@@ -258,8 +258,8 @@ pub(crate) struct Check {
 /// The arguments of `rate`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-The path is found anew from the result's config.json, since a result does not hold its saddles to all digits; the files of
-the result are written again, with its rates.
+The saddles and minima are those of the result's path.npz, saddle.ovf and minima.ovf; where these are not there, or the result is
+not certified, the path is found anew from its config.json. The files of the result are written again, with its rates.
 
 Examples:
   spinneb rate results/wall --temperature \"300 K\"
