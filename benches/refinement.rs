@@ -1,9 +1,8 @@
 //! What a barrier costs on ever finer lattices: K = 0.05 (50/N)² J, the same wall on N spins, nucleated at an end of the chain.
 //!
 //! `cargo bench --bench refinement` runs N = 50 … 102,400; `cargo bench --bench refinement -- 1000000` the sizes that are
-//! given. Everything is a default but the guess (a wall enters from the left; where
-//! one is named, no lower pass is looked for) and the number of images (17). Band
-//! evaluations count all levels; solves are the factorisations of the saddle's refinement; the error is against a Newton's
+//! given. Everything is a default but the guess (a wall enters from the left; where one is named, no lower pass is looked for) and
+//! the number of images (17). Band evaluations count all levels; solves are the factorisations of the saddle's refinement; the error is against a Newton's
 //! method of this file, in one angle a spin, that shares nothing with the library.
 //! Times are those of the quickest of up to 99 runs, on one thread and on all cores, taken in three rounds over all sizes, so that
 //! a busy spell of the machine does not meet one size alone.
