@@ -1,6 +1,7 @@
 //! The book in `docs/` tells the truth: its commands, configs, tables, keys, numbers and links are those of the program.
 
-use crate::pages::{Page, quoted, root, run, spinneb as program};
+use crate::common::shipped;
+use crate::pages::{Page, quoted, root, run};
 use serde_json::Value;
 use spinneb::output::canvas::{Colour, diverging};
 use std::collections::{BTreeMap, BTreeSet};
@@ -67,21 +68,9 @@ fn the_table_of_configs_has_every_shipped_config_and_its_barriers() {
         assert!(row[2].len() > 60, "{name}: a purpose is a paragraph");
         listed.insert(name, row[1].clone());
     }
-    let files = fs::read_dir(root().join("configs")).unwrap().map(|e| e.unwrap().path());
-    let shipped: BTreeSet<String> = files
-        .filter(|path| path.extension().is_some_and(|e| e == "json"))
-        .map(|path| path.file_stem().unwrap().to_str().unwrap().to_string())
-        .collect();
-    assert_eq!(listed.keys().cloned().collect::<BTreeSet<_>>(), shipped);
-    let temporary = tempfile::tempdir().unwrap();
+    assert_eq!(listed.keys().cloned().collect::<BTreeSet<_>>(), shipped::names());
     for (name, stated) in listed {
-        let out = temporary.path().join(&name);
-        let config = root().join("configs").join(format!("{name}.json"));
-        let (config, folder) = (config.to_str().unwrap(), out.to_str().unwrap());
-        let (code, said) = program(&["run", config, "--out", folder, "--set", "output.plots=[]"]);
-        assert_eq!(code, Some(0), "{said}");
-        let barrier = &json(&out.join("summary.json"))["barrier_meV"];
-        let [forward, backward] = ["forward", "backward"].map(|way| barrier[way].as_f64().unwrap());
+        let (forward, backward) = shipped::shipped(&name).barriers();
         assert_eq!(stated, format!("{forward:.6} / {backward:.6}"), "{name}");
     }
 }

@@ -1,5 +1,6 @@
 //! The shipped configs run and give the barriers they are known for; the bad ones are refused in the words beside them.
 
+use crate::common::shipped::shipped;
 use serde_json::Value;
 use spinneb::config::estimate::Estimate;
 use spinneb::config::load;
@@ -44,30 +45,15 @@ fn names(folder: &Path, ending: &str) -> BTreeSet<String> {
     entries.filter_map(|name| name.strip_suffix(ending).map(String::from)).collect()
 }
 
-/// Runs a shipped config; its line of JSON.
-fn shipped(name: &str) -> Value {
-    let out = tempfile::tempdir().unwrap();
-    let config = format!("configs/{name}.json");
-    let done = spinneb(&root(), &["run", &config, "--out", out.path().to_str().unwrap(), "--json", "--quiet"]);
-    let said = String::from_utf8_lossy(&done.stderr).into_owned();
-    assert_eq!(done.status.code(), Some(0), "{name}: {said}");
-    assert_eq!(said, "", "{name}: --quiet");
-    let files = ["summary.json", "config.json", "path.csv", "profile.csv", "history.csv"];
-    for file in files.iter().chain(&["energy_path.svg", "energy_path.png", "spins.svg", "spins.png"]) {
-        assert!(out.path().join(file).metadata().is_ok_and(|m| m.len() > 0), "{name}: {file}");
-    }
-    serde_json::from_slice(&done.stdout).unwrap()
-}
-
-fn barriers(line: &Value) -> (f64, f64) {
-    let number = |way: &str| line["barrier_meV"][way].as_f64().unwrap();
-    (number("forward"), number("backward"))
-}
-
 #[test]
 fn shipped_configs_give_the_barriers_they_are_known_for() {
     for &(name, forward, backward, tolerance) in SHIPPED {
-        let found = barriers(&shipped(name));
+        let run = shipped(name);
+        let files = ["summary.json", "config.json", "path.csv", "profile.csv", "history.csv"];
+        for file in files.iter().chain(&["energy_path.svg", "energy_path.png", "spins.svg", "spins.png"]) {
+            assert!(run.files.get(*file).is_some_and(|bytes| !bytes.is_empty()), "{name}: {file}");
+        }
+        let found = run.barriers();
         for (found, known) in [(found.0, forward), (found.1, backward)] {
             assert!((found - known).abs() <= tolerance * known, "{name}: {found} instead of {known}");
         }
@@ -83,7 +69,7 @@ fn a_nucleus_on_a_ring_has_the_barrier_of_the_continuum_but_for_a_thousandth() {
     let forward = 4.0 * (2.0 * j * k).sqrt() * (tanh - tanh.atanh() * h);
     // The two uniform states differ by 2 μB a site, 4 K h.
     let backward = forward + 200.0 * 4.0 * k * h;
-    let found = barriers(&shipped("ring_nucleus"));
+    let found = shipped("ring_nucleus").barriers();
     assert!((found.0 - forward).abs() < 1e-3 * forward, "{found:?}, {forward}");
     assert!((found.1 - backward).abs() < 1e-3 * forward, "{found:?}, {backward}");
 }
@@ -93,14 +79,14 @@ fn a_wall_in_a_nanowire_leaves_its_pinning_region_over_less_than_the_region_s_de
     // Wall energy 4 S √(A K); the region lowers it by no more than the factor √(0.4/0.6); the field helps.
     let wall = 4.0 * 20e-18 * (15e-12f64 * 0.6e6).sqrt() / 1.602176634e-22;
     let depth = wall * (1.0 - (0.4f64 / 0.6).sqrt());
-    let (forward, backward) = barriers(&shipped("nanowire_pinning"));
+    let (forward, backward) = shipped("nanowire_pinning").barriers();
     assert!(0.4 * depth < forward && forward < depth, "{forward}, {depth}");
     assert!(backward > forward);
 }
 
 #[test]
 fn a_permalloy_wire_is_reversed_by_a_wall_that_enters_at_one_end() {
-    let (forward, backward) = barriers(&shipped("permalloy_wire"));
+    let (forward, backward) = shipped("permalloy_wire").barriers();
     assert!((forward - backward).abs() < 1e-9 * forward);
     // cells of 1.25 nm give 3318.6 meV, a change a quarter of that from cells of 5 nm (3340.0 meV) to these
     assert!((forward - 3323.44).abs() < 0.01, "{forward}");
@@ -108,7 +94,7 @@ fn a_permalloy_wire_is_reversed_by_a_wall_that_enters_at_one_end() {
 
 #[test]
 fn a_wall_in_a_permalloy_wire_is_moved_past_a_shallow_notch_from_one_deep_one_to_another() {
-    let (forward, backward) = barriers(&shipped("permalloy_notch"));
+    let (forward, backward) = shipped("permalloy_notch").barriers();
     // the two deep notches are alike but for the halves of the shallow one between them
     assert!((forward - backward).abs() < 0.01 * forward, "{forward} {backward}");
     // of the 3.3 eV of a wall in the wide wire, less than the share of the section that a deep notch lacks, 40 %
@@ -117,13 +103,10 @@ fn a_wall_in_a_permalloy_wire_is_moved_past_a_shallow_notch_from_one_deep_one_to
 
 #[test]
 fn a_skyrmion_leaves_over_an_edge_and_its_collapse_in_the_same_film_is_told_too() {
-    let out = tempfile::tempdir().unwrap();
-    let config = "configs/skyrmion_escape.json";
-    let done = spinneb(&root(), &["run", config, "--out", out.path().to_str().unwrap(), "--json", "--quiet"]);
-    assert_eq!(done.status.code(), Some(0), "{}", String::from_utf8_lossy(&done.stderr));
-    let (forward, backward) = barriers(&serde_json::from_slice(&done.stdout).unwrap());
+    let run = shipped("skyrmion_escape");
+    let (forward, backward) = run.barriers();
     assert!((forward - 35.35091176887428).abs() < 1e-8 && (backward - 33.57829023058889).abs() < 1e-8, "{forward}");
-    let summary: Value = serde_json::from_slice(&fs::read(out.path().join("summary.json")).unwrap()).unwrap();
+    let summary = run.summary();
     let others = summary["rejected_paths"].as_array().unwrap();
     let collapse = others.iter().find(|p| p["guess"].as_str().unwrap().starts_with("shrink")).unwrap();
     assert!((collapse["barrier_meV"].as_f64().unwrap() - 50.06544395590881).abs() < 1e-8, "{collapse}");
@@ -133,22 +116,19 @@ fn a_skyrmion_leaves_over_an_edge_and_its_collapse_in_the_same_film_is_told_too(
 #[test]
 fn a_skyrmion_of_nine_shells_vanishes_over_a_barrier_of_a_hundred_and_forty_mev() {
     // 138.107 meV in a film of 32 × 32, where its images by the boundaries are further away
-    let (forward, backward) = barriers(&shipped("pd_fe_ir111_skyrmion"));
+    let (forward, backward) = shipped("pd_fe_ir111_skyrmion").barriers();
     assert!((forward - 140.24947101955644).abs() < 1e-7, "{forward}");
     assert!((backward - 175.4810149227455).abs() < 1e-7, "{backward}");
 }
 
 #[test]
 fn an_island_of_atoms_is_reversed_by_a_wall_with_rates_of_harmonic_modes() {
-    let out = tempfile::tempdir().unwrap();
-    let config = "configs/island_reversal.json";
-    let done = spinneb(&root(), &["run", config, "--out", out.path().to_str().unwrap(), "--json"]);
-    assert_eq!(done.status.code(), Some(0), "{}", String::from_utf8_lossy(&done.stderr));
-    let (forward, backward) = barriers(&serde_json::from_slice(&done.stdout).unwrap());
+    let run = shipped("island_reversal");
+    let (forward, backward) = run.barriers();
     assert!((forward - 39.78602507820903).abs() < 1e-8 && (forward - backward).abs() < 1e-9, "{forward}");
     // all 124 atoms together: 124 K
     assert!(forward < 0.6 * 124.0 * 0.6);
-    let summary: Value = serde_json::from_slice(&fs::read(out.path().join("summary.json")).unwrap()).unwrap();
+    let summary = run.summary();
     let rate = &summary["rates"][0];
     assert!(
         rate["saddle_zero_modes"].as_array().unwrap().is_empty() && rate["refused"].as_object().unwrap().is_empty()
@@ -159,15 +139,13 @@ fn an_island_of_atoms_is_reversed_by_a_wall_with_rates_of_harmonic_modes() {
 
 #[test]
 fn a_cobalt_chain_holds_its_magnetisation_for_minutes_at_4_kelvin_and_not_at_20() {
-    let out = tempfile::tempdir().unwrap();
-    let done = spinneb(&root(), &["run", "configs/cobalt_chain.json", "--out", out.path().to_str().unwrap(), "--json"]);
-    assert_eq!(done.status.code(), Some(0), "{}", String::from_utf8_lossy(&done.stderr));
+    let run = shipped("cobalt_chain");
     // the walls of a chain with J and K of this size sit on its sites, hard axis K/10: between the continuum's 4 √(JK/2) and 2J
-    let (forward, backward) = barriers(&serde_json::from_slice(&done.stdout).unwrap());
+    let (forward, backward) = run.barriers();
     let (j, k) = (7.5f64, 2.0);
     assert!(0.95 * 4.0 * (j * k / 2.0).sqrt() < forward && forward < 2.0 * j, "{forward}");
     assert!((forward - backward).abs() < 1e-9 * forward);
-    let summary: Value = serde_json::from_slice(&fs::read(out.path().join("summary.json")).unwrap()).unwrap();
+    let summary = run.summary();
     let whole = &summary["transition_rates"][0];
     assert_eq!((whole["direction"].as_str(), whole["equivalent_paths"].as_u64()), (Some("forward"), Some(4)));
     let at = |k: usize, key: &str| whole["temperatures"][k][key].as_f64();
@@ -186,7 +164,7 @@ fn a_cobalt_chain_holds_its_magnetisation_for_minutes_at_4_kelvin_and_not_at_20(
     assert!(whole["temperatures"][11]["reason"].as_str().unwrap().contains("below 1 k_BT"));
     assert!(summary["rates"][0]["langer_prefactor_Hz"].is_f64());
     for file in ["rates.csv", "arrhenius.svg", "arrhenius.png"] {
-        assert!(out.path().join(file).metadata().is_ok_and(|m| m.len() > 1000), "{file}");
+        assert!(run.files.get(file).is_some_and(|bytes| bytes.len() > 1000), "{file}");
     }
 }
 

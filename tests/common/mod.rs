@@ -1,6 +1,8 @@
 //! Chains in the reference's units: J = 1 meV, spins of the reference's energy.
 #![allow(dead_code)]
 
+pub mod shipped;
+
 use spinneb::drive::{Outcome, Problem, Silent, run};
 use spinneb::energy::{Anisotropy, Dmi, EnergyTerm, Exchange, Hamiltonian, Zeeman};
 use spinneb::geometry::Direction;
