@@ -45,8 +45,12 @@ esac
 # linked by zig, where its package is there (pip install ziglang), the wheel runs on every Linux with glibc 2.17 or later
 zig=
 ! python3 -m ziglang version >/dev/null 2>&1 || [ "$(uname -s)" != Linux ] || zig="--zig --compatibility manylinux2014"
+# in one part, which takes minutes more: small enough for a package index also where zig links
 # shellcheck disable=SC2086
-(cd python && maturin build --release --locked $zig --out "$out")
+(cd python && maturin build --release --locked $zig --config profile.release.package.spinneb.codegen-units=1 --out "$out")
+for wheel in "$out"/*.whl; do
+    [ "$(wc -c <"$wheel")" -lt 5000000 ] || fail "$wheel is larger than 5 MB"
+done
 (cd "$out" && find . -maxdepth 1 -type f -name '*spinneb*' ! -name SHA256SUMS | sort | xargs sha256sum >SHA256SUMS)
 echo "release: version $version is in $out; to publish it:"
 echo "  git tag v$version, cargo publish, and an upload of the wheel and of these files"
