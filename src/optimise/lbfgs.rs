@@ -1,16 +1,14 @@
 //! Limited-memory BFGS on spheres, without line search (a band's force is no gradient, so there is no function to search).
 //!
-//! Nocedal, Math. Comp. 35, 773 (1980), doi:10.1090/S0025-5718-1980-0572855-7 (two-loop recursion). Pairs of differences are
-//! kept in the embedding space and projected by use; a pair without positive curvature empties the memory. To compare with.
+//! Pairs of differences ([`Secants`]) are kept in the embedding space and projected by use. To compare with.
 
 use super::{Follows, Method, Optimiser};
 use crate::field::project;
-use crate::linalg::slab;
+use crate::linalg::{Secants, slab};
 use crate::registry::Described;
 use crate::sphere::{move_points, rotation_of};
 use schemars::JsonSchema;
 use serde::Deserialize;
-use std::collections::VecDeque;
 
 /// Largest rotation of a spin in one step (rad).
 const CAP: f64 = 0.1;
@@ -40,55 +38,27 @@ impl Method for Lbfgs {
     }
 
     fn start(&self, stiffness_mev: f64) -> Box<dyn Optimiser> {
-        Box::new(Memory { limit: self.memory, first: 1.0 / stiffness_mev, pairs: VecDeque::new(), last: None })
+        Box::new(Memory { first: 1.0 / stiffness_mev, secants: Secants::of(self.memory), last: None })
     }
 }
 
 #[derive(Debug)]
 struct Memory {
-    limit: usize,
     first: f64,
-    pairs: VecDeque<(Vec<f64>, Vec<f64>)>,
+    secants: Secants,
     last: Option<(Vec<f64>, Vec<f64>)>,
-}
-
-impl Memory {
-    /// Remembers the step taken and the change of force it made.
-    fn learn(&mut self, force: &[f64]) {
-        let Some((step, before)) = self.last.take() else { return };
-        let change: Vec<f64> = before.iter().zip(force).map(|(b, f)| b - f).collect();
-        if slab::dot(&step, &change) <= 1e-12 * slab::norm(&step) * slab::norm(&change) {
-            self.pairs.clear();
-            return;
-        }
-        self.pairs.push_back((step, change));
-        if self.pairs.len() > self.limit {
-            self.pairs.pop_front();
-        }
-    }
-
-    fn direction(&self, force: &[f64]) -> Vec<f64> {
-        let mut q = force.to_vec();
-        let mut weights = Vec::new();
-        for (s, y) in self.pairs.iter().rev() {
-            let a = slab::dot(s, &q) / slab::dot(s, y);
-            slab::add_scaled(&mut q, -a, y);
-            weights.push(a);
-        }
-        let scale = self.pairs.back().map_or(self.first, |(s, y)| slab::dot(s, y) / slab::dot(y, y));
-        slab::scale(&mut q, scale);
-        for ((s, y), a) in self.pairs.iter().zip(weights.iter().rev()) {
-            let b = slab::dot(y, &q) / slab::dot(s, y);
-            slab::add_scaled(&mut q, a - b, s);
-        }
-        q
-    }
 }
 
 impl Optimiser for Memory {
     fn advance(&mut self, points: &mut [f64], slab: usize, force: &[f64]) {
-        self.learn(force);
-        let mut step = self.direction(force);
+        if let Some((step, before)) = self.last.take() {
+            let change = before.iter().zip(force).map(|(b, f)| b - f).collect();
+            self.secants.learn(step, change);
+        }
+        let mut step = force.to_vec();
+        if !self.secants.apply(&mut step) {
+            slab::scale(&mut step, self.first);
+        }
         for (m, v) in points.chunks(slab).zip(step.chunks_mut(slab)) {
             project(m, v);
         }
@@ -102,7 +72,7 @@ impl Optimiser for Memory {
 
     /// The last step and force, then the pairs, oldest first; nothing before the first step.
     fn memory(&self) -> Vec<Vec<f64>> {
-        let rows = self.last.iter().chain(&self.pairs);
+        let rows = self.last.iter().chain(self.secants.pairs());
         rows.flat_map(|(a, b)| [a.clone(), b.clone()]).collect()
     }
 
@@ -110,6 +80,6 @@ impl Optimiser for Memory {
         let mut rows = memory.into_iter();
         let mut pairs = std::iter::from_fn(|| Some((rows.next()?, rows.next()?)));
         self.last = pairs.next();
-        self.pairs = pairs.collect();
+        self.secants.remember(pairs);
     }
 }

@@ -4,10 +4,12 @@
 //! gradient is rounding error and no guide, and its flow is slow. Then down the gradient by implicit Euler steps,
 //! (H + 1/Δt) v = −g, whose Δt grows as long as H + 1/Δt stays positive definite and the energy falls as foretold: the steepest
 //! descent with its stiff directions relaxed. Where the forces vanish in double precision but a direction is still negative, the
-//! descent goes on along that direction, and ends only where the inertia counts none.
+//! descent goes on along that direction, and ends only where the inertia counts none. Where factors are dear, gradients alone lead
+//! down from a step along the valley to where the slope ends, and Δt grows as the torque falls.
 
 use super::pinned::Pinned;
 use super::point::Point;
+use super::quench::quench;
 use super::spectrum::Spectrum;
 use super::state::State;
 use super::trail::Trail;
@@ -119,10 +121,12 @@ impl Walk<'_> {
     fn down(&mut self) -> bool {
         let mut less_steep = LESS_STEEP;
         let mut in_vain = 0;
-        for _ in 0..ROUNDS {
+        let mut rolls = self.h.has_dear_factors();
+        for round in 0..ROUNDS {
             let from = self.here.energy_mev;
-            let moved = self.march(less_steep);
-            let end = self.fall();
+            rolls = rolls && (round > 0 && self.roll(CAP) || self.roll(FIRST));
+            let moved = rolls || self.march(less_steep);
+            let end = self.fall(rolls);
             in_vain = if moved || self.here.energy_mev != from { 0 } else { in_vain + 1 };
             if matches!(end, Fall::Crawling) {
                 less_steep = 0.0;
@@ -145,6 +149,23 @@ impl Walk<'_> {
             }
             self.tau = on;
         }
+        false
+    }
+
+    /// A step along the valley, and down by gradients alone from there, first across it where it bends away; whether that came near
+    /// a stationary state, or the valley's bottom, below.
+    fn roll(&mut self, step: f64) -> bool {
+        let from = self.here.clone();
+        let points = self.trail.len();
+        self.room.v.clone_from(&self.tau);
+        slab::scale(&mut self.room.v, step / rotation_of(&self.tau));
+        self.here.go(self.h, &from, &self.room.v);
+        let near = quench(self.h, &mut self.here, &mut self.next, &mut self.trail, [step, CAP]);
+        if near && from.above_mev(&self.here) > self.h.rounding_mev() {
+            return true;
+        }
+        self.trail.go_back_to(points);
+        self.here = from;
         false
     }
 
@@ -284,11 +305,11 @@ impl Walk<'_> {
         Some(rotation)
     }
 
-    /// Implicit Euler down the gradient, to a point where it vanishes.
-    fn fall(&mut self) -> Fall {
+    /// Implicit Euler down the gradient, to a point where it vanishes; `near` such a point 1/Δt is no larger than the torque.
+    fn fall(&mut self, near: bool) -> Fall {
         let scale = self.h.stiffness_mev();
         let tolerance = 4e-15 * scale;
-        let mut rate = self.c;
+        let mut rate = if near { self.c.min(self.here.max_torque_mev()) } else { self.c };
         let mut short = 0;
         let mut refusals: usize = 0;
         for _ in 0..STEPS {
@@ -296,6 +317,9 @@ impl Walk<'_> {
                 return Fall::Arrived;
             }
             let Some(refused) = self.euler(&mut rate, scale) else { return Fall::Stuck };
+            if near && !refused {
+                rate = rate.min(self.next.max_torque_mev());
+            }
             refusals = if refused { CRAWL } else { refusals.saturating_sub(1) };
             // plain Newton steps that gain nothing: the rest is rounding
             let settled = rate == 0.0

@@ -12,6 +12,7 @@ mod modes;
 mod pinned;
 mod point;
 mod polish;
+mod quench;
 mod relax;
 mod search;
 mod spectrum;

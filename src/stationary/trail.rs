@@ -39,6 +39,16 @@ impl Trail {
         self.points.push(m.to_vec());
     }
 
+    /// How many points it has.
+    pub fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    /// Forgets the points after the first so many.
+    pub fn go_back_to(&mut self, points: usize) {
+        self.points.truncate(points);
+    }
+
     /// The points, first to last.
     pub fn into_points(self) -> Vec<Vec<f64>> {
         self.points

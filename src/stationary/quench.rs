@@ -1,0 +1,131 @@
+//! Down a slope by gradients alone, where factors of Hessians take longer than hundreds of them: limited-memory BFGS, every step
+//! short, none of which raises the energy. What the gradient has no part of, as a translation of a state that is symmetric,
+//! no step has.
+
+use super::point::Point;
+use super::trail::Trail;
+use crate::energy::Evaluator;
+use crate::field::project;
+use crate::linalg::{Secants, slab};
+use crate::sphere::rotation_of;
+use std::mem::swap;
+
+/// Pairs of steps and changes of the gradient that are remembered.
+const MEMORY: usize = 8;
+/// Most steps: on a plateau gradients lead nowhere.
+const STEPS: usize = 100;
+/// How much longer than the last a step may be that nothing remembered tells the length of.
+const GROWTH: f64 = 2.0;
+/// The part of the largest torque that is left.
+const LEFT: f64 = 1e-4;
+/// A step this much shorter (rad, any spin) than the longest is none.
+const NONE: f64 = 1e-6;
+
+/// Goes down from `here` until the torque is less than a part of the largest on the way, in steps that turn no spin by more than
+/// `cap` (rad), the first one by `first`; `next` is memory. Whether it came so far.
+pub fn quench(h: Evaluator, here: &mut Point, next: &mut Point, trail: &mut Trail, [first, cap]: [f64; 2]) -> bool {
+    let mut secants = Secants::of(MEMORY);
+    let (mut force, mut step, mut length) = (here.field(&here.downhill()), Vec::new(), first);
+    let mut largest = 0.0f64;
+    for _ in 0..STEPS {
+        let torque = here.max_torque_mev();
+        largest = largest.max(torque);
+        if torque <= LEFT * largest {
+            return true;
+        }
+        if h.is_stopped() {
+            return false;
+        }
+        step.clone_from(&force);
+        let told = secants.apply(&mut step);
+        project(&here.m, &mut step);
+        let rotation = rotation_of(&step);
+        length = if told { rotation.min(cap) } else { length.min(cap) };
+        slab::scale(&mut step, length / rotation);
+        next.go(h, here, &step);
+        let risen = next.above_mev(here) > 0.0;
+        if risen {
+            // a shorter one, straight down
+            secants = Secants::of(MEMORY);
+            length /= 4.0;
+            if length < NONE * cap {
+                return false;
+            }
+            continue;
+        }
+        length *= GROWTH;
+        let mut change = std::mem::replace(&mut force, next.field(&next.downhill()));
+        slab::add_scaled(&mut change, -1.0, &force);
+        secants.learn(step.clone(), change);
+        swap(here, next);
+        trail.pass(&here.m);
+    }
+    false
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::energy::{Hamiltonian, Medium, TermSpec};
+    use crate::geometry::{Vector, vector};
+    use crate::lattice::LatticeSpec;
+    use crate::path::largest_angle;
+    use crate::spins::Spins;
+
+    const CELLS: usize = 13;
+
+    fn film() -> Hamiltonian {
+        let spec = format!(r#"{{"square": {{"cells": [{CELLS}, {CELLS}]}}}}"#);
+        let lattice = serde_json::from_str::<LatticeSpec>(&spec).unwrap().resolve().unwrap();
+        let medium = Medium::new(&lattice, None, None);
+        let terms = [r#"{"exchange": {"J": ["1 meV"]}}"#, r#"{"anisotropy": {"K": "0.2 meV", "axis": [0, 0, 1]}}"#];
+        let term = |text: &&str| serde_json::from_str::<TermSpec>(text).unwrap().member().build(&medium).unwrap();
+        Hamiltonian::new(&lattice, terms.iter().map(term).collect()).unwrap()
+    }
+
+    /// A bubble about the middle, whose spins lean along x.
+    fn bubble() -> Spins {
+        let middle = (CELLS / 2) as f64;
+        let spin = |i: usize| -> Vector {
+            let (x, y) = ((i % CELLS) as f64 - middle, (i / CELLS) as f64 - middle);
+            let angle = 3.0 * libm::exp(-0.1 * (x * x + y * y));
+            vector::unit_or([libm::sin(angle), 0.0, libm::cos(angle)], [0.0, 0.0, 1.0])
+        };
+        let vectors: Vec<Vector> = (0..CELLS * CELLS).map(spin).collect();
+        Spins::from_components(&(0..3).flat_map(|c| vectors.iter().map(move |v| v[c])).collect::<Vec<f64>>()).unwrap()
+    }
+
+    #[test]
+    fn a_bubble_shrinks_downhill_in_short_steps_and_stays_as_symmetric_as_it_was() {
+        let h = film();
+        let h = Evaluator::from(&h);
+        let start = Point::at(h, bubble().as_slice().to_vec());
+        let (mut here, mut next, mut trail) = (start.clone(), Point::default(), Trail::from(&start.m));
+        assert!(quench(h, &mut here, &mut next, &mut trail, [0.05, 0.3]), "it comes to rest");
+        assert!(here.max_torque_mev() < 1e-4 * start.max_torque_mev().max(1.0), "{}", here.max_torque_mev());
+        assert!(start.above_mev(&here) > 1.0, "{}", start.above_mev(&here));
+        let uniform = Spins::uniform(h.sites(), crate::geometry::Direction::Z);
+        assert!(largest_angle(&here.m, uniform.as_slice()) < 0.01);
+        let points = trail.into_points();
+        assert!(points.len() > 3);
+        for m in points.iter().chain([&here.m]) {
+            for i in 0..CELLS * CELLS {
+                let mirrored = (CELLS - 1 - i % CELLS) + CELLS * (i / CELLS);
+                (0..3).for_each(|c| {
+                    let at = |i: usize| m[c * CELLS * CELLS + i];
+                    assert!((at(i) - at(mirrored)).abs() < 1e-10);
+                });
+            }
+        }
+    }
+
+    #[test]
+    fn at_rest_nothing_moves() {
+        let h = film();
+        let h = Evaluator::from(&h);
+        let m = Spins::uniform(h.sites(), crate::geometry::Direction::Z).as_slice().to_vec();
+        let (mut here, mut next, mut trail) = (Point::at(h, m.clone()), Point::default(), Trail::from(&m));
+        assert!(quench(h, &mut here, &mut next, &mut trail, [0.05, 0.3]));
+        assert_eq!(here.m, m);
+    }
+}
