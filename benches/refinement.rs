@@ -17,6 +17,10 @@ use spinneb::path::guess::{Edge, GuessSpec, Sweep};
 use spinneb::spins::Spins;
 use spinneb::stationary::refine;
 
+#[path = "shared/memory.rs"]
+mod memory;
+use memory::peak_gb;
+
 /// The allocator of the binary.
 #[cfg(feature = "mimalloc")]
 #[global_allocator]
@@ -200,11 +204,4 @@ fn compensated(values: impl Iterator<Item = f64>) -> f64 {
         sum = next;
     }
     sum
-}
-
-/// Most memory that the process has held so far, where the system tells.
-fn peak_gb() -> Option<f64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find(|l| l.starts_with("VmHWM"))?;
-    Some(line.split_whitespace().nth(1)?.parse::<f64>().ok()? * 1024e-9)
 }

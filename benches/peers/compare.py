@@ -34,15 +34,20 @@ SEARCHES = {
     ],
     "depinning, K doubled": [search("geodesic", TWENTY, [DONE, NEARER, NEAR], 1.0), search("geodesic", MANY, [NEARER, NEAR], 0.5)],
     "depinning, K halved": [search("geodesic", TWENTY, [DONE, NEARER, NEAR], 1.0), search("geodesic", MANY, [NEARER, NEAR], 0.5)],
+    "collapse, 30²": [search("geodesic", TWENTY, [DONE, NEAR], 6.0), search("geodesic", MANY, [DONE, NEAR], 3.0)],
+    "collapse, 64²": [search("geodesic", TWENTY, [DONE, NEAR], 60.0), search("geodesic", MANY, [DONE, NEAR], 30.0)],
+    "collapse, 128²": [search("geodesic", TWENTY, [DONE, NEAR], 240.0), search("geodesic", MANY, [DONE, NEAR], 120.0)],
 }
+# Searching all settings takes hours on the larger films: tried is what was quickest on the smaller one.
+SETTINGS_OF = {"collapse, 64²": "collapse, 30²", "collapse, 128²": "collapse, 64²"}
 
 
 def main():
     a = arguments()
-    tables, goals = {}, []
-    for name in CASES:
+    tables, goals, found = {}, [], {}
+    for name in a.case or CASES:
         say(f"{name}: looking for spirit's best settings")
-        rows = candidates(name)
+        rows = candidates(name, found)
         for turn in range(a.repeat):
             say(f"{name}: repetition {turn + 1} of {a.repeat}")
             # In turn, so that what else the machine does falls on both alike.
@@ -61,6 +66,7 @@ def arguments():
     p = argparse.ArgumentParser(prog="run.sh", description="Compares spinneb with spirit on one thread.")
     p.add_argument("--spinneb", required=True, type=lambda p: str(Path(p).resolve()), help=argparse.SUPPRESS)
     p.add_argument("--repeat", type=positive, default=5, help="repetitions of every run; the least time counts (default 5)")
+    p.add_argument("--case", action="append", choices=list(CASES), help="only this one (may be given several times)")
     p.add_argument("--markdown", action="store_true", help="print the tables as Markdown")
     return p.parse_args()
 
@@ -111,7 +117,7 @@ def spinneb(program, case, certify):
     with tempfile.TemporaryDirectory() as folder:
         quiet = ["--out", folder + "/out", "--threads", "1", "--quiet", "--set", "output.formats=[]", "--set", "output.plots=[]"]
         quiet += [] if certify else ["--set", "saddle.certify=false"]
-        process = child([program, "run", CASES[case]["config"], *quiet])[1]
+        process = child([program, "run", CASES[case]["config"], *CASES[case].get("set", []), *quiet])[1]
         summary = json.loads(Path(folder, "out", "summary.json").read_text())
     barrier = summary["barrier_meV"]["forward"]
     return dict(
@@ -127,13 +133,19 @@ def spinneb(program, case, certify):
     )
 
 
-def candidates(case):
-    """The rows of a case's table, each with the settings that may turn out the best."""
+def candidates(case, found):
+    """The rows of a case's table, each with the settings that may turn out the best; `found` keeps those of all cases, search by
+    search.
+    """
     rows = [dict(program="spinneb", certify=certify, runs=[]) for certify in (True, False)]
     if case == "nucleation":
         rows.append(dict(program="spirit", target=DONE, any=False, settings=[AS_IT_COMES | {"runs": []}]))
-    for wanted in SEARCHES[case]:
-        for target, settings in zip(wanted["targets"], spirit("scout", case, wanted)):
+    smaller = found.get(SETTINGS_OF.get(case), [None] * len(SEARCHES[case]))
+    found[case] = []
+    for wanted, known in zip(SEARCHES[case], smaller):
+        answers = spirit("scout", case, wanted | {"settings": known})
+        found[case].append([{k: s[k] for k in ("images", "solver", "plain_meV", "climb")} for a in answers for s in a[:2]])
+        for target, settings in zip(wanted["targets"], answers):
             if not settings:
                 say(f"{case}: from the {wanted['start']}, none of spirit's settings reached {stop(target)}")
                 continue

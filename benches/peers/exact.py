@@ -50,5 +50,5 @@ def barrier_mev(case):
 
 
 if __name__ == "__main__":
-    for name, case in CASES.items():
+    for name, case in ((name, case) for name, case in CASES.items() if "K" in case):
         print(f"{name}: {barrier_mev(case):.15f} meV; in cases.py {case['exact_meV']:.15f}")

@@ -15,39 +15,38 @@ import time
 import numpy as np
 from spirit import chain, parameters, simulation, state, system, transition
 
-from cases import CASES, J, WIDTH
+from cases import BOHR_MAGNETON, CASES, D, FIELD, J, MOMENT, WIDTH
 
 SOLVERS = ["LBFGS_OSO", "LBFGS_Atlas", "VP", "VP_OSO"]
 PLAIN_MEV = [None, 1e-2, 1e-4]  # the force below which images begin to climb; None: at once
 CLIMBING = ["the highest", "all maxima"]
 TIGHTEST_MEV = 1e-7  # spirit's force tolerance at the end of a scouting run
 RIGHT = 1e-6  # relative error of a barrier that counts as right
+QUIET = ["log_to_file 0", "log_to_console 0", "save_input_initial 0", "save_input_final 0", "save_positions_initial 0"]
+QUIET += ["save_neighbours_initial 0", "ddi_method none", "gneb_output_any 0", "llg_output_any 0", "gneb_n_energy_interpolations 0"]
 ENDS_MEV = 1e-6  # its tolerance when it relaxes the ends
 
 
-class Chain:
+class Band:
     """A case in spirit: the Hamiltonian, both ends and a first path."""
 
     def __init__(self, case, images, start):
-        self.k = np.array(case["K"])
         self.case, self.images = case, images
         with tempfile.NamedTemporaryFile("w", suffix=".cfg") as file:
-            file.write(config(self.k))
+            file.write(self.config())
             file.flush()
             self.p = state.setup(file.name, True)
         chain.image_to_clipboard(self.p)
         chain.set_length(self.p, images)
-        sites = np.arange(len(self.k))
-        for image, centre in ((0, 45), (images - 1, 55)):
-            up = 1.0 if image == 0 else -1.0
-            self.spins(image)[:] = [0, 0, up] if case["ends"] == "uniform" else wall(sites, centre)
+        for image, spins in zip((0, images - 1), self.ends()):
+            self.spins(image)[:] = spins
         self.clock, self.end_iterations = 0.0, 0
         if case["relax_ends"]:
             self.relax_ends()
         if start == "geodesic":
             transition.homogeneous(self.p, 0, images - 1)
         else:
-            self.sweep(sites)
+            self.sweep()
         chain.update_data(self.p)
 
     def relax_ends(self):
@@ -58,22 +57,12 @@ class Chain:
                 info = simulation.start(self.p, simulation.METHOD_LLG, simulation.SOLVER_LBFGS_OSO, 10000, 10000, False, image)
             self.end_iterations += info.total_iterations
 
-    def sweep(self, sites):
-        """The hand-made path: a wall of the right width and profile enters at one end and leaves at the other."""
-        margin = 2.5 * WIDTH
-        last = len(sites) - 1
-        for image in range(1, self.images - 1):
-            part = image / (self.images - 1)
-            self.spins(image)[:] = wall(sites, last + margin - part * (last + 2 * margin))
-
     def spins(self, image):
         return system.get_spin_directions(self.p, image)
 
     def barrier_mev(self):
         """The highest image above the first, in double precision: spirit's own energies come in single."""
-        m = np.array([self.spins(k) for k in range(self.images)])
-        bonds = J * (1 - np.einsum("kix,kix->ki", m[:, 1:], m[:, :-1])).sum(axis=1)
-        e = bonds + (self.k * (1 - m[:, :, 2] ** 2)).sum(axis=1)
+        e = self.energies(np.array([self.spins(k) for k in range(self.images)]))
         return float(e.max() - e[0])
 
     def error(self):
@@ -105,6 +94,68 @@ class Chain:
         state.delete(self.p)
 
 
+class Chain(Band):
+    """An open chain."""
+
+    def __init__(self, case, images, start):
+        self.k = np.array(case["K"])
+        super().__init__(case, images, start)
+
+    def config(self):
+        return config(self.k)
+
+    def ends(self):
+        sites = np.arange(len(self.k))
+        return ([0, 0, 1], [0, 0, -1]) if self.case["ends"] == "uniform" else (wall(sites, 45), wall(sites, 55))
+
+    def energies(self, m):
+        """Of all images, (image, site, xyz)."""
+        bonds = J * (1 - np.einsum("kix,kix->ki", m[:, 1:], m[:, :-1])).sum(axis=1)
+        return bonds + (self.k * (1 - m[:, :, 2] ** 2)).sum(axis=1)
+
+    def sweep(self):
+        """The hand-made path: a wall of the right width and profile enters at one end and leaves at the other."""
+        sites, margin = np.arange(len(self.k)), 2.5 * WIDTH
+        last = len(sites) - 1
+        for image in range(1, self.images - 1):
+            part = image / (self.images - 1)
+            self.spins(image)[:] = wall(sites, last + margin - part * (last + 2 * margin))
+
+
+class Film(Band):
+    """A skyrmion in a periodic film, and the uniform state."""
+
+    def config(self):
+        n = self.case["cells"]
+        lines = QUIET + ["boundary_conditions 1 1 0", f"external_field_magnitude {FIELD}", "external_field_normal 0 0 1"]
+        lines += ["bravais_lattice sc", "hamiltonian heisenberg_neighbours", f"n_basis_cells {n} {n} 1", f"mu_s {MOMENT}"]
+        lines += ["n_shells_exchange 1", f"jij {J}", "n_shells_dmi 1", f"dij {D}", "dm_chirality 1", "anisotropy_magnitude 0"]
+        return "\n".join(lines) + "\n"
+
+    def ends(self):
+        """A skyrmion about a site, where it has its minimum, and all up."""
+        n = self.case["cells"]
+        y, x = np.mgrid[0:n, 0:n] - n // 2
+        theta = 2 * np.arctan2(np.sinh(3 / 0.8), np.sinh(np.hypot(x, y) / 0.8))
+        phi = np.arctan2(y, x) + np.pi / 2
+        m = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], -1)
+        return m.reshape(-1, 3), [0, 0, 1]
+
+    def energies(self, m):
+        """Of all images, (image, site, xyz), above all up: −J m·n − D d·(m × n) a bond, −μ B m_z a site."""
+        n = self.case["cells"]
+        m = m.reshape(-1, n, n, 3)
+        e = MOMENT * BOHR_MAGNETON * FIELD * (1 - m[..., 2])
+        for axis, d in ((2, 0), (1, 1)):
+            other = np.roll(m, -1, axis=axis)
+            e += J * (1 - (m * other).sum(-1)) - D * np.cross(m, other)[..., d]
+        return e.sum((1, 2))
+
+
+def band(case, images, start):
+    return (Film if "cells" in case else Chain)(case, images, start)
+
+
 def wall(sites, centre):
     """+z left of the centre, through +x, −z right of it: the profile of the continuum."""
     z = -np.tanh((sites - centre) / WIDTH)
@@ -114,9 +165,7 @@ def wall(sites, centre):
 def config(k):
     """Spirit's input: equal sites as one cell repeated, unequal ones as one cell with a basis; no output, no interpolation."""
     sites = len(k)
-    lines = ["log_to_file 0", "log_to_console 0", "save_input_initial 0", "save_input_final 0", "save_positions_initial 0"]
-    lines += ["save_neighbours_initial 0", "boundary_conditions 0 0 0", "external_field_magnitude 0", "ddi_method none"]
-    lines += ["gneb_output_any 0", "llg_output_any 0", "gneb_n_energy_interpolations 0", "bravais_lattice sc"]
+    lines = QUIET + ["boundary_conditions 0 0 0", "external_field_magnitude 0", "bravais_lattice sc"]
     if np.ptp(k) == 0:
         lines += ["hamiltonian heisenberg_neighbours", f"n_basis_cells {sites} 1 1", "mu_s 2", "n_shells_exchange 1", f"jij {J}"]
         lines += ["n_shells_dmi 0", f"anisotropy_magnitude {k[0]}", "anisotropy_normal 0 0 1"]
@@ -136,38 +185,38 @@ def scout_one(case, setting, targets, budget):
     that it has converged, if its barrier is right. A band still on the move when the budget ends counts if the barrier has been
     right for as long as it took to become so.
     """
-    band = Chain(case, setting["images"], setting["start"])
+    b = band(case, setting["images"], setting["start"])
     reached, done, n, error = {}, {}, 0, 1.0
     for phase in ("plain", "climbing"):
         if phase == "plain" and setting["plain_meV"] is None:
             done[phase] = 0
             continue
         if phase == "climbing":
-            band.climb(setting["climb"])
+            b.climb(setting["climb"])
         tolerance = setting["plain_meV"] if phase == "plain" else TIGHTEST_MEV
-        band.start(setting["solver"], tolerance, 10**6, single_shot=True)
+        b.start(setting["solver"], tolerance, 10**6, single_shot=True)
         n = 0
-        while simulation.running_on_chain(band.p) and band.clock < budget:
+        while simulation.running_on_chain(b.p) and b.clock < budget:
             step = 1 + n // 50
-            with band.running():
-                simulation.n_shot(band.p, step)
+            with b.running():
+                simulation.n_shot(b.p, step)
             n += step
-            error = band.error()
+            error = b.error()
             for target in filter(None, targets):
                 if error > target:
                     reached.pop(target, None)
                 else:
-                    reached.setdefault(target, {"phase": phase, "iterations": n, "cpu_s": band.clock})
+                    reached.setdefault(target, {"phase": phase, "iterations": n, "cpu_s": b.clock})
         done[phase] = n
-        simulation.stop(band.p)
-    finished = band.clock < budget
+        simulation.stop(b.p)
+    finished = b.clock < budget
     if finished and None in targets and error <= RIGHT:
         # A few more than it took here: in the run against the clock spirit itself is to stop.
-        reached[None] = {"phase": "climbing", "iterations": n + 1000, "cpu_s": band.clock}
-    band.delete()
+        reached[None] = {"phase": "climbing", "iterations": n + 1000, "cpu_s": b.clock}
+    b.delete()
     found = []
     for target, at in reached.items():
-        if not finished and band.clock < 2 * at["cpu_s"]:
+        if not finished and b.clock < 2 * at["cpu_s"]:
             continue
         plain = at["iterations"] if at["phase"] == "plain" else done["plain"]
         climbing = 0 if at["phase"] == "plain" else at["iterations"]
@@ -180,8 +229,10 @@ def scout(case, request):
     the best so far, for whichever target takes longest, is not followed to its end.
     """
     found, budget = [[] for _ in request["targets"]], request["budget_s"]
-    for images, solver, plain, climb in itertools.product(request["images"], SOLVERS, PLAIN_MEV, CLIMBING):
-        setting = dict(start=request["start"], images=images, solver=solver, plain_meV=plain, climb=climb)
+    keys = ("images", "solver", "plain_meV", "climb")
+    tries = [dict(zip(keys, t)) for t in itertools.product(request["images"], SOLVERS, PLAIN_MEV, CLIMBING)]
+    for setting in request.get("settings") or tries:
+        setting = dict(setting, start=request["start"])
         for at in scout_one(case, setting, request["targets"], budget):
             found[request["targets"].index(at["target"])].append(at)
         if all(found):
@@ -191,18 +242,18 @@ def scout(case, request):
 
 def solve(case, s):
     """One setting against the clock, with as many iterations as the scout found, or until spirit says it has converged."""
-    band = Chain(case, s["images"], s["start"])
+    b = band(case, s["images"], s["start"])
     iterations, says = 0, False
     if s["plain"]:
-        iterations += band.start(s["solver"], s["plain_meV"], s["plain"]).total_iterations
+        iterations += b.start(s["solver"], s["plain_meV"], s["plain"]).total_iterations
     if s["climbing"]:
-        band.climb(s["climb"])
-        info = band.start(s["solver"], TIGHTEST_MEV, s["climbing"])
+        b.climb(s["climb"])
+        info = b.start(s["solver"], TIGHTEST_MEV, s["climbing"])
         iterations += info.total_iterations
         says = info.total_iterations < s["climbing"]
-    evaluations = iterations * (s["images"] - 2) + band.end_iterations
-    barrier = dict(barrier_meV=band.barrier_mev(), error=band.error())
-    return barrier | dict(cpu_s=band.clock, iterations=iterations, evaluations=evaluations, converged=says)
+    evaluations = iterations * (s["images"] - 2) + b.end_iterations
+    barrier = dict(barrier_meV=b.barrier_mev(), error=b.error())
+    return barrier | dict(cpu_s=b.clock, iterations=iterations, evaluations=evaluations, converged=says)
 
 
 def main():
