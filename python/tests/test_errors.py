@@ -58,6 +58,16 @@ def test_several_errors_are_told_at_once(chain):
     assert len(str(error.value).splitlines()) == 2
 
 
+def test_what_is_no_system_is_refused_with_what_would_be_one(chain):
+    with pytest.raises(TypeError, match=r"^barrier takes a System.*found chain\(sites=20\)"):
+        sn.barrier(sn.chain(20), sn.uniform("z"), sn.uniform("-z"))
+    for part in (sn.chain(20), sn.uniform("z"), 3):
+        with pytest.raises(TypeError, match="^expected a System, a file or a dictionary"):
+            sn.run(part)
+    with pytest.raises(TypeError, match=r"^energy is a list of terms, also of one: write \[exchange\(J=\['1 meV'\]\)\]"):
+        sn.System(sn.chain(20), sn.exchange(J=["1 meV"]))
+
+
 def test_what_is_no_json_is_refused_here(chain):
     with pytest.raises(ValueError, match="not JSON compliant"):
         sn.barrier(chain, sn.uniform("z"), sn.uniform("-z"), neb={"tolerance": float("nan")})

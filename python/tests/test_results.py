@@ -50,6 +50,12 @@ def test_numbers_are_named_as_in_the_summary(reversal):
     assert reversal.places[:, 0].tolist() == list(range(20))
 
 
+def test_a_run_with_temperatures_has_the_rates_that_are_made_of_it_later(chain, reversal):
+    assert reversal.rates is None
+    result = sn.barrier(chain, sn.uniform("z"), sn.uniform("-z"), temperatures=[4.0])
+    assert result.rates.lifetimes_s() == pytest.approx(sn.rates(reversal, 4.0).lifetimes_s(), rel=1e-12)
+
+
 def test_tables_have_the_columns_of_path_csv(reversal):
     frame = reversal.to_dataframe()
     header = reversal._core.files(["csv"])["path.csv"].decode().splitlines()[0].split(",")

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core
-from ._values import Guess, plain
+from ._values import Guess, Piece, plain
 from .results import Check, Landscape, Rates, Relaxed, Result
 from .system import AnyState, System, as_guess, as_state
 
@@ -106,12 +106,14 @@ def barrier(
     effort
         How long lower passes are looked for.
     temperatures
-        For rates and lifetimes: numbers in K, or quantities.
+        For rates and lifetimes, ``result.rates``: numbers in K, or quantities.
     out, threads, progress
         As in :func:`run`.
     options
         Any other key of a config: ``neb={"tolerance": 1e-8}``, ``rates={"damping": 0.5, …}``.
     """
+    if not isinstance(system, System):
+        raise TypeError(f"barrier takes a System, made of a lattice and a list of terms, found {system!r}; run takes a config")
     if temperatures is not None:
         options["rates"] = {**options.get("rates", {}), "temperatures": _kelvin(temperatures)}
     if guess is not None or images is not None:
@@ -274,6 +276,8 @@ def _config(config: Config, kind: str, set: Mapping[str, Any] | None) -> _core.C
     sets = [f"{key}={_dumped(value)}" for key, value in (set or {}).items()]
     if isinstance(config, (str, os.PathLike)):
         return _core.Config(os.fspath(config), None, "", sets, [], kind)
+    if isinstance(config, Piece) or not isinstance(config, (System, Mapping)):
+        raise TypeError(f"expected a System, a file or a dictionary as in such a file, found {config!r}")
     import tempfile
 
     terms = config.terms if isinstance(config, System) else []

@@ -190,6 +190,11 @@ class Result:
         return [Saddle(told, np.asarray(m)) for told, m in zip(self.summary["saddles"], self._core.saddles)]
 
     @property
+    def rates(self) -> Rates | None:
+        """Rates and lifetimes, if the run had temperatures; :func:`~spinneb.rates` gives those at any others."""
+        return Rates(self) if "rates" in self.summary else None
+
+    @property
     def minima(self) -> list[Array]:
         """Minima between the ends, each (site, xyz)."""
         return [np.asarray(m) for m in self._core.minima]

@@ -57,6 +57,8 @@ class System:
     ) -> None:
         if material is not None and (moment is not None or Ms is not None):
             raise TypeError("a material has its own moment: give either material= or moment= (Ms=)")
+        if isinstance(energy, (Term, Mapping)):
+            raise TypeError(f"energy is a list of terms, also of one: write [{energy!r}]")
         terms = list(energy)
         for term in terms:
             if not isinstance(term, (Term, Mapping)):
