@@ -49,8 +49,8 @@ impl Lattice {
         self.to([0, 1, 2].map(|d| cell[d] as f64 + at[d]))
     }
 
-    /// So many steps along each direction.
-    pub(super) fn to(&self, steps: Vector) -> Vector {
+    /// So many steps along each direction, from the origin, in the unit of [`position`](Self::position).
+    pub fn to(&self, steps: Vector) -> Vector {
         let along = |d: usize| vector::scale(self.steps[d].0 * steps[d], self.steps[d].1.vector());
         vector::add(vector::add(along(0), along(1)), along(2))
     }

@@ -1,5 +1,6 @@
 //! `energy_path.svg` and `.png`: energy against the reaction coordinate, images as marks on the interpolated curve, saddles as
-//! diamonds, the barrier as a double arrow. Several paths are laid over each other, each with its barrier in the legend.
+//! diamonds (of those that stand too close for their marks, some), the barrier as a double arrow. Several paths are laid over each
+//! other, each with its barrier in the legend.
 //!
 //! Their numbers are those of `path.csv` (images), `profile.csv` (curve) and `summary.json` (saddles and barrier).
 
@@ -74,6 +75,11 @@ impl EnergyPath {
     fn told(&self, mev: f64, unit: EnergyUnit) -> String {
         let sign = if self.certainty.is_certified() { "= " } else { "" };
         format!("{sign}{}", self.certainty.number(mev, unit.per_mev, 4))
+    }
+
+    /// The reaction coordinate at its end (rad).
+    pub(super) fn length(&self) -> f64 {
+        self.curve().last().map_or(0.0, |p| p.0)
     }
 
     pub(super) fn energies(&self) -> impl Iterator<Item = f64> {
@@ -160,6 +166,7 @@ fn plot(paths: &[EnergyPath], unit: EnergyUnit) -> LinePlot {
     let mut plot = LinePlot::new("Reaction coordinate (rad)", unit.axis_label());
     plot.legend_above = paths.len() > 1;
     let turns = turns(&paths.iter().map(EnergyPath::curve).collect::<Vec<_>>());
+    let longest = paths.iter().map(EnergyPath::length).fold(0.0, f64::max);
     for (k, path) in paths.iter().enumerate() {
         let colour = if paths.len() == 1 { BLUE } else { SERIES[k % SERIES.len()] };
         // images of many paths would hide each other, and so would those of paths on the same place
@@ -171,8 +178,8 @@ fn plot(paths: &[EnergyPath], unit: EnergyUnit) -> LinePlot {
         plot.series.push(curve);
         plot.series.extend(marker.map(|m| Series::markers(unit.scaled(&path.images), m).colour(colour)));
         let saddle_colour = if paths.len() == 1 { VERMILLION } else { colour };
-        let saddle = saddle_marker(path.saddles.len());
-        plot.series.push(Series::markers(unit.scaled(&path.saddles), saddle).colour(saddle_colour));
+        let saddles = unit.scaled(&marked_saddles(&path.saddles, longest));
+        plot.series.push(Series::markers(saddles, Marker::Diamond).colour(saddle_colour));
     }
     plot.y.range = Some(energy_range(paths, unit));
     if plot.series.iter().flat_map(|s| &s.points).all(|p| p.0 == 0.0) {
@@ -184,9 +191,29 @@ fn plot(paths: &[EnergyPath], unit: EnergyUnit) -> LinePlot {
 /// Of up to so many paths the images are marked.
 const FEW: usize = 3;
 
-/// Smaller where there are many.
-pub(super) fn saddle_marker(saddles: usize) -> Marker {
-    if saddles <= 20 { Marker::Diamond } else { Marker::Dot }
+/// Marks of saddles are at least so far apart, in lengths of the path: two of their widths here, one beside the spins.
+const APART: f64 = 0.07;
+
+/// The saddles that have a mark: the highest, and to both sides of it each that has room for one beside the last.
+pub(super) fn marked_saddles(saddles: &[(f64, f64)], length: f64) -> Vec<(f64, f64)> {
+    let mut sorted = saddles.to_vec();
+    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let Some(top) = (0..sorted.len()).reduce(|a, b| if sorted[b].1 > sorted[a].1 { b } else { a }) else {
+        return sorted;
+    };
+    let mut marked = vec![sorted[top]];
+    let (before, after) = sorted.split_at(top);
+    for side in [&mut before.iter().rev() as &mut dyn Iterator<Item = _>, &mut after.iter()] {
+        let mut last = sorted[top];
+        for saddle in side.filter(|s| s.0 != sorted[top].0) {
+            if (saddle.0 - last.0).abs() >= APART * length {
+                last = *saddle;
+                marked.push(last);
+            }
+        }
+    }
+    marked.sort_by(|a, b| a.0.total_cmp(&b.0));
+    marked
 }
 
 /// Smaller where there are many, none where they would run into a band.
@@ -391,6 +418,15 @@ mod tests {
             barrier: Some(Barrier { forward_mev: forward, backward_mev: backward }),
             ..EnergyPath::default()
         }
+    }
+
+    #[test]
+    fn the_highest_saddle_is_marked_and_of_the_others_those_that_have_room() {
+        let valley: Vec<(f64, f64)> = (0..=100).map(|k| (f64::from(k), if k == 37 { 2.0 } else { 1.0 })).collect();
+        let marked: Vec<f64> = marked_saddles(&valley, 90.0).iter().map(|p| p.0).collect();
+        assert_eq!(marked, [2.0, 9.0, 16.0, 23.0, 30.0, 37.0, 44.0, 51.0, 58.0, 65.0, 72.0, 79.0, 86.0, 93.0, 100.0]);
+        assert_eq!(marked_saddles(&[(8.0, 3.0), (1.0, 2.0)], 10.0), [(1.0, 2.0), (8.0, 3.0)]);
+        assert_eq!(marked_saddles(&[], 10.0), []);
     }
 
     fn assert_levels(path: &EnergyPath, levels: &[f64]) {

@@ -7,7 +7,7 @@
 
 use super::canvas::{BLUE, Canvas, GREEN, LinePlot, Look, Marker, PURPLE, SKY, Series, VERMILLION, decimal, pattern};
 use super::csv::Table;
-use super::energy_path_plot::saddle_marker;
+use super::energy_path_plot::marked_saddles;
 use super::staggered::{is_staggered, largest_change, means};
 use super::{Plot, PlotData, WriteTable};
 use crate::error::{Error, Result};
@@ -48,11 +48,11 @@ impl Plot for MagnetisationPlot {
         }
         let points: Vec<(f64, f64)> = s.iter().copied().zip(along.iter().copied()).collect();
         let marker = (points.len() <= FEW).then_some(Marker::Disc);
-        let saddles = data.energy.saddles.iter().filter_map(|p| Some((p.0, at(&points, p.0)?))).collect();
+        let marked = marked_saddles(&data.energy.saddles, data.energy.length());
+        let saddles = marked.iter().filter_map(|p| Some((p.0, at(&points, p.0)?))).collect();
         plot.series
             .insert(0, Series { marker, ..Series::line(points).colour(BLUE).width(1.4).label(mean.axis_name()) });
-        let saddle = saddle_marker(data.energy.saddles.len());
-        plot.series.push(Series::markers(saddles, saddle).colour(VERMILLION).label("saddle"));
+        plot.series.push(Series::markers(saddles, Marker::Diamond).colour(VERMILLION).label("saddle"));
         let (lo, hi) = plot.data_range(plot.y.scale, 0.06, |p| p.1);
         // what does not change is a line in the middle, not noise
         let middle = (lo + hi) / 2.0;

@@ -2,34 +2,43 @@
 //! halfway down and the last.
 //!
 //! Hue is the angle atan2(m_y, m_x) in the plane, lightness is m_z: nearly white along +z, nearly black along −z, as in the page; a wheel
-//! tells the colours. Where no site is, it is grey. Of a lattice with several layers along z the middle one is shown.
+//! tells the colours. Each site colours its cell ([`SiteCell`]); where no site is, it is grey. Of a lattice with several layers along z
+//! the middle one is shown.
 
 use super::PlotData;
 use super::canvas::{
     Align, BLACK, Canvas, Colour, GREY, LABEL_PT, LIGHT_GREY, Look, MM, Rect, SMALL_PT, THIN_PT, Text, WHITE,
     direction, mix,
 };
+use super::site_cells::SiteCell;
 use crate::error::{Error, Result};
 use crate::field::Components;
 use crate::geometry::Vector;
 use crate::lattice::Lattice;
 use crate::words::rounded;
-use std::collections::BTreeMap;
 
 /// Where the sites are.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SitePlaces {
     /// Positions, one a site.
     pub at: Vec<Vector>,
-    /// Their unit.
+    /// Which of the cells each site has.
+    pub atoms: Vec<usize>,
+    /// What the sites colour, one an atom of the lattice's cell.
+    pub cells: Vec<SiteCell>,
+    /// The unit of lengths.
     pub unit: &'static str,
 }
 
 impl SitePlaces {
     /// Of a lattice that is no row.
     pub fn of(lattice: &Lattice) -> Option<SitePlaces> {
-        let at = || (0..lattice.sites).map(|i| lattice.position(i)).collect();
-        (!lattice.is_row()).then(|| SitePlaces { at: at(), unit: lattice.unit() })
+        (!lattice.is_row()).then(|| SitePlaces {
+            at: (0..lattice.sites).map(|i| lattice.position(i)).collect(),
+            atoms: (0..lattice.sites).map(|i| lattice.cell(i).0).collect(),
+            cells: SiteCell::of(lattice),
+            unit: lattice.unit(),
+        })
     }
 }
 
@@ -45,8 +54,6 @@ const MARGIN: f64 = 4.0;
 const PIXELS: f64 = 260.0;
 /// A map is at most so many times as high as wide.
 const HIGHEST: f64 = 1.6;
-/// A site colours what is within this part of the distance of neighbours, if no other is nearer.
-const REACH: f64 = 0.75;
 
 /// The figure. An error where the spins are not known.
 pub fn draw_spin_maps(data: &PlotData, places: &SitePlaces, look: &Look) -> Result<Canvas> {
@@ -89,14 +96,14 @@ struct Plan {
 }
 
 impl Plan {
-    /// Three maps in a row, and the wheel in the place of a sixth; of strips fewer, and the wheel below them.
+    /// Three maps in a row, or two of strips, and the wheel in the place of one more; of flat strips one, and the wheel below them.
     fn of(width: f64, size: [f64; 2], maps: usize) -> Plan {
         let share = |columns: usize| (width - 2.0 * MARGIN - (columns - 1) as f64 * GAP) / columns as f64;
         let columns = STRIPS.iter().find(|(low, _)| size[1] < low * size[0]).map_or(COLUMNS, |(_, columns)| *columns);
         let wide = share(columns);
         let scale = (wide / size[0]).min(HIGHEST * wide / size[1]);
         let room = 0.8 * share(COLUMNS);
-        let own = columns < COLUMNS;
+        let own = columns == 1;
         let high = scale * size[1];
         let rows = (maps + usize::from(!own)).div_ceil(columns);
         let below = rows as f64 * (high + TITLE + GAP);
@@ -105,7 +112,8 @@ impl Plan {
         let (x, y) = if own { ((width - share(COLUMNS)) / 2.0, MARGIN + TITLE + below) } else { plan.corner(maps) };
         // among the maps it may need more room than they
         let more = if own { room + TITLE + GAP } else { (room - high).max(0.0) };
-        plan.wheel = Rect { x0: x, y0: y, x1: x + share(COLUMNS), y1: y + if own { room } else { room.max(high) } };
+        let across = if own { share(COLUMNS) } else { wide };
+        plan.wheel = Rect { x0: x, y0: y, x1: x + across, y1: y + if own { room } else { room.max(high) } };
         plan.height = 2.0 * MARGIN + below - GAP + TITLE + more;
         plan
     }
@@ -153,77 +161,63 @@ fn maps(points: &[(f64, f64)], images: usize) -> Vec<(usize, &'static str)> {
 }
 
 /// The sites that are shown: of one layer along z.
-struct Layer {
-    /// Places in the plane, and which sites.
-    sites: Vec<(usize, [f64; 2])>,
+struct Layer<'a> {
+    places: &'a SitePlaces,
+    /// Which sites.
+    sites: Vec<usize>,
     /// The corner of least coordinates, and the width and height.
     low: [f64; 2],
     size: [f64; 2],
     /// Its height, where there are others.
     z: Option<f64>,
-    /// Distance of neighbours.
-    apart: f64,
-    /// Sites by squares of that size.
-    squares: BTreeMap<[i64; 2], Vec<usize>>,
 }
 
-impl Layer {
-    fn of(places: &SitePlaces, vacant: &[bool]) -> Layer {
-        let bounds = |c: usize| {
-            let all = places.at.iter().map(|p| p[c]);
-            all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
-        };
-        let (bottom, top) = bounds(2);
+impl Layer<'_> {
+    fn of<'a>(places: &'a SitePlaces, vacant: &[bool]) -> Layer<'a> {
+        let heights = places.at.iter().map(|p| p[2]);
+        let (bottom, top) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), z| (l.min(z), h.max(z)));
         let middle = 0.5 * (bottom + top);
         let near = |p: &Vector| (p[2] - middle).abs();
         let least = places.at.iter().map(near).fold(f64::INFINITY, f64::min);
         let z = places.at.iter().find(|p| near(p) <= least * (1.0 + 1e-9)).map_or(middle, |p| p[2]);
-        let is_shown = |i: usize| (places.at[i][2] - z).abs() < 1e-6 && !vacant.get(i).is_some_and(|v| *v);
-        let chosen = (0..places.at.len()).filter(|i| is_shown(*i));
-        let sites: Vec<(usize, [f64; 2])> = chosen.map(|i| (i, [places.at[i][0], places.at[i][1]])).collect();
-        let far = |k: usize| {
-            let others = sites.iter().filter(|(i, _)| *i != sites[k].0);
-            others.map(|(_, p)| libm::hypot(p[0] - sites[k].1[0], p[1] - sites[k].1[1])).fold(f64::INFINITY, f64::min)
-        };
-        let apart = if sites.len() > 1 { far(0).min(far(sites.len() / 2)) } else { 1.0 };
-        let mut squares: BTreeMap<[i64; 2], Vec<usize>> = BTreeMap::new();
-        for (k, (_, p)) in sites.iter().enumerate() {
-            squares.entry(p.map(|x| (x / apart).floor() as i64)).or_default().push(k);
-        }
+        let is_shown = |i: &usize| (places.at[*i][2] - z).abs() < 1e-6 && !vacant.get(*i).is_some_and(|v| *v);
+        let sites: Vec<usize> = (0..places.at.len()).filter(is_shown).collect();
         let extent = |c: usize| {
-            let all = sites.iter().map(|(_, p)| p[c]);
-            let (low, high) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
-            (low - 0.5 * apart, high - low + apart)
+            let bounds = sites.iter().map(|i| (places.at[*i][c], &places.cells[places.atoms[*i]]));
+            bounds.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), (x, cell)| {
+                (l.min(x + cell.low[c]), h.max(x + cell.high[c]))
+            })
         };
-        let ((x, width), (y, height)) = (extent(0), extent(1));
+        let [x, y] = [extent(0), extent(1)];
         let z = (top - bottom > 1e-6).then_some(z);
-        Layer { sites, low: [x, y], size: [width, height], z, apart, squares }
-    }
-
-    /// The site that colours a place, if one is near.
-    fn site_at(&self, at: [f64; 2]) -> Option<usize> {
-        let [x, y] = at.map(|x| (x / self.apart).floor() as i64);
-        let around = (-1..=1).flat_map(|b| (-1..=1).map(move |a| [x + a, y + b]));
-        let near = around.filter_map(|square| self.squares.get(&square)).flatten();
-        let far = |k: usize| libm::hypot(self.sites[k].1[0] - at[0], self.sites[k].1[1] - at[1]);
-        let nearest = near.map(|k| (far(*k), *k)).min_by(|p, q| p.0.total_cmp(&q.0))?;
-        (nearest.0 < REACH * self.apart).then_some(self.sites[nearest.1].0)
+        Layer { places, sites, low: [x.0, y.0], size: [x.1 - x.0, y.1 - y.0], z }
     }
 
     fn draw(&self, canvas: &mut Canvas, rect: Rect, m: Components) {
         let scale = PIXELS / self.size[0].max(self.size[1]);
         let [columns, rows] = self.size.map(|x| (scale * x).ceil().max(1.0) as usize);
-        let mut rgb = Vec::with_capacity(3 * columns * rows);
-        let nothing = mix(LIGHT_GREY, GREY, 0.3);
-        for row in (0..rows).rev() {
-            for column in 0..columns {
-                let fraction = [(column as f64 + 0.5) / columns as f64, (row as f64 + 0.5) / rows as f64];
-                let at = [0, 1].map(|c| self.low[c] + fraction[c] * self.size[c]);
-                let Colour(r, g, b) = self.site_at(at).map_or(nothing, |i| direction(m.get(i)));
-                rgb.extend([r, g, b]);
+        let Colour(r, g, b) = mix(LIGHT_GREY, GREY, 0.3);
+        let mut rgb = [r, g, b].repeat(columns * rows);
+        for &i in &self.sites {
+            let Colour(r, g, b) = direction(m.get(i));
+            for pixel in self.pixels(i, [columns, rows]) {
+                rgb[3 * pixel..3 * pixel + 3].copy_from_slice(&[r, g, b]);
             }
         }
         canvas.raster(rect, columns, rows, rgb);
+    }
+
+    /// The pixels whose middle is in the cell of a site, by rows from the top.
+    fn pixels(&self, i: usize, [columns, rows]: [usize; 2]) -> impl Iterator<Item = usize> {
+        let (at, cell) = (self.places.at[i], &self.places.cells[self.places.atoms[i]]);
+        let edge = [self.size[0] / columns as f64, self.size[1] / rows as f64];
+        let across =
+            move |c: usize, end: f64, of: usize| (((at[c] + end - self.low[c]) / edge[c]).max(0.0) as usize).min(of);
+        let range = move |c: usize, of: usize| across(c, cell.low[c], of)..(across(c, cell.high[c], of) + 1).min(of);
+        let middle = move |c: usize, k: usize| self.low[c] + (k as f64 + 0.5) * edge[c] - at[c];
+        let inside = move |(x, y): &(usize, usize)| cell.holds([middle(0, *x), middle(1, *y)]);
+        let all = range(1, rows).flat_map(move |y| range(0, columns).map(move |x| (x, y)));
+        all.filter(inside).map(move |(x, y)| (rows - 1 - y) * columns + x)
     }
 
     /// Which layer of several the maps show. A line of its own: with the rest it is wider than the figure.
@@ -260,27 +254,37 @@ fn wheel(canvas: &mut Canvas, room: Rect) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lattice::LatticeSpec;
     use crate::output::EnergyPath;
     use crate::path::Path;
     use crate::spins::Spins;
 
     /// Two by three sites, 2 nm apart, the first vacant.
     fn film() -> SitePlaces {
-        let at = (0..6).map(|i| [2.0 * (i % 2) as f64, 2.0 * (i / 2) as f64, 0.0]).collect();
-        SitePlaces { at, unit: "nm" }
+        let lattice = r#"{"square": {"cells": [2, 3], "spacing": "2 nm"}}"#;
+        SitePlaces::of(&serde_json::from_str::<LatticeSpec>(lattice).unwrap().resolve().unwrap()).unwrap()
     }
 
     #[test]
-    fn a_place_has_the_colour_of_the_nearest_site_and_none_far_from_all() {
-        let layer = Layer::of(&film(), &[true]);
-        assert_eq!((layer.sites.len(), layer.apart, layer.size), (5, 2.0, [4.0, 6.0]));
-        assert_eq!(layer.site_at([2.3, 0.4]), Some(1));
-        assert_eq!(layer.site_at([0.1, 3.9]), Some(4));
-        assert_eq!(layer.site_at([0.0, 0.0]), None);
-        let layers = SitePlaces { at: (0..3).map(|k| [0.0, 0.0, k as f64]).collect(), unit: "a" };
-        let middle = Layer::of(&layers, &[]);
-        assert_eq!((middle.z, middle.words("a")), (Some(1.0), Some("the layer at z = 1 a".into())));
+    fn each_site_colours_its_cell_and_a_vacant_one_nothing() {
+        let places = film();
+        let layer = Layer::of(&places, &[true]);
+        assert_eq!((layer.sites.len(), layer.low, layer.size), (5, [-1.0, -1.0], [4.0, 6.0]));
+        let pixels = |i: usize| layer.pixels(i, [4, 6]).collect::<Vec<_>>();
+        assert_eq!((pixels(1), pixels(4)), (vec![22, 23, 18, 19], vec![4, 5, 0, 1]));
+        let mut all: Vec<usize> = layer.sites.iter().flat_map(|i| pixels(*i)).collect();
+        all.sort_unstable();
+        assert!(all.len() == 20 && all.windows(2).all(|pair| pair[0] < pair[1]), "{all:?}");
         assert_eq!(layer.words("nm"), None);
+    }
+
+    #[test]
+    fn of_several_layers_the_middle_one_is_shown() {
+        let lattice = r#"{"cubic": {"cells": [2, 2, 3]}}"#;
+        let lattice = serde_json::from_str::<LatticeSpec>(lattice).unwrap().resolve().unwrap();
+        let places = SitePlaces::of(&lattice).unwrap();
+        let middle = Layer::of(&places, &[]);
+        assert_eq!((middle.z, middle.words("a")), (Some(1.0), Some("the layer at z = 1 a".into())));
     }
 
     #[test]

@@ -11,10 +11,10 @@
 //! saddles as diamonds. Their numbers are those of `path.npz` (or `path.ovf`, or `spins.csv`) and `path.csv`.
 
 use super::canvas::{
-    Align, Axis, BLACK, COLUMN_MM, Canvas, Colour, Frame, LABEL_PT, LIGHT_GREY, Look, MM, Rect, SMALL_PT, THIN_PT,
-    Text, Ticks, VERMILLION, colour_bar, cyclic, diverging, heat_map, mark, mix,
+    Align, Axis, BLACK, COLUMN_MM, Canvas, Colour, Frame, LABEL_PT, LIGHT_GREY, Look, MM, Marker, Rect, SMALL_PT,
+    THIN_PT, Text, Ticks, VERMILLION, colour_bar, cyclic, diverging, heat_map, mark, mix,
 };
-use super::energy_path_plot::saddle_marker;
+use super::energy_path_plot::marked_saddles;
 use super::staggered::{is_staggered, sign};
 use super::{Places, Plot, PlotData, draw_spin_maps};
 use crate::error::{Error, Result};
@@ -134,7 +134,8 @@ impl Along {
         // a path without length, or a table of another one, has none
         let s = if s.len() == images && s.last() > s.first() { s } else { Vec::new() };
         let ticks = Axis::linear(0.0, s.last().copied().unwrap_or(0.0), 6);
-        Along { images: s, ticks, saddles: data.energy.saddles.iter().map(|p| p.0).collect() }
+        let saddles = marked_saddles(&data.energy.saddles, data.energy.length()).iter().map(|p| p.0).collect();
+        Along { images: s, ticks, saddles }
     }
 
     /// Room it takes (pt).
@@ -172,7 +173,7 @@ impl Along {
         let at = (r.x1 + self.width()? - 3.0, (r.y0 + r.y1) / 2.0);
         canvas.text(at, Text::new("Reaction coord. (rad)", LABEL_PT).align(Align::Centre).upwards())?;
         for y in self.saddles.iter().filter_map(|s| height(*s)) {
-            mark(canvas, (r.x1, y), saddle_marker(self.saddles.len()), VERMILLION);
+            mark(canvas, (r.x1, y), Marker::Diamond, VERMILLION);
         }
         Ok(())
     }
