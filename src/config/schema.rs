@@ -128,13 +128,13 @@ fn simple(schema: &Value, part: &Value) -> String {
         _ => "a list".into(),
     };
     let told = |kind: &str| own(part).unwrap_or_else(|| kind.into());
+    if let Some(words) = part["enum"].as_array() {
+        return words.iter().map(inline).collect::<Vec<_>>().join(" or ");
+    }
     match kinds.iter().filter_map(Value::as_str).find(|kind| *kind != "null") {
         Some("number") => own(part).map_or("a number".into(), |told| format!("a number, {told}")),
         Some("integer") => "a whole number".into(),
         Some("boolean") => "true or false".into(),
-        Some("string") if part["enum"].is_array() => {
-            part["enum"].as_array().into_iter().flatten().map(inline).collect::<Vec<_>>().join(" or ")
-        }
         Some("string") => told("a text"),
         Some("array") => many(),
         _ if part["properties"].is_object() && part["additionalProperties"] == false => keys_of(part),

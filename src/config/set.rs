@@ -44,7 +44,8 @@ fn split(assignment: &str) -> Result<(&str, &str)> {
     }
     match scan(value) {
         Ok(_) => Ok((path, value)),
-        Err(fault) if value.starts_with(['{', '[', '"']) => Err(Error::invalid(
+        // a number that is none in JSON, such as NaN, is not meant as a string either
+        Err(fault) if value.starts_with(['{', '[', '"']) || value.parse::<f64>().is_ok() => Err(Error::invalid(
             place,
             format!("the value is not JSON: column {}: {}", position(value, fault.at).1, fault.message),
         )),

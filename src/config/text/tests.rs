@@ -418,6 +418,14 @@ fn assignments_that_cannot_be_made_say_why() {
             "material=materials/x.json",
             r#"--set material: "materials/x.json" is not JSON; a string is written --set 'material="materials/x.json"'"#,
         ),
+        (
+            "neb.tolerance=1e999",
+            r#"--set neb.tolerance: the value is not JSON: column 1: the number "1e999" is too large for double precision"#,
+        ),
+        (
+            "neb.tolerance=NaN",
+            r#"--set neb.tolerance: the value is not JSON: column 1: found "NaN": numbers must be finite"#,
+        ),
         ("path.images=1 2", r#"--set path.images: "1 2" is not JSON; a string is written --set 'path.images="1 2"'"#),
     ] {
         assert_eq!(set(text, &[assignment]), Err(expected.to_string()), "{assignment}");
