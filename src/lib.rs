@@ -14,11 +14,15 @@
 //! | [`config`] | the JSON of a run |
 //! | [`output`] | files and figures |
 //! | [`drive`] | a whole run: ends, first paths, band, saddles, proof |
+//! | [`landscape`] | minima, the passes between them, and the routes over these |
 //! | [`rates`] | lifetimes of states |
 //! | [`network`], [`dynamics`] | networks of states and their times; spins in a bath |
 //! | [`band`], [`stationary`], [`symmetry`] | the force on a path; saddles and minima to machine precision; what leaves an energy as it is |
-//! | [`energy`], [`path`], [`optimise`] | energy terms; first paths; methods that move spins |
-//! | [`state`] | spin states |
+//! | [`path`], [`optimise`] | first paths; methods that move spins |
+//! | [`state`], [`hessian`] | spin states; the Hessian in tangent coordinates |
+//! | [`energy`] | energy terms |
+//! | [`control`] | how often gradients were computed, and whether a computation is to stop |
+//! | [`record`] | what is kept of a run that is interrupted |
 //! | [`files`] | files of spins: OVF, npz, npy, csv, VTK |
 //! | [`spins`], [`sphere`] | configurations and the product of spheres they live on |
 //! | [`lattice`], [`profile`], [`geometry`], [`units`], [`field`], [`linalg`], [`registry`], [`words`], [`error`] | the ground |

@@ -32,6 +32,7 @@ mod lattices;
 mod longrange;
 mod lowest;
 mod media;
+mod modules;
 mod network;
 mod output;
 mod physics;

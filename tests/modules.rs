@@ -1,0 +1,54 @@
+//! The front page of the library's documentation names every module, and they import each other as it says.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+
+/// The modules of the table, by row.
+fn rows(front: &str) -> Vec<Vec<&str>> {
+    let cells = front.lines().filter_map(|line| line.strip_prefix("//! | ")?.split(" | ").next());
+    cells.map(|cell| cell.split('`').skip(1).step_by(2).collect()).filter(|row: &Vec<&str>| !row.is_empty()).collect()
+}
+
+fn sources(place: &Path, found: &mut Vec<PathBuf>) {
+    if place.is_dir() {
+        fs::read_dir(place).unwrap().for_each(|entry| sources(&entry.unwrap().path(), found));
+    } else if place.extension().is_some_and(|e| e == "rs") && place.file_stem().is_some_and(|name| name != "tests") {
+        found.push(place.into());
+    }
+}
+
+/// The modules of the crate that a file names in its code, its tests and comments left out.
+fn imports(text: &str) -> Vec<&str> {
+    let code = text.split("#[cfg(test)]").next().unwrap_or_default();
+    let lines = code.lines().filter(|line| !line.trim_start().starts_with("//"));
+    let names = lines.flat_map(|line| line.split("crate::").skip(1));
+    names.map(|rest| rest.split(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap_or_default()).collect()
+}
+
+#[test]
+fn the_front_page_names_every_module_and_none_imports_one_above_it() {
+    let front = fs::read_to_string(format!("{ROOT}/src/lib.rs")).unwrap();
+    let rows = rows(&front);
+    let last = rows.len() - 1;
+    let row_of: BTreeMap<&str, usize> =
+        rows.iter().enumerate().flat_map(|(k, row)| row.iter().map(move |name| (*name, k))).collect();
+    for module in front.lines().filter_map(|line| line.strip_prefix("pub mod ")?.strip_suffix(';')) {
+        assert!(row_of.contains_key(module), "{module} is not on the front page");
+    }
+    for (module, row) in &row_of {
+        let mut files = Vec::new();
+        let place = PathBuf::from(format!("{ROOT}/src/{module}"));
+        sources(&if place.is_dir() { place } else { place.with_extension("rs") }, &mut files);
+        assert!(!files.is_empty(), "{module} is not there");
+        for file in files {
+            for other in imports(&fs::read_to_string(&file).unwrap()) {
+                let Some(below) = row_of.get(other) else { continue };
+                let lower = below > row || (below == row && *row == last);
+                assert!(other == *module || lower, "{}: {module} imports {other}", file.display());
+            }
+        }
+    }
+}
