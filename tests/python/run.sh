@@ -29,7 +29,8 @@ if [ "$slow" = "not slow" ]; then
         --config 'profile.release.package."*".opt-level=3'
     most=
 else
-    set --
+    # in one part, as tools/release.sh makes it
+    set -- --config profile.release.package.spinneb.codegen-units=1
     most=5000000
 fi
 (cd "$root/python" && "$bin/maturin" build --quiet --release --locked --interpreter "$bin/python" --out "$work/wheels" "$@")
