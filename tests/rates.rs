@@ -3,6 +3,7 @@
 use crate::common::{Build, cases, number, solve};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use serde::Deserialize;
 use spinneb::config::load_text;
 use spinneb::drive::{Outcome, Problem};
 use spinneb::energy::{Anisotropy, Exchange, Hamiltonian};
@@ -459,6 +460,61 @@ fn a_skyrmion_that_slides_over_its_film_agrees_with_dense_eigenvalues_and_the_vo
     // cold enough, a minimum is one place
     let cold = solve(&film(&lattice, energy, [skyrmion, UP], 1e-4));
     assert!(rate(&cold, Way::Forward).minimum_zeros.is_empty() && rate(&cold, Way::Forward).htst.is_some());
+}
+
+#[derive(Deserialize)]
+#[allow(non_snake_case)]
+struct NineShells {
+    barrier_meV: [f64; 2],
+    htst_per_s: f64,
+    langer_per_s: f64,
+    skyrmion: Slid,
+    saddle: Slid,
+    ferromagnet_ln_determinant: f64,
+}
+
+#[derive(Deserialize)]
+#[allow(non_snake_case)]
+struct Slid {
+    pinning_meV: [f64; 2],
+    volume_rad: f64,
+    ln_determinant: f64,
+}
+
+impl Slid {
+    /// Whether these are its two translations.
+    fn check(&self, zeros: &[ZeroModes]) {
+        assert!(zeros.len() == 1 && zeros[0].count == 2 && zeros[0].kind == ZeroKind::Translation, "{zeros:?}");
+        assert!((zeros[0].volume / self.volume_rad - 1.0).abs() < 1e-8, "{zeros:?}");
+        // of the skyrmion nothing but rounding
+        let near = |(found, own): (&f64, &f64)| (found - own).abs() < 1e-8 * own.max(1e-3);
+        assert!(zeros[0].pinning_mev.iter().zip(&self.pinning_meV).all(near), "{zeros:?}");
+    }
+}
+
+#[test]
+fn a_skyrmion_of_nine_shells_agrees_with_a_dense_computation_outside_of_this_program() {
+    let expected: NineShells = serde_json::from_str(include_str!("reference/nine_shells.json")).unwrap();
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/pd_fe_ir111_skyrmion.json");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let more = r#"{ "search": {"effort": "none"}, "rates": {"temperatures": ["60 K"], "damping": 0.3},"#;
+    let problem = load_text(&path, text.replacen('{', more, 1)).unwrap().problem().unwrap();
+    let outcome = solve(&problem);
+    assert!(outcome.certified, "{:?}", outcome.warnings);
+    let minima = [expected.skyrmion.ln_determinant, expected.ferromagnet_ln_determinant];
+    for (side, way) in Way::BOTH.into_iter().enumerate() {
+        let r = rate(&outcome, way);
+        let barrier = r.barrier_mev.unwrap();
+        assert!((barrier / expected.barrier_meV[side] - 1.0).abs() < 1e-10, "{barrier}");
+        let entropy = 0.5 * (minima[side] - expected.saddle.ln_determinant);
+        assert!((r.entropy_factor.unwrap() - entropy).abs() < 1e-8, "{:?} {entropy}", r.entropy_factor);
+        let [htst, langer] = [r.htst, r.langer].map(|p| p.unwrap().frequency_per_s);
+        assert!((htst / expected.htst_per_s - 1.0).abs() < 1e-8, "{htst}");
+        assert!((langer / expected.langer_per_s - 1.0).abs() < 1e-8, "{langer}");
+        expected.saddle.check(&r.saddle_zeros);
+    }
+    expected.skyrmion.check(&rate(&outcome, Way::Forward).minimum_zeros);
+    assert!(rate(&outcome, Way::Backward).minimum_zeros.is_empty());
 }
 
 #[test]
