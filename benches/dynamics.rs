@@ -1,10 +1,11 @@
 //! Langer's rates against spins that are seen to escape: `cargo bench --bench dynamics`.
 //!
 //! Three problems at barriers from 4 k_BT on: one spin with an easy and a hard axis (also the lowest eigenvalue of its Fokker–Planck
-//! equation), a chain of ten spins that reverses in a field by a wall from one of its ends, and a skyrmion that
-//! collapses and slides over a periodic film. Rates by forward flux (`spinneb::dynamics`), at the lowest barrier of the first two also by waiting for escapes. Times
-//! are in units of μ/γ per meV. The table and a figure go to `results/gallery/dynamics/`. With the word `quick` after
-//! `--` little is simulated.
+//! equation), a chain of ten spins that reverses in a field by a wall from one of its ends, and a skyrmion of 144 spins near the field
+//! in which it collapses, which slides over a periodic film: k_BT is 0.06 to 0.02 of the nearest exchange. Rates by forward flux
+//! (`spinneb::dynamics`), at the lowest barrier also by waiting for escapes. Times are in units of μ/γ per meV. The table and a figure
+//! go to `results/gallery/dynamics/`. The whole campaign takes a quarter of an hour of one processor. With the name of a problem after
+//! `--` that one is done anew, with the word `quick` little is simulated and nothing written.
 
 #[allow(dead_code, unused_imports)]
 #[path = "../examples/04_rates_of_one_spin.rs"]
@@ -13,13 +14,15 @@ mod one_spin;
 use cpu_time::ProcessTime;
 use spinneb::config::load_text;
 use spinneb::drive::{Outcome, Problem, Silent, run};
-use spinneb::dynamics::{Bath, Flux, FluxRate, escape_rate, forward_flux};
+use spinneb::dynamics::{Bath, Flux, FluxRate, Walkers, escape_rate, forward_flux, total};
 use spinneb::output::canvas::{BLACK, BLUE, Colour, GREEN, GREY, LinePlot, Marker, Series, VERMILLION};
 use spinneb::units::{HBAR, K_B};
 use std::fmt::Write;
 use std::path::Path;
 
 const FOLDER: &str = "results/gallery/dynamics";
+/// Steps that trajectories in A are left to themselves before they count.
+const SETTLE: usize = 1000;
 
 /// A problem, and how its escapes are looked at.
 struct Case {
@@ -29,8 +32,8 @@ struct Case {
     damping: f64,
     /// Δ.
     barriers: &'static [f64],
-    /// Grows from A to the other side, from all m_z.
-    order: fn(&[f64]) -> f64,
+    /// A spin's share of λ, which grows from A to the other side.
+    order: fn([f64; 3]) -> f64,
     /// How many λ there are beyond the first one, and what part of the way to the other side the last one is.
     interfaces: usize,
     reach: f64,
@@ -38,7 +41,7 @@ struct Case {
     step: f64,
     /// Crossings and trials of a block, and blocks.
     amount: [usize; 2],
-    /// Escapes that are waited for at the lowest barrier; none where that would take too long.
+    /// Escapes that are waited for at the lowest barrier.
     escapes: usize,
 }
 
@@ -51,12 +54,12 @@ const CASES: [Case; 3] = [
         colour: BLUE,
         damping: 1.0,
         barriers: &[4.0, 6.0, 8.0, 10.0, 12.0],
-        order: |z| -mean(z),
+        order: |m| -m[2],
         interfaces: 12,
         reach: 0.8,
         step: 0.01,
-        amount: [1000, 24],
-        escapes: 2000,
+        amount: [4000, 24],
+        escapes: 6000,
     },
     Case {
         name: "ten spins, a wall",
@@ -67,64 +70,102 @@ const CASES: [Case; 3] = [
         colour: VERMILLION,
         damping: 1.0,
         barriers: &[4.0, 7.0, 10.0],
-        order: |z| -mean(z),
-        interfaces: 12,
+        order: |m| -0.1 * m[2],
+        interfaces: 20,
         reach: 0.8,
         step: 0.04,
-        amount: [600, 24],
-        escapes: 600,
+        amount: [2000, 24],
+        escapes: 6000,
     },
     Case {
         name: "skyrmion, 144 spins",
-        config: r#"{"material": {"name": "skyrmion", "moment": "1 mu_B", "energy": [{"exchange": {"J": ["1 meV"]}},
-            {"dmi": {"D": "0.5 meV", "kind": "interfacial"}}, {"anisotropy": {"K": "0.35 meV", "axis": [0, 0, 1]}}]},
-            "lattice": {"square": {"cells": [12, 12], "periodic": true}},
-            "initial": {"skyrmion": {"radius": 2}}, "final": {"uniform": {"direction": [0, 0, 1]}}"#,
+        config: r#"{"material": {"name": "skyrmion", "moment": "1 mu_B", "energy": [{"exchange": {"J": ["1 meV", "1 meV"]}},
+            {"dmi": {"D": "1 meV", "kind": "interfacial"}}]}, "energy": [{"zeeman": {"B": ["0 T", "0 T", "5.5 T"]}}],
+            "lattice": {"triangular": {"cells": [12, 12], "periodic": true}},
+            "initial": {"skyrmion": {"radius": 3}}, "final": {"uniform": {"direction": [0, 0, 1]}}"#,
         colour: GREEN,
         damping: 1.0,
-        barriers: &[6.0, 9.0],
-        order: |z| z.iter().map(|z| z.min(0.0)).sum(),
-        interfaces: 14,
-        reach: 0.99,
-        step: 0.04,
-        amount: [60, 8],
-        escapes: 0,
+        barriers: &[4.0, 6.0, 8.0],
+        order: |m| (m[2] - 0.5).min(0.0),
+        interfaces: 32,
+        reach: 0.95,
+        step: 0.05,
+        amount: [320, 16],
+        escapes: 800,
     },
 ];
 
-fn mean(z: &[f64]) -> f64 {
-    z.iter().sum::<f64>() / z.len() as f64
-}
-
-/// One barrier of a case, rates in γ/μ per meV.
+/// One barrier of a case, a line of the table. Rates are over Langer's, with their standard errors.
 struct Row {
-    name: &'static str,
+    name: String,
     delta: f64,
+    /// γ/μ per meV.
     langer: f64,
-    flux: FluxRate,
-    waited: Option<FluxRate>,
+    flux: [f64; 2],
+    waited: Option<[f64; 2]>,
     exact: Option<f64>,
     seconds: f64,
 }
 
 fn main() {
-    let quick = std::env::args().any(|word| word == "quick");
-    let mut all = Vec::new();
-    for case in &CASES {
-        all.extend(rows(case, quick));
-        if !quick {
-            write(&all);
-        }
+    let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
+    let (quick, names): (Vec<&String>, Vec<&String>) = words.iter().partition(|word| *word == "quick");
+    let (quick, all) = (!quick.is_empty(), names.is_empty());
+    let asked = |case: &&Case| all || names.iter().any(|name| case.name.starts_with(name.as_str()));
+    let mut found: Vec<Row> = Vec::new();
+    for case in CASES.iter().filter(asked) {
+        found.extend(rows(case, quick));
     }
-    print!("{}", table(&all));
+    if !quick {
+        // of cases that were not asked for what is known stays
+        let known = std::fs::read_to_string(format!("{FOLDER}/table.md")).unwrap_or_default();
+        let other = known.lines().filter_map(Row::read).filter(|row| found.iter().all(|own| own.name != row.name));
+        found.extend(other.collect::<Vec<_>>());
+        found.sort_by_key(|row| CASES.iter().position(|case| case.name == row.name));
+        write(&found);
+    }
+    print!("{}", table(&found));
 }
 
 fn write(rows: &[Row]) {
+    let text = table(rows);
+    // of the digits that are told
+    let rows: Vec<Row> = text.lines().filter_map(Row::read).collect();
+    let canvas = figure(&rows).draw().expect("a figure");
     std::fs::create_dir_all(FOLDER).expect("a folder");
-    std::fs::write(format!("{FOLDER}/table.md"), table(rows)).expect("a table");
-    let canvas = figure(rows).draw().expect("a figure");
+    std::fs::write(format!("{FOLDER}/table.md"), text).expect("a table");
     std::fs::write(format!("{FOLDER}/langer_by_dynamics.svg"), canvas.svg().expect("a figure")).expect("a figure");
     std::fs::write(format!("{FOLDER}/langer_by_dynamics.png"), canvas.png().expect("a figure")).expect("a figure");
+}
+
+impl Row {
+    /// From a line of the table.
+    fn read(line: &str) -> Option<Row> {
+        let cells: Vec<&str> = line.split('|').map(str::trim).collect();
+        let [_, name, delta, langer, flux, waited, exact, seconds, _] = cells[..] else { return None };
+        let pair = |cell: &str| -> Option<[f64; 2]> {
+            let (value, error) = cell.split_once(" ± ")?;
+            Some([value.parse().ok()?, error.parse().ok()?])
+        };
+        Some(Row {
+            name: name.into(),
+            delta: delta.parse().ok()?,
+            langer: langer.parse().ok()?,
+            flux: pair(flux)?,
+            waited: pair(waited),
+            exact: exact.parse().ok(),
+            seconds: seconds.parse().ok()?,
+        })
+    }
+
+    /// As a line of the table.
+    fn line(&self) -> String {
+        let pair = |[value, error]: [f64; 2]| format!("{value:.3} ± {error:.3}");
+        let (waited, exact) = (self.waited.map(pair), self.exact.map(|exact| format!("{exact:.4}")));
+        let [waited, exact] = [waited, exact].map(|cell| cell.unwrap_or("–".into()));
+        let Row { name, delta, langer, flux, seconds, .. } = self;
+        format!("| {name} | {delta} | {langer:.4e} | {} | {waited} | {exact} | {seconds:.0} |", pair(*flux))
+    }
 }
 
 fn rows(case: &Case, quick: bool) -> Vec<Row> {
@@ -148,17 +189,24 @@ fn row(case: &Case, problem: &Problem, outcome: &Outcome, k: usize, thermal: f64
     let begun = ProcessTime::now();
     let (h, delta) = (&problem.hamiltonian, case.barriers[k]);
     let start = outcome.path.spins(0);
-    let order = |m: &[f64]| (case.order)(&m[2 * h.sites()..]);
+    let order = case.order;
     let bath = Bath::new(h, &vec![1.0; h.sites()], case.damping, thermal, case.step);
-    let goal = order(outcome.path.spins(outcome.path.images() - 1).as_slice());
-    let interfaces = interfaces(case, &bath, start.as_slice(), &order, goal);
+    let goal = total(&order, outcome.path.spins(outcome.path.images() - 1).as_slice());
+    let interfaces = interfaces(case, &bath, start.as_slice(), goal);
     let [trials, blocks] = if quick { [40, 4] } else { case.amount };
-    let flux = Flux { crossings: trials, trials, blocks, seed: 1000 * k as u64, interfaces: interfaces.clone() };
+    let flux = Flux {
+        crossings: trials,
+        trials,
+        blocks,
+        settle: SETTLE,
+        seed: 1000 * k as u64,
+        interfaces: interfaces.clone(),
+    };
     let found = forward_flux(&bath, start.as_slice(), &order, &flux);
     let last = interfaces[interfaces.len() - 1];
     let escapes = if quick { 20 } else { case.escapes };
     let waited =
-        (k == 0 && case.escapes > 0).then(|| escape_rate(&bath, start.as_slice(), &order, last, escapes, 7000));
+        (k == 0).then(|| escape_rate(&bath, start.as_slice(), &order, [interfaces[0], last], SETTLE, escapes, 7000));
     let rates = outcome.rates.as_ref().expect("rates");
     let passage = &rates.transitions[0].rows[k].passage;
     let langer = libm::exp(passage.ln_langer_per_s.expect("a rate")) / (1e12 * 2.0 / HBAR);
@@ -166,45 +214,36 @@ fn row(case: &Case, problem: &Problem, outcome: &Outcome, k: usize, thermal: f64
         .then(|| one_spin::slowest_decay(delta, case.damping, one_spin::harmonics(delta)))
         .flatten()
         .map(|decay| 0.5 * decay);
-    let row =
-        Row { name: case.name, delta, langer, flux: found, waited, exact, seconds: begun.elapsed().as_secs_f64() };
-    eprintln!("{}", line(&row));
+    let over = |rate: FluxRate| [rate.per_s / langer, rate.error_per_s / langer];
+    let row = Row {
+        name: case.name.into(),
+        delta,
+        langer,
+        flux: over(found),
+        waited: waited.map(over),
+        exact: exact.map(|exact| exact / langer),
+        seconds: begun.elapsed().as_secs_f64(),
+    };
+    eprintln!("{}", row.line());
     row
 }
 
 /// λ₀ and λ₁ where the fluctuations in A have their mean and their upper end, then evenly to the last one.
-fn interfaces(case: &Case, bath: &Bath, start: &[f64], order: &dyn Fn(&[f64]) -> f64, goal: f64) -> Vec<f64> {
-    let mut walker = spinneb::dynamics::Walker::new(start, 99);
-    let mut seen: Vec<f64> = (0..20_000)
-        .filter_map(|step| {
-            bath.step(&mut walker);
-            let own = order(&walker.m);
-            // what has left A says nothing of it
-            (step > 1000 && own < order(start) + 0.3 * (goal - order(start))).then_some(own)
-        })
-        .collect();
+fn interfaces(case: &Case, bath: &Bath, start: &[f64], goal: f64) -> Vec<f64> {
+    let (mut walkers, begin) = (Walkers::new(start, 99), total(&case.order, start));
+    let mut seen = Vec::new();
+    for step in 0..10_000 {
+        bath.step(&mut walkers);
+        // what has left A says nothing of it
+        let inside = walkers.orders(&case.order).into_iter().filter(|own| *own < begin + 0.3 * (goal - begin));
+        seen.extend(inside.filter(|_| step > SETTLE));
+    }
     seen.sort_by(f64::total_cmp);
     let at = |part: f64| seen[(part * (seen.len() - 1) as f64) as usize];
     let (middle, upper) = (at(0.6), at(0.92));
-    let last = order(start) + case.reach * (goal - order(start));
+    let last = begin + case.reach * (goal - begin);
     let further = (0..case.interfaces).map(|k| upper + (last - upper) * k as f64 / (case.interfaces - 1) as f64);
     std::iter::once(middle).chain(further).collect()
-}
-
-fn line(row: &Row) -> String {
-    let ratio = row.flux.per_s / row.langer;
-    let error = row.flux.error_per_s / row.langer;
-    let other = |rate: Option<f64>| rate.map_or("–".into(), |r| format!("{:.4}", r / row.langer));
-    let waited =
-        row.waited.map_or("–".into(), |w| format!("{:.3} ± {:.3}", w.per_s / row.langer, w.error_per_s / row.langer));
-    format!(
-        "| {} | {} | {:.4e} | {ratio:.3} ± {error:.3} | {waited} | {} | {:.0} |",
-        row.name,
-        row.delta,
-        row.langer,
-        other(row.exact),
-        row.seconds
-    )
 }
 
 fn table(rows: &[Row]) -> String {
@@ -213,7 +252,7 @@ fn table(rows: &[Row]) -> String {
     );
     rows.iter().for_each(|row| {
         // writing into a string cannot fail
-        let _ = writeln!(text, "{}", line(row));
+        let _ = writeln!(text, "{}", row.line());
     });
     text
 }
@@ -227,17 +266,17 @@ fn figure(rows: &[Row]) -> LinePlot {
         let line = Series::line(bound(sign)).colour(GREY).dash(3.0, 2.0);
         plot = plot.with(if sign > 0.0 { line.label("1 ± 2/Δ") } else { line });
     }
-    let exact: Vec<(f64, f64)> = rows.iter().filter_map(|r| Some((r.delta, r.exact? / r.langer))).collect();
+    let exact: Vec<(f64, f64)> = rows.iter().filter_map(|r| Some((r.delta, r.exact?))).collect();
     plot = plot.with(Series::line(exact).colour(BLUE).label("one spin, Fokker–Planck"));
     for case in CASES.iter().filter(|case| rows.iter().any(|r| r.name == case.name)) {
         let own = || rows.iter().filter(|r| r.name == case.name);
-        let points: Vec<(f64, f64)> = own().map(|r| (r.delta, r.flux.per_s / r.langer)).collect();
+        let points: Vec<(f64, f64)> = own().map(|r| (r.delta, r.flux[0])).collect();
         plot = plot.with(Series::markers(points, Marker::Disc).colour(case.colour).label(case.name));
         for r in own() {
-            let (y, e) = (r.flux.per_s / r.langer, r.flux.error_per_s / r.langer);
+            let [y, e] = r.flux;
             plot = plot.with(Series::line(vec![(r.delta, y - e), (r.delta, y + e)]).colour(case.colour));
         }
-        let waited: Vec<(f64, f64)> = own().filter_map(|r| Some((r.delta, r.waited?.per_s / r.langer))).collect();
+        let waited: Vec<(f64, f64)> = own().filter_map(|r| Some((r.delta, r.waited?[0]))).collect();
         plot = plot.with(Series::markers(waited, Marker::Ring).colour(case.colour));
     }
     plot
