@@ -2,9 +2,9 @@
 //!
 //! Three problems at barriers from 4 k_BT on: one spin with an easy and a hard axis (also the lowest eigenvalue of its Fokker–Planck
 //! equation), a chain of ten spins that reverses in a field by a wall from one of its ends, and a skyrmion of 144 spins near the field
-//! in which it collapses, which slides over a periodic film: k_BT is 0.06 to 0.02 of the nearest exchange. Rates by forward flux
+//! in which it collapses, which slides over a periodic film: k_BT is 0.06 to 0.03 of the nearest exchange. Rates by forward flux
 //! (`spinneb::dynamics`), at the lowest barrier also by waiting for escapes. Times are in units of μ/γ per meV. The table and a figure
-//! go to `results/gallery/dynamics/`. The whole campaign takes a quarter of an hour of one processor. With the name of a problem after
+//! go to `results/gallery/dynamics/`. The whole campaign takes five minutes of one processor. With the name of a problem after
 //! `--` that one is done anew, with the word `quick` little is simulated and nothing written.
 
 #[allow(dead_code, unused_imports)]
