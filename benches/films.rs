@@ -20,13 +20,16 @@ use memory::peak_gb;
 #[global_allocator]
 static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
+/// A series: its name, the problem of so many cells a side, and the numbers of cells.
+type Series = (&'static str, fn(usize) -> Problem, [usize; 4]);
+
+const SERIES: [Series; 2] = [("wall", wall, [16, 32, 64, 128]), ("skyrmion", skyrmion, [20, 40, 64, 96])];
+
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with("--")).collect();
     let sizes: Vec<usize> = words.iter().filter_map(|word| word.parse().ok()).collect();
     let wanted = |kind: &str| words.iter().all(|word| word.parse::<usize>().is_ok() || word == kind);
-    let series: [(&str, fn(usize) -> Problem, [usize; 4]); 2] =
-        [("wall", wall, [16, 32, 64, 128]), ("skyrmion", skyrmion, [20, 40, 64, 96])];
-    for (kind, problem, by_default) in series.into_iter().filter(|(kind, ..)| wanted(kind)) {
+    for (kind, problem, by_default) in SERIES.into_iter().filter(|(kind, ..)| wanted(kind)) {
         println!(
             "{:>9} {:>9} {:>10} {:>9} {:>20} {:>9} {:>8} {:>8} {:>7} {:>8}",
             kind,
