@@ -157,7 +157,7 @@ impl Connector<'_> {
 
     /// Puts the pass of a saddle in if it is proven.
     fn add(&self, land: &mut Landscape, saddle: Saddle) -> Result<()> {
-        let pass = Pass::recorded(land.evaluator(), saddle, self.c)?;
+        let pass = Pass::recorded(land.evaluator(), saddle, self.c, &[])?;
         if pass.doubt(land.evaluator()).is_none() {
             land.add(pass);
         }

@@ -56,14 +56,14 @@ pub struct Pass {
 }
 
 impl Pass {
-    /// Descends from a saddle on both sides.
-    pub fn of(h: Evaluator, saddle: Saddle, c: f64) -> Result<Pass> {
+    /// Descends from a saddle on both sides; where a slope forks, to one of the states `beside` it, if one of them is.
+    pub fn of(h: Evaluator, saddle: Saddle, c: f64, beside: &[&Spins]) -> Result<Pass> {
         let state = &saddle.refined.state;
         let falls = falling(&saddle);
         let sign = if slab::dot(&falls, &saddle.top.tau) < 0.0 { -1.0 } else { 1.0 };
         let side = |direction: f64| -> Result<(Minimum, f64, Vec<Spins>)> {
             let valley: Vec<f64> = falls.iter().map(|v| direction * sign * v).collect();
-            let d = descend(h, state, &valley, c);
+            let d = descend(h, state, &valley, c, beside);
             let relaxed = relax_to_minimum(h, &Spins::from_unit_components(&d.m), 1e-14 * h.stiffness_mev())?;
             let way = d.way.into_iter().map(|m| Spins::from_unit_components(&m)).collect();
             Ok((Minimum::examine(h, &relaxed.spins), d.fallen_mev, way))
@@ -87,10 +87,12 @@ impl Pass {
     }
 
     /// The same, as far as it is not on record.
-    pub fn recorded(h: Evaluator, saddle: Saddle, c: f64) -> Result<Pass> {
+    pub fn recorded(h: Evaluator, saddle: Saddle, c: f64, beside: &[&Spins]) -> Result<Pass> {
         let Saddle { top, refined } = &saddle;
         let [m, valley, tau] = [&refined.state.m, &refined.valley, &top.tau].map(Vec::clone);
-        recorded(h, "descents", &[&m, &valley, &tau], || Pass::of(h, saddle, c))
+        let states = beside.iter().map(|spins| spins.as_slice());
+        let inputs: Vec<&[f64]> = [&m[..], &valley, &tau].into_iter().chain(states).collect();
+        recorded(h, "descents", &inputs, || Pass::of(h, saddle, c, beside))
     }
 
     /// The saddle's lowest eigenvalues (meV), ascending, as many as are reported: what takes longest to find of all that is told of

@@ -264,5 +264,5 @@ fn climb(land: &Landscape, start: &[f64], below: f64, c: f64) -> Result<Caught> 
     if land.height_mev(saddle.spins()) >= below || land.knows(&saddle) {
         return Ok(Caught(None));
     }
-    Ok(Caught(Some(Box::new(Pass::of(h, saddle, c)?))))
+    Ok(Caught(Some(Box::new(Pass::of(h, saddle, c, &[])?))))
 }

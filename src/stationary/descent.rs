@@ -4,8 +4,8 @@
 //! gradient is rounding error and no guide, and its flow is slow. Then down the gradient by implicit Euler steps,
 //! (H + 1/Δt) v = −g, whose Δt grows as long as H + 1/Δt stays positive definite and the energy falls as foretold: the steepest
 //! descent with its stiff directions relaxed. Where the forces vanish in double precision but a direction is still negative, the
-//! descent goes on along that direction, and ends only where the inertia counts none. Where factors are dear, gradients alone lead
-//! down from a step along the valley to where the slope ends, and Δt grows as the torque falls.
+//! descent goes on along that direction, and ends only where the inertia counts none. Where factors are dear, gradients alone are tried
+//! first, from a step along the valley to where the slope ends; then Δt grows as the torque falls.
 
 use super::pinned::Pinned;
 use super::point::Point;
@@ -16,7 +16,9 @@ use super::trail::Trail;
 use crate::energy::Evaluator;
 use crate::field::project;
 use crate::linalg::{Factors, Matrix, slab};
+use crate::path::{Path, largest_angle};
 use crate::sphere::rotation_of;
+use crate::spins::Spins;
 use std::mem::{swap, take};
 
 /// Largest rotation of a spin in one step (rad).
@@ -49,6 +51,8 @@ const STEPS: usize = 20_000;
 /// So many steps down the gradient shorter than this (rad, any spin) are a crawl.
 const CRAWL: usize = 4;
 const SHORT: f64 = 0.05;
+/// A state whose spins are turned by less than this (rad, any spin) is beside another.
+const BESIDE: f64 = 1.5;
 /// How often a descent goes on along a valley.
 const ROUNDS: usize = 24;
 
@@ -66,11 +70,13 @@ pub struct Descent {
     pub way: Vec<Vec<f64>>,
 }
 
-/// Descends from a saddle along ± its valley (a unit field of 3N numbers); c is the stiffness scale (meV).
-pub fn descend(h: Evaluator, saddle: &State, valley: &[f64], c: f64) -> Descent {
+/// Descends from a saddle along ± its valley (a unit field of 3N numbers); c is the stiffness scale (meV). Where its slope forks, it
+/// goes to one of the states `beside` it, if one of them is.
+pub fn descend(h: Evaluator, saddle: &State, valley: &[f64], c: f64, beside: &[&Spins]) -> Descent {
     let mut walk = Walk {
         h,
         c,
+        beside,
         here: saddle.point.clone(),
         next: Point::default(),
         tau: valley.to_vec(),
@@ -78,7 +84,7 @@ pub fn descend(h: Evaluator, saddle: &State, valley: &[f64], c: f64) -> Descent 
         trail: Trail::from(&saddle.m),
         room: Room::default(),
     };
-    let arrived = walk.down();
+    let arrived = h.has_dear_factors() && walk.roll() || walk.down();
     Descent { fallen_mev: saddle.above_mev(&walk.here), arrived, m: walk.here.m, way: walk.trail.into_points() }
 }
 
@@ -86,6 +92,7 @@ pub fn descend(h: Evaluator, saddle: &State, valley: &[f64], c: f64) -> Descent 
 struct Walk<'a> {
     h: Evaluator<'a>,
     c: f64,
+    beside: &'a [&'a Spins],
     here: Point,
     /// Where the step that is being tried leads.
     next: Point,
@@ -121,19 +128,17 @@ impl Walk<'_> {
     fn down(&mut self) -> bool {
         let mut less_steep = LESS_STEEP;
         let mut in_vain = 0;
-        let mut rolls = self.h.has_dear_factors();
-        for round in 0..ROUNDS {
+        for _ in 0..ROUNDS {
             let from = self.here.energy_mev;
-            rolls = rolls && (round > 0 && self.roll(CAP) || self.roll(FIRST));
-            let moved = rolls || self.march(less_steep);
-            let end = self.fall(rolls);
+            let moved = self.march(less_steep);
+            let end = self.fall(false);
             in_vain = if moved || self.here.energy_mev != from { 0 } else { in_vain + 1 };
             if matches!(end, Fall::Crawling) {
                 less_steep = 0.0;
                 continue;
             }
             less_steep = LESS_STEEP;
-            if Spectrum::negatives(self.h, &self.here, &mut self.room.matrix) == 0 || self.h.is_stopped() {
+            if self.is_minimum() || self.h.is_stopped() {
                 return matches!(end, Fall::Arrived);
             }
             // once along the direction that was given, and once along the lowest mode
@@ -152,21 +157,47 @@ impl Walk<'_> {
         false
     }
 
-    /// A step along the valley, and down by gradients alone from there, first across it where it bends away; whether that came near
-    /// a stationary state, or the valley's bottom, below.
-    fn roll(&mut self, step: f64) -> bool {
-        let from = self.here.clone();
-        let points = self.trail.len();
+    /// A step along the valley, and down by gradients alone from there; whether that leads to a minimum. Where it does not, the descent
+    /// is back where it began.
+    fn roll(&mut self) -> bool {
+        let (from, tau, points) = (self.here.clone(), self.tau.clone(), self.trail.len());
         self.room.v.clone_from(&self.tau);
-        slab::scale(&mut self.room.v, step / rotation_of(&self.tau));
+        slab::scale(&mut self.room.v, FIRST / rotation_of(&self.tau));
         self.here.go(self.h, &from, &self.room.v);
-        let near = quench(self.h, &mut self.here, &mut self.next, &mut self.trail, [step, CAP]);
-        if near && from.above_mev(&self.here) > self.h.rounding_mev() {
-            return true;
+        let arrived = quench(self.h, &mut self.here, &mut self.next, &mut self.trail, [FIRST, CAP])
+            && from.above_mev(&self.here) > self.h.rounding_mev()
+            && matches!(self.fall(true), Fall::Arrived)
+            && (self.is_minimum() || self.fork());
+        if !arrived {
+            self.trail.go_back_to(points);
+            (self.here, self.tau) = (from, tau);
         }
-        self.trail.go_back_to(points);
-        self.here = from;
-        false
+        arrived
+    }
+
+    /// From a stationary state that is no minimum, where the slope forks, as by symmetry at a skyrmion between two places of its
+    /// lattice: to a state beside it, if the valley falls all the way, as the place half-way tells; whether that is a minimum.
+    fn fork(&mut self) -> bool {
+        let (from, rounding) = (self.here.clone(), self.h.rounding_mev());
+        let far = |end: &&&Spins| largest_angle(end.as_slice(), &from.m);
+        let Some(end) = self.beside.iter().min_by(|p, q| far(p).total_cmp(&far(q))).filter(|end| far(end) < BESIDE)
+        else {
+            return false;
+        };
+        let way = Path::new(&[Spins::from_unit_components(&from.m), (*end).clone()]).resampled(3);
+        let end = Point::at(self.h, end.as_slice().to_vec());
+        self.here = Point::at(self.h, way.image(1).to_vec());
+        let falls = quench(self.h, &mut self.here, &mut self.next, &mut self.trail, [FIRST, CAP])
+            && largest_angle(&self.here.m, way.image(1)) < 0.5 * BESIDE
+            && from.above_mev(&self.here) > rounding
+            && self.here.above_mev(&end) > rounding;
+        self.here = end;
+        falls && self.is_minimum()
+    }
+
+    /// Whether no direction is negative here.
+    fn is_minimum(&mut self) -> bool {
+        Spectrum::negatives(self.h, &self.here, &mut self.room.matrix) == 0
     }
 
     /// Along the valley as long as it falls, and its slope is more than a part of the steepest; whether it went any way.
