@@ -468,20 +468,20 @@ struct NineShells {
     barrier_meV: [f64; 2],
     htst_per_s: f64,
     langer_per_s: f64,
-    skyrmion: Slid,
-    saddle: Slid,
+    skyrmion: Translations,
+    saddle: Translations,
     ferromagnet_ln_determinant: f64,
 }
 
 #[derive(Deserialize)]
 #[allow(non_snake_case)]
-struct Slid {
+struct Translations {
     pinning_meV: [f64; 2],
     volume_rad: f64,
     ln_determinant: f64,
 }
 
-impl Slid {
+impl Translations {
     /// Whether these are its two translations.
     fn check(&self, zeros: &[ZeroModes]) {
         assert!(zeros.len() == 1 && zeros[0].count == 2 && zeros[0].kind == ZeroKind::Translation, "{zeros:?}");
