@@ -5,7 +5,7 @@
 //! ```
 //! A band converges in about 15 gradients of each image, whatever its length (8 to 26 in the shipped configs), and finding the seat of
 //! a saddle, its proof and the descents to its two minima take about 280, of one beside another 60. An automatic path is refined once. One saddle is taken for
-//! granted, but a wall narrower than `PINNED` sites rests on every site that it passes: there are as many saddles, and four images
+//! granted, but a chain's wall narrower than `PINNED` sites rests on every site that it passes: there are as many saddles, and four images
 //! to each. The search for lower passes takes some
 //! 480, and as much as the path for each of the d domains that its ends consist of, through which it may lead; 0 for both where there
 //! is none. The gradient is measured; eigenvalues and proofs are in the factor 2.5, and figures take what the constants say on a usual
@@ -57,7 +57,8 @@ impl Estimate {
     pub fn of(problem: &Problem, scales: &Scales) -> Estimate {
         let start = expected_images(problem, scales);
         let moving = moving_sites(&problem.initial, &problem.final_state, problem.hamiltonian.lattice());
-        let saddles = if scales.wall_width_sites < PINNED { moving.max(1) } else { 1 };
+        let rests = problem.hamiltonian.lattice().is_row() && scales.wall_width_sites < PINNED;
+        let saddles = if rests { moving.max(1) } else { 1 };
         let images = match problem.images {
             Images::Count(n) => n,
             Images::Auto => (2 * start - 1).max(IMAGES_A_SADDLE * saddles),

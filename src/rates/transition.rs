@@ -1,8 +1,8 @@
 //! The rate of the whole path, over all its saddles.
 
 use super::passage::{TEN_YEARS_S, blocking_temperature, first_passage, passages};
-use super::rate::factor;
-use super::{Equivalents, RateSettings, Refusal, Row, SaddleRate, Theory, Way};
+use super::rate::{LEAST_BARRIER, factor};
+use super::{Equivalents, RateSettings, Refusal, Row, SaddleRate, Theory, Way, ZeroKind};
 use crate::units::K_B;
 
 /// How many of each stationary state symmetry makes of the path's own with both ends kept: from a minimum of a kind of which there
@@ -32,7 +32,7 @@ impl Orbits {
 pub struct TransitionRow {
     /// To the other end: one over the mean first-passage time.
     pub passage: Row,
-    /// Over the first saddle, out of the first minimum, whatever follows.
+    /// Over the first saddle, out of the first minimum, whatever follows; where that slides, out of all of its places.
     pub escape: Row,
 }
 
@@ -69,6 +69,15 @@ pub fn transitions(
     Way::BOTH.map(|way| transition(saddles, orbits, settings, doubt, way)).into()
 }
 
+/// Whether what is on both sides of a saddle slides, and the saddle holds it on neither side: two places of one state, whose integral
+/// over the valley each side has in full already.
+fn is_within_one(onward: &SaddleRate, back: &SaddleRate, t: f64) -> bool {
+    [onward, back].iter().all(|side| {
+        let slides = side.minimum_zeros.iter().any(|zeros| zeros.kind == ZeroKind::Translation);
+        slides && side.barrier_mev.is_some_and(|barrier| barrier < LEAST_BARRIER * K_B * t)
+    })
+}
+
 fn transition(
     saddles: &[SaddleRate],
     orbits: &Orbits,
@@ -87,21 +96,23 @@ fn transition(
     let (leaving, returning) = if way == Way::Forward { (0, 1) } else { (1, 0) };
     let count = onward.len();
     let number = |i: usize| if way == Way::Forward { i } else { count - 1 - i };
+    // the saddles that part states
+    let parting = |t: f64| -> Vec<usize> { (0..count).filter(|i| !is_within_one(onward[*i], back[*i], t)).collect() };
     let ln_rates = |rates: &[&SaddleRate], side: usize, theory: Theory, t: f64| -> Option<Vec<f64>> {
-        let all = rates.iter().enumerate();
+        let all = parting(t).into_iter().map(|i| (i, rates[i]));
         all.map(|(i, r)| Some(r.ln_rate_per_s(theory, t)? + orbits.ln_more(number(i), side, r.equivalents.count)))
             .collect()
     };
     let both = |theory: Theory, t: f64| -> Option<[Vec<f64>; 2]> {
-        let proven = doubt.is_none();
-        proven.then_some([ln_rates(&onward, leaving, theory, t)?, ln_rates(&back, returning, theory, t)?])
+        let parted = doubt.is_none() && !parting(t).is_empty();
+        parted.then_some([ln_rates(&onward, leaving, theory, t)?, ln_rates(&back, returning, theory, t)?])
     };
     // each saddle's error counts as far as the time hangs on it
     let ln_known = |rates: Option<[Vec<f64>; 2]>, t: f64| -> f64 {
         let Some([on, back]) = rates else { return f64::INFINITY };
         let total = first_passage(&on, &back);
-        let parts = passages(&on, &back).into_iter().zip(&onward);
-        parts.map(|(time, r)| libm::exp(time - total) * r.ln_known_within(t)).sum()
+        let parts = passages(&on, &back).into_iter().zip(parting(t));
+        parts.map(|(time, i)| libm::exp(time - total) * onward[i].ln_known_within(t)).sum()
     };
     let row = |t: f64| -> TransitionRow {
         let [htst, langer] = Theory::ALL.map(|theory| both(theory, t));
@@ -114,12 +125,13 @@ fn transition(
             ln_langer_per_s: passage(&langer),
             ..Row::default()
         };
+        let out = onward[parting(t).first().copied().unwrap_or(0)];
         let first = Row {
             temperature_k: t,
-            barrier_over_kt: onward[0].barrier_mev.unwrap_or(0.0) / (K_B * t),
+            barrier_over_kt: out.barrier_mev.unwrap_or(0.0) / (K_B * t),
             ln_htst_per_s: escape(&htst),
             ln_langer_per_s: escape(&langer),
-            known_within: whole.ln_lifetime_s().and_then(|_| factor(onward[0].ln_known_within(t))),
+            known_within: whole.ln_lifetime_s().and_then(|_| factor(out.ln_known_within(t))),
             reason: None,
         };
         let known_within = factor(ln_known(langer.or(htst), t));
@@ -147,4 +159,94 @@ fn highest(onward: &[&SaddleRate], back: &[&SaddleRate]) -> f64 {
         level -= down.barrier_mev.unwrap_or(0.0);
     }
     top
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rates::{Prefactor, ZeroModes};
+
+    const LOWEST_MEV: f64 = 1e-6;
+
+    /// One way over a saddle, from a minimum that slides in two directions if at all.
+    fn side(saddle: usize, way: Way, barrier_mev: f64, slides: bool) -> SaddleRate {
+        let prefactor =
+            Prefactor { frequency_per_s: 1e12, ln_hz: 25.0 + saddle as f64, exponent: 0.0, pinning_mev: [[0.0; 3]; 2] };
+        let translation = ZeroModes {
+            kind: ZeroKind::Translation,
+            count: 2,
+            volume: 6e3,
+            hop_volume: None,
+            pinning_mev: vec![LOWEST_MEV; 2],
+        };
+        SaddleRate {
+            saddle,
+            way,
+            barrier_mev: Some(barrier_mev),
+            htst: Some(prefactor),
+            langer: Some(prefactor),
+            entropy_factor: None,
+            minimum_zeros: if slides { vec![translation] } else { Vec::new() },
+            saddle_zeros: Vec::new(),
+            equivalents: Equivalents { count: 1, by: String::new() },
+            ln_places: 0.0,
+            crossover_k: None,
+            validity: None,
+            rows: Vec::new(),
+            blocking_k: [None; 2],
+            refused: Vec::new(),
+            warnings: Vec::new(),
+        }
+    }
+
+    /// A skyrmion's hop from place to place, then its collapse; whether it slides.
+    fn hop_and_collapse(slides: bool) -> Vec<SaddleRate> {
+        vec![
+            side(0, Way::Forward, LOWEST_MEV, slides),
+            side(0, Way::Backward, 0.5 * LOWEST_MEV, slides),
+            side(1, Way::Forward, 20.0, slides),
+            side(1, Way::Backward, 50.0, false),
+        ]
+    }
+
+    fn row(saddles: &[SaddleRate], way: usize, temperature_k: f64) -> TransitionRow {
+        let orbits = Orbits {
+            saddles: vec![1; saddles.len() / 2],
+            minima: vec![1; saddles.len() / 2 + 1],
+            paths: Equivalents { count: 1, by: String::new() },
+        };
+        let settings = RateSettings {
+            temperatures_k: vec![temperature_k],
+            damping: 0.3,
+            g_factor: 2.0,
+            theories: Theory::ALL.to_vec(),
+            moments_mub: Vec::new(),
+        };
+        transitions(saddles, &orbits, &settings, None)[way].rows[0].clone()
+    }
+
+    #[test]
+    fn places_between_which_nothing_holds_a_sliding_state_are_one_state() {
+        let collapse = [0, 1].map(|way| row(&hop_and_collapse(true)[2..], way, 20.0));
+        for (way, alone) in collapse.iter().enumerate() {
+            let found = row(&hop_and_collapse(true), way, 20.0);
+            assert_eq!(found.passage.ln_langer_per_s, alone.passage.ln_langer_per_s);
+            assert_eq!(found.escape.ln_langer_per_s, alone.escape.ln_langer_per_s);
+            assert!(found.escape.ln_langer_per_s.is_some());
+        }
+        // two that do not slide are two states, and the first holds nothing back
+        let parted = row(&hop_and_collapse(false), 0, 20.0);
+        assert!(parted.escape.ln_langer_per_s.is_none());
+        assert!(parted.passage.ln_langer_per_s < collapse[0].passage.ln_langer_per_s);
+        // and so are two where the hop takes long
+        let cold = row(&hop_and_collapse(true), 0, 1e-6);
+        assert!(cold.escape.ln_langer_per_s.is_some_and(|ln| ln < 25.0));
+    }
+
+    #[test]
+    fn a_path_all_of_whose_saddles_lie_within_one_state_has_no_rate() {
+        let hops = &hop_and_collapse(true)[..2];
+        let found = row(hops, 0, 20.0);
+        assert!(found.passage.ln_langer_per_s.is_none() && found.escape.ln_langer_per_s.is_none());
+    }
 }
