@@ -358,7 +358,7 @@ fn a_sweep_with_rates_has_a_table_and_a_map_of_lifetimes_over_its_key_and_temper
         assert!(time.is_none_or(|t| (t.log10() - log.unwrap()).abs() < 1e-9 && kelvin > 0.0), "{row:?}");
     }
     let map = text(folder.path(), "results/life/lifetime_map.svg");
-    for words in ["Mean first passage (s)", "Temperature (K)", "B[2] (T)", "Grey: no lifetime"] {
+    for words in ["Mean first passage (s)", "Temperature (K)", "\nB\n", "\nz\n", "Grey: no lifetime"] {
         assert!(map.contains(words), "{words}");
     }
     // two keys make no map

@@ -3,6 +3,7 @@
 //! Draft 7, which Visual Studio Code and most others know. What a schema cannot say, such as how many sites there are, is in descriptions.
 
 use super::Config;
+use super::json::Step;
 use super::refusals::inline;
 use super::sweep::SweepFile;
 use schemars::generate::SchemaSettings;
@@ -11,6 +12,8 @@ use serde_json::Value;
 
 /// The name that configs give their schema.
 pub const SCHEMA_FILE: &str = "spinneb.schema.json";
+/// What a vector of space has beside what all schemas have: the letters of its components.
+const COMPONENTS: &str = "components";
 
 /// The schema of a config as text.
 pub fn schema() -> String {
@@ -82,6 +85,31 @@ pub(super) fn key(schema: &Value, owner: &Value, name: &str, property: &Value) -
         meaning: property["description"].as_str().unwrap_or_default().into(),
         value: written(schema, &form),
     }
+}
+
+/// The letter of a component where the path ends in a vector of space: `z` of `energy[0].zeeman.B[2]`.
+pub(super) fn component(schema: &Value, path: &[Step]) -> Option<String> {
+    let (Step::Index(i), owner) = path.split_last()? else { return None };
+    let mut nodes = forms(schema, schema);
+    for step in owner {
+        nodes = nodes.into_iter().filter_map(|node| below(node, step)).flat_map(|node| forms(schema, node)).collect();
+    }
+    nodes.into_iter().find_map(|node| node[COMPONENTS].get(i)?.as_str().map(String::from))
+}
+
+/// What stands for a step down.
+fn below<'a>(node: &'a Value, step: &Step) -> Option<&'a Value> {
+    match step {
+        Step::Key(key) => node["properties"].get(key).or(node.get("additionalProperties")),
+        Step::Index(_) => node.get("items"),
+    }
+}
+
+/// All that a part may be.
+fn forms<'a>(schema: &'a Value, part: &'a Value) -> Vec<&'a Value> {
+    let part = resolved(schema, part);
+    let lists = ["allOf", "anyOf", "oneOf"].into_iter().filter_map(|list| part[list].as_array());
+    [part].into_iter().chain(lists.flatten().flat_map(|form| forms(schema, form))).collect()
 }
 
 /// What a `$ref` stands for.

@@ -121,12 +121,20 @@ fn within(outer: &[Step], inner: &[Step]) -> bool {
     outer.len() <= inner.len() && outer.iter().zip(inner).all(same)
 }
 
+/// Whether a JSON text has two bytes a character: it begins with a byte order mark, or with two characters of ASCII (RFC 4627, 3).
+fn is_utf_16(bytes: &[u8]) -> bool {
+    let marked = bytes.starts_with(&[0xFF, 0xFE]) || bytes.starts_with(&[0xFE, 0xFF]);
+    marked || matches!(bytes, [0, 1..=127, 0, 1..=127, ..] | [1..=127, 0, 1..=127, 0, ..])
+}
+
 /// The text of a file's bytes, which must be UTF-8.
 pub fn decode(file: &str, bytes: Vec<u8>) -> Result<String> {
-    let wide =
-        bytes.starts_with(&[0xFF, 0xFE]) || bytes.starts_with(&[0xFE, 0xFF]) || bytes.iter().take(2).any(|b| *b == 0);
-    if wide {
+    if is_utf_16(&bytes) {
         return Err(at(file, "", 0, &[], "the file is UTF-16: save it as UTF-8".into()));
+    }
+    if let Some(zero) = bytes.iter().position(|b| *b == 0) {
+        let text = String::from_utf8_lossy(&bytes[..zero]).into_owned();
+        return Err(at(file, &text, zero, &[], "a byte of value 0: the file is no text, but binary".into()));
     }
     String::from_utf8(bytes).map_err(|e| {
         let good = e.utf8_error().valid_up_to();

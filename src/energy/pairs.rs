@@ -59,6 +59,7 @@ pub struct PairSpec {
     pub J: Option<Energy>,
     /// Vector D of the antisymmetric exchange, along x, y and z.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("components" = ["x", "y", "z"]))]
     pub D: Option<[Energy; 3]>,
     /// T, row by row: in place of J or beside it.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -24,6 +24,7 @@ use std::ops::Range;
 #[allow(non_snake_case)]
 pub struct ZeemanSpec {
     /// The field's components.
+    #[schemars(extend("components" = ["x", "y", "z"]))]
     pub B: [FluxDensity; 3],
     /// Only these sites; all if absent.
     #[serde(default)]

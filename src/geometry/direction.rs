@@ -49,6 +49,7 @@ impl JsonSchema for Direction {
             "items": {"type": "number"},
             "minItems": 3,
             "maxItems": 3,
+            "components": ["x", "y", "z"],
             "examples": [[0, 0, 1]],
         })
     }

@@ -72,6 +72,7 @@ impl JsonSchema for Place {
             "items": coordinate,
             "minItems": 2,
             "maxItems": 3,
+            "components": ["x", "y", "z"],
         })
     }
 }

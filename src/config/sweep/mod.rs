@@ -69,7 +69,7 @@ pub(super) struct SweepFile {
 pub struct SweptKey {
     /// Its path, as written.
     pub key: String,
-    /// The shortest end of it that no other swept key has: `K`, `B[2]`.
+    /// The shortest end of it that no other swept key has: `K`, `B_z`.
     pub label: String,
     /// The values, as a config has them.
     pub values: Vec<Value>,

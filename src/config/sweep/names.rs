@@ -1,8 +1,9 @@
 //! What the keys and the points of a sweep are called.
 //!
-//! A point's folder is named after its values, so that it stays the same when others are added: `K_0.1meV__B.2_-0.8T`.
+//! A point's folder is named after its values, so that it stays the same when others are added: `K_0.1meV__B_z_-0.8T`.
 
 use super::super::json::{Step, written};
+use super::super::schema::{component, value};
 use super::SweptKey;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
@@ -13,9 +14,10 @@ const LONGEST: usize = 100;
 /// Digits of a hash that tells points apart.
 const HASH: usize = 10;
 
-/// Gives each key the shortest end of its path that no other has.
+/// Gives each key the shortest end of its path that no other has; a vector's component has its letter, `B_z`, in the place of its index.
 pub(super) fn label(keys: &mut [SweptKey]) {
-    let ends: Vec<Vec<String>> = keys.iter().map(|key| ends(&key.steps)).collect();
+    let schema = value();
+    let ends: Vec<Vec<String>> = keys.iter().map(|key| ends(&key.steps, component(&schema, &key.steps))).collect();
     for (k, key) in keys.iter_mut().enumerate() {
         let unique = |end: &&String| ends.iter().enumerate().all(|(j, other)| j == k || !other.contains(end));
         key.label = ends[k].iter().find(unique).unwrap_or(&key.key).clone();
@@ -23,9 +25,13 @@ pub(super) fn label(keys: &mut [SweptKey]) {
 }
 
 /// All ends of a path that begin with a key, the shortest first.
-fn ends(steps: &[Step]) -> Vec<String> {
+fn ends(steps: &[Step], component: Option<String>) -> Vec<String> {
     let starts = (0..steps.len()).rev().filter(|i| matches!(steps[*i], Step::Key(_)));
-    starts.map(|i| written(&steps[i..])).collect()
+    let end = |i: usize| match &component {
+        Some(letter) => format!("{}_{letter}", written(&steps[i..steps.len() - 1])),
+        None => written(&steps[i..]),
+    };
+    starts.map(end).collect()
 }
 
 /// The folder of each point; an error where two points are the same.

@@ -100,7 +100,12 @@ fn keys_are_labelled_by_the_shortest_end_that_tells_them_apart() {
         let (_dir, sweep) = sweep(&format!(r#"{{"config": "chain.json", "grid": {grid}}}"#));
         sweep.unwrap().keys.into_iter().map(|k| k.label).collect::<Vec<_>>()
     };
-    assert_eq!(labels(r#"{"energy[0].anisotropy.axis[2]": [1], "energy.0.anisotropy.K": [1]}"#), ["axis[2]", "K"]);
+    assert_eq!(labels(r#"{"energy[0].anisotropy.axis[2]": [1], "energy.0.anisotropy.K": [1]}"#), ["axis_z", "K"]);
+    let vectors = r#"{"energy[1].zeeman.B[2]": [1], "initial.skyrmion.center[0]": [1], "final.uniform.direction.1": [1],
+        "energy[2].pairs.bonds[3].D[0]": [1], "initial.regions.pin.uniform.direction[2]": [1]}"#;
+    assert_eq!(labels(vectors), ["B_z", "center_x", "direction_y", "D_x", "direction_z"]);
+    let lists = r#"{"energy[0].exchange.J[1]": [1], "lattice.square.cells[0]": [1], "energy[1].dmi.D[2]": [1]}"#;
+    assert_eq!(labels(lists), ["J[1]", "cells[0]", "D[2]"]);
     let two = r#"{"energy[0].anisotropy.K": [1], "energy[1].anisotropy.K": [1], "a.b": [2], "c.b": [2]}"#;
     assert_eq!(labels(two), ["energy[0].anisotropy.K", "energy[1].anisotropy.K", "a.b", "c.b"]);
 }

@@ -323,7 +323,11 @@ fn bytes_that_are_no_utf8_are_refused() {
     assert_eq!(message("{\"µ\": 1}".as_bytes()), Ok("{\"µ\": 1}".to_string()));
     let wide = "run.json:1:1: .: the file is UTF-16: save it as UTF-8".to_string();
     assert_eq!(message(&[0xFF, 0xFE, b'{', 0]), Err(wide.clone()));
-    assert_eq!(message(&[b'{', 0, b'}', 0]), Err(wide));
+    assert_eq!(message(&[b'{', 0, b'}', 0]), Err(wide.clone()));
+    assert_eq!(message(&[0, b'{', 0, b'}']), Err(wide));
+    let binary = |place: &str| Err(format!("run.json:{place}: .: a byte of value 0: the file is no text, but binary"));
+    assert_eq!(message(&[0; 4]), binary("1:1"));
+    assert_eq!(message(b"{\n  \0\0}"), binary("2:3"));
     let bad = "run.json:2:3: .: a byte that is not UTF-8: save the file as UTF-8";
     assert_eq!(message(b"{\n \"\xB5\": 1}"), Err(bad.to_string()));
 }

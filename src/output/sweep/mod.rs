@@ -48,7 +48,7 @@ pub struct SweepIndex {
 pub struct IndexedKey {
     /// Its path.
     pub key: String,
-    /// In short.
+    /// In short; a component has its letter behind a low line: `B_z`.
     pub label: String,
     /// Its values are spaced by equal factors.
     pub log: bool,
@@ -140,15 +140,10 @@ impl SweepIndex {
 
     /// A swept key with its values as numbers, where they are numbers.
     fn parameter(&self, k: usize) -> Parameter {
-        let label = &self.keys[k].label;
+        let (label, drawn) = (&self.keys[k].label, self.keys[k].drawn());
         let values: Vec<&Value> = self.points.iter().map(|p| &p.values[k]).collect();
         if let Some(numbers) = values.iter().map(|v| v.as_f64()).collect::<Option<Vec<f64>>>() {
-            return Parameter {
-                column: label.clone(),
-                title: label.clone(),
-                unit: String::new(),
-                numbers: Some(numbers),
-            };
+            return Parameter { column: label.clone(), title: drawn, unit: String::new(), numbers: Some(numbers) };
         }
         let quantity = |v: &&Value| v.as_str().and_then(|text| AnyQuantity::new(text).ok());
         let quantities: Option<Vec<AnyQuantity>> = values.iter().map(quantity).collect();
@@ -158,11 +153,21 @@ impl SweepIndex {
         match first.filter(|_| numbers.is_some()) {
             Some(first) => Parameter {
                 column: format!("{label}_{}", first.unit_name()),
-                title: format!("{label} ({})", first.unit),
+                title: format!("{drawn} ({})", first.unit),
                 unit: format!(" {}", first.unit),
                 numbers,
             },
-            None => Parameter { column: label.clone(), title: label.clone(), unit: String::new(), numbers: None },
+            None => Parameter { column: label.clone(), title: drawn, unit: String::new(), numbers: None },
+        }
+    }
+}
+
+impl IndexedKey {
+    /// The label in a figure, where a component is a subscript.
+    fn drawn(&self) -> String {
+        match self.label.rsplit_once('_') {
+            Some((vector, component @ ("x" | "y" | "z"))) => format!("{vector}_{{{component}}}"),
+            _ => self.label.clone(),
         }
     }
 }

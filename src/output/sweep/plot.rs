@@ -101,7 +101,7 @@ fn curves(index: &SweepIndex, parameters: &[Parameter], along: Option<usize>) ->
                 Some(numbers) => format!("{}{}", number(numbers[point]), p.unit),
                 None => word(&index.points[point].values[k]),
             };
-            format!("{} = {value}", index.keys[k].label)
+            format!("{} = {value}", index.keys[k].drawn())
         };
         let name = others.map(value).collect::<Vec<_>>().join(", ");
         match curves.iter_mut().find(|c| c.name == name) {
