@@ -77,6 +77,8 @@ fn page([template, style, script]: [&str; 3], title: &str, data: &impl Serialize
     let content = |name: &str| match name {
         "policy" => Some(policy.clone()),
         "title" => Some(markup(title)),
+        // a long name may go on in the next line behind these
+        "heading" => Some(markup(title).replace('_', "_<wbr>").replace('.', ".<wbr>")),
         "style" => Some(style.into()),
         "view" => Some(VIEW.into()),
         "data" => Some(inert(&json)),
