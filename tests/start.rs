@@ -154,6 +154,8 @@ fn the_reference_of_a_key_is_printed_and_an_unknown_one_is_refused_with_a_near_o
         ("energy.0.anisotropy.K", &["energy.anisotropy.K (required)"]),
         ("material.energy[1].anisotropy.K", &["energy.anisotropy.K (required)"]),
         ("final.domain_wall.center", &["initial.domain_wall.center (required)"]),
+        ("final.skyrmion", &["initial.skyrmion: ", "initial.skyrmion.radius (may be left out)"]),
+        ("landscape.states[1].skyrmion", &["initial.skyrmion: "]),
         ("center", &["initial.domain_wall.center", "initial.skyrmion.center", "shape.disc.center"]),
         ("path.images", &["path.images (may be left out)"]),
         ("neb.tolerance", &["neb.tolerance (1e-6 if left out)", "a number"]),

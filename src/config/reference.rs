@@ -335,10 +335,14 @@ pub fn find(name: &str) -> Result<Found, Option<String>> {
     let steps = steps(name);
     for skipped in 0..steps.len() {
         let wanted = &steps[skipped..];
-        if skipped > 0 && (wanted.len() < 2 || !leads_somewhere(&steps)) {
+        if skipped > 0 && !leads_somewhere(&steps) {
             break;
         }
-        let found = named(&sections, wanted);
+        let mut found = named(&sections, wanted);
+        // keys of one name may be of any part, but a part is told of once for all places where it stands
+        if skipped > 0 && wanted.len() == 1 {
+            found.keys.clear();
+        }
         if found != Found::default() {
             return Ok(found);
         }
