@@ -72,7 +72,7 @@ pub fn main(program: &[OsString], arguments: impl IntoIterator<Item = OsString>)
     done.unwrap_or_else(|error| report(&error))
 }
 
-/// Minimum-energy paths, barriers and saddles of spin chains
+/// Minimum-energy paths, barriers and saddles of spins on a lattice
 #[derive(Debug, Parser)]
 #[command(name = "spinneb", version, arg_required_else_help = true, after_help = EXAMPLES)]
 pub(crate) struct Cli {
