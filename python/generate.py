@@ -139,8 +139,8 @@ def function(schema: dict[str, Any], choice: dict[str, Any], made: str) -> str:
         for key in required:
             arg, default = argument(key), DEFAULTS.get((name, key))
             if key == "cells":
-                signature.insert(0, "*cells: int")
-                entries.insert(0, '"cells": list(cells)')
+                signature.insert(0, "*cells: int | Sequence[int]")
+                entries.insert(0, '"cells": as_cells(cells)')
             else:
                 signature.append(f"{arg}: {annotation(schema, keys[key])}" + (f" = {default}" if default else ""))
                 entries.append(f'"{key}": {given(schema, keys[key], arg)}')
@@ -179,7 +179,7 @@ def module(schema: dict[str, Any], family: str, made: str, title: str) -> str:
     names = [argument(next(iter(choice["properties"]))) for choice in choices]
     body = "\n\n\n".join(functions)
     words = {"Literal", "Sequence", "Mapping", "Any", "ArrayLike", "Direction", "Extent", "Selection", "Shape", "State", "Values"}
-    used = sorted(word for word in words | {made, "as_direction", "as_list"} if word in body)
+    used = sorted(word for word in words | {made, "as_cells", "as_direction", "as_list"} if word in body)
     own = [w for w in used if w not in ("Literal", "Sequence", "Mapping", "Any", "ArrayLike")]
     typing = [w for w in ("Any", "Literal") if w in used]
     abc = [w for w in ("Mapping", "Sequence") if w in used]

@@ -151,7 +151,9 @@ def test_pieces_show_themselves_as_they_are_written():
     assert sn.uniform("-z") == {"uniform": {"direction": [0, 0, -1]}}
     assert sn.exchange(J="10 meV") == sn.exchange(J=["10 meV"])
     assert repr(sn.exchange(J=["10 meV"])) == "exchange(J=['10 meV'])"
+    assert repr(sn.square(4, 5, periodic=True)) == "square(4, 5, periodic=True)"
     assert sn.triangular(4, 5, periodic=True) == {"triangular": {"cells": [4, 5], "periodic": True}}
+    assert sn.square((4, 5)) == sn.square(4, 5) == sn.square(*np.array([4, 5])) and sn.lattices.grid(4, cell=["1 nm"])["grid"]["cells"] == [4]
     assert (sn.shapes.disc(3) & ~sn.shapes.disc(1)) == {"all": [{"disc": {"radius": 3}}, {"not": {"disc": {"radius": 1}}}]}
     assert sn.sweep("left") == {"sweep": {"from": "left"}}
     assert sn.zeeman(B=np.array(["1 T", "0 T", "0 T"])) == {"zeeman": {"B": ["1 T", "0 T", "0 T"]}}

@@ -30,6 +30,18 @@ def test_an_easy_axis_of_ones_own_is_as_good_as_the_built_in_one(reversal):
     assert list(result.terms_meV) == ["exchange", "easy"]
 
 
+def test_a_function_whose_name_is_taken_in_tables_makes_a_term_too():
+    def energy(m):
+        return easy(m)
+
+    def exchange(m):
+        return easy(m)
+
+    assert [sn.Term(f, easy_gradient).name for f in (easy, energy, exchange, lambda m: easy(m))] == ["easy", "term", "term", "term"]
+    result = sn.barrier(system(sn.Term(energy, easy_gradient)), UP, DOWN)
+    assert list(result.terms_meV) == ["exchange", "term"]
+
+
 def test_terms_of_fourth_degree_and_of_one_number_run(reversal):
     def fourth(m):
         return float(0.5 * (1 - m[:, 2] ** 4).sum())

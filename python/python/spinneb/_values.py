@@ -33,6 +33,12 @@ def as_direction(value: Any) -> Any:
     return value
 
 
+def as_cells(cells: tuple[int | Sequence[int], ...]) -> Any:
+    """Numbers of cells that are given one by one, or together as one sequence."""
+    first = cells[0] if len(cells) == 1 else cells
+    return [first] if isinstance(first, (int, np.integer)) else list(first)
+
+
 def as_list(value: Any) -> Any:
     """A quantity alone as a list of one."""
     return [value] if isinstance(value, str) else value
@@ -70,7 +76,10 @@ class Piece(dict[str, Any]):
         content = self[self.kind]
         if not isinstance(content, dict):
             return f"{self.kind}({content!r})"
-        return f"{self.kind}({', '.join(f'{key}={value!r}' for key, value in content.items())})"
+        # numbers of cells stand alone, as the builders of lattices take them
+        cells = [repr(number) for number in content.get("cells", [])]
+        keys = [f"{key}={value!r}" for key, value in content.items() if key != "cells"]
+        return f"{self.kind}({', '.join(cells + keys)})"
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (self.kind, self[self.kind])

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ._values import Direction, Lattice, Selection, Shape, Values, as_direction, as_list
+from ._values import Direction, Lattice, Selection, Shape, Values, as_cells, as_direction, as_list
 
 __all__ = [
     "chain",
@@ -70,7 +70,7 @@ def chain(
 
 
 def square(
-    *cells: int,
+    *cells: int | Sequence[int],
     frozen: Sequence[Mapping[str, Any]] | None = None,
     moments: Sequence[Mapping[str, Any]] | None = None,
     periodic: bool | Sequence[bool] | None = None,
@@ -102,11 +102,11 @@ def square(
 
     In a config: ``{"square": {"cells": [20, 20], "periodic": [true, true]}}``
     """
-    return Lattice("square", {"cells": list(cells), "frozen": frozen, "moments": moments, "periodic": periodic, "regions": regions, "shape": shape, "spacing": spacing, "vacant": vacant})
+    return Lattice("square", {"cells": as_cells(cells), "frozen": frozen, "moments": moments, "periodic": periodic, "regions": regions, "shape": shape, "spacing": spacing, "vacant": vacant})
 
 
 def triangular(
-    *cells: int,
+    *cells: int | Sequence[int],
     frozen: Sequence[Mapping[str, Any]] | None = None,
     moments: Sequence[Mapping[str, Any]] | None = None,
     periodic: bool | Sequence[bool] | None = None,
@@ -138,11 +138,11 @@ def triangular(
 
     In a config: ``{"triangular": {"cells": [20, 20], "periodic": [true, true]}}``
     """
-    return Lattice("triangular", {"cells": list(cells), "frozen": frozen, "moments": moments, "periodic": periodic, "regions": regions, "shape": shape, "spacing": spacing, "vacant": vacant})
+    return Lattice("triangular", {"cells": as_cells(cells), "frozen": frozen, "moments": moments, "periodic": periodic, "regions": regions, "shape": shape, "spacing": spacing, "vacant": vacant})
 
 
 def honeycomb(
-    *cells: int,
+    *cells: int | Sequence[int],
     frozen: Sequence[Mapping[str, Any]] | None = None,
     moments: Sequence[Mapping[str, Any]] | None = None,
     periodic: bool | Sequence[bool] | None = None,
@@ -174,11 +174,11 @@ def honeycomb(
 
     In a config: ``{"honeycomb": {"cells": [14, 14], "periodic": [true, true]}}``
     """
-    return Lattice("honeycomb", {"cells": list(cells), "frozen": frozen, "moments": moments, "periodic": periodic, "regions": regions, "shape": shape, "spacing": spacing, "vacant": vacant})
+    return Lattice("honeycomb", {"cells": as_cells(cells), "frozen": frozen, "moments": moments, "periodic": periodic, "regions": regions, "shape": shape, "spacing": spacing, "vacant": vacant})
 
 
 def kagome(
-    *cells: int,
+    *cells: int | Sequence[int],
     frozen: Sequence[Mapping[str, Any]] | None = None,
     moments: Sequence[Mapping[str, Any]] | None = None,
     periodic: bool | Sequence[bool] | None = None,
@@ -210,11 +210,11 @@ def kagome(
 
     In a config: ``{"kagome": {"cells": [10, 10], "periodic": [true, true]}}``
     """
-    return Lattice("kagome", {"cells": list(cells), "frozen": frozen, "moments": moments, "periodic": periodic, "regions": regions, "shape": shape, "spacing": spacing, "vacant": vacant})
+    return Lattice("kagome", {"cells": as_cells(cells), "frozen": frozen, "moments": moments, "periodic": periodic, "regions": regions, "shape": shape, "spacing": spacing, "vacant": vacant})
 
 
 def cubic(
-    *cells: int,
+    *cells: int | Sequence[int],
     frozen: Sequence[Mapping[str, Any]] | None = None,
     moments: Sequence[Mapping[str, Any]] | None = None,
     periodic: bool | Sequence[bool] | None = None,
@@ -246,11 +246,11 @@ def cubic(
 
     In a config: ``{"cubic": {"cells": [8, 8, 8]}}``
     """
-    return Lattice("cubic", {"cells": list(cells), "frozen": frozen, "moments": moments, "periodic": periodic, "regions": regions, "shape": shape, "spacing": spacing, "vacant": vacant})
+    return Lattice("cubic", {"cells": as_cells(cells), "frozen": frozen, "moments": moments, "periodic": periodic, "regions": regions, "shape": shape, "spacing": spacing, "vacant": vacant})
 
 
 def bcc(
-    *cells: int,
+    *cells: int | Sequence[int],
     frozen: Sequence[Mapping[str, Any]] | None = None,
     moments: Sequence[Mapping[str, Any]] | None = None,
     periodic: bool | Sequence[bool] | None = None,
@@ -282,11 +282,11 @@ def bcc(
 
     In a config: ``{"bcc": {"cells": [8, 8, 8]}}``
     """
-    return Lattice("bcc", {"cells": list(cells), "frozen": frozen, "moments": moments, "periodic": periodic, "regions": regions, "shape": shape, "spacing": spacing, "vacant": vacant})
+    return Lattice("bcc", {"cells": as_cells(cells), "frozen": frozen, "moments": moments, "periodic": periodic, "regions": regions, "shape": shape, "spacing": spacing, "vacant": vacant})
 
 
 def fcc(
-    *cells: int,
+    *cells: int | Sequence[int],
     frozen: Sequence[Mapping[str, Any]] | None = None,
     moments: Sequence[Mapping[str, Any]] | None = None,
     periodic: bool | Sequence[bool] | None = None,
@@ -318,11 +318,11 @@ def fcc(
 
     In a config: ``{"fcc": {"cells": [8, 8, 8]}}``
     """
-    return Lattice("fcc", {"cells": list(cells), "frozen": frozen, "moments": moments, "periodic": periodic, "regions": regions, "shape": shape, "spacing": spacing, "vacant": vacant})
+    return Lattice("fcc", {"cells": as_cells(cells), "frozen": frozen, "moments": moments, "periodic": periodic, "regions": regions, "shape": shape, "spacing": spacing, "vacant": vacant})
 
 
 def hcp(
-    *cells: int,
+    *cells: int | Sequence[int],
     c_over_a: float | None = None,
     frozen: Sequence[Mapping[str, Any]] | None = None,
     moments: Sequence[Mapping[str, Any]] | None = None,
@@ -357,11 +357,11 @@ def hcp(
 
     In a config: ``{"hcp": {"c_over_a": 1.62, "cells": [6, 6, 4]}}``
     """
-    return Lattice("hcp", {"cells": list(cells), "c_over_a": c_over_a, "frozen": frozen, "moments": moments, "periodic": periodic, "regions": regions, "shape": shape, "spacing": spacing, "vacant": vacant})
+    return Lattice("hcp", {"cells": as_cells(cells), "c_over_a": c_over_a, "frozen": frozen, "moments": moments, "periodic": periodic, "regions": regions, "shape": shape, "spacing": spacing, "vacant": vacant})
 
 
 def crystal(
-    *cells: int,
+    *cells: int | Sequence[int],
     vectors: Sequence[Sequence[float]],
     basis: Sequence[Mapping[str, Any]],
     frozen: Sequence[Mapping[str, Any]] | None = None,
@@ -399,11 +399,11 @@ def crystal(
 
     In a config: ``{"crystal": {"basis": [{"at": [0, 0, 0], "species": "Fe"}, {"at": [0.5, 0.5, 0.5], "species": "Pt"}], "cells": [4, 4, 2], "vectors": [[1, 0, 0], [0, 1, 0], [0, 0, 0.9]]}}``
     """
-    return Lattice("crystal", {"cells": list(cells), "vectors": vectors, "basis": basis, "frozen": frozen, "moments": moments, "periodic": periodic, "regions": regions, "shape": shape, "spacing": spacing, "vacant": vacant})
+    return Lattice("crystal", {"cells": as_cells(cells), "vectors": vectors, "basis": basis, "frozen": frozen, "moments": moments, "periodic": periodic, "regions": regions, "shape": shape, "spacing": spacing, "vacant": vacant})
 
 
 def grid(
-    *cells: int,
+    *cells: int | Sequence[int],
     cell: Sequence[str],
     frozen: Sequence[Mapping[str, Any]] | None = None,
     moments: Sequence[Mapping[str, Any]] | None = None,
@@ -435,4 +435,4 @@ def grid(
 
     In a config: ``{"grid": {"cell": ["2 nm", "2 nm", "0.6 nm"], "cells": [40, 40, 1]}}``
     """
-    return Lattice("grid", {"cells": list(cells), "cell": cell, "frozen": frozen, "moments": moments, "periodic": periodic, "regions": regions, "shape": shape, "vacant": vacant})
+    return Lattice("grid", {"cells": as_cells(cells), "cell": cell, "frozen": frozen, "moments": moments, "periodic": periodic, "regions": regions, "shape": shape, "vacant": vacant})

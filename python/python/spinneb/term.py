@@ -8,6 +8,8 @@ from typing import Any, Literal, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from . import terms
+
 __all__ = ["Term"]
 
 #: of vectors (site, xyz): anything that numpy takes for an array
@@ -28,7 +30,8 @@ class Term:
     gradient
         g(m) → ∂E/∂m, shape (N, 3), in meV. Its part along the spins does not matter.
     name
-        What its energy is called in results; letters, digits, ``.``, ``_`` and ``-``.
+        What its energy is called in results; letters, digits, ``.``, ``_`` and ``-``. If left out, the name of the function, or
+        ``"term"`` where that is taken (``energy``, ``exchange``, …).
     reach
         How far apart sites are that act on each other: a number of lattice constants (in a chain, sites), ``"dense"`` if all
         sites do (600 at most), or ``None`` to find out.
@@ -55,7 +58,9 @@ class Term:
         if not callable(energy) or not callable(gradient):
             raise TypeError("a Term takes two functions: energy(m) and gradient(m)")
         own = getattr(energy, "__name__", "")
-        self.name: str = name if name is not None else own if own.isidentifier() else "term"
+        # a column of the tables may have its name already
+        free = own.isidentifier() and own not in ("energy", *terms.__all__)
+        self.name: str = name if name is not None else own if free else "term"
         self.energy = energy
         self.gradient = gradient
         self.reach = reach
