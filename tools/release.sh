@@ -45,9 +45,8 @@ esac
 # linked by zig, where its package is there (pip install ziglang), the wheel runs on every Linux with glibc 2.17 or later
 zig=
 ! python3 -m ziglang version >/dev/null 2>&1 || [ "$(uname -s)" != Linux ] || zig="--zig --compatibility manylinux2014"
-# in one part, which takes minutes more: small enough for a package index also where zig links
 # shellcheck disable=SC2086
-(cd python && maturin build --release --locked $zig --config profile.release.package.spinneb.codegen-units=1 --out "$out")
+(cd python && maturin build --profile wheel --locked $zig --out "$out")
 for wheel in "$out"/*.whl; do
     [ "$(wc -c <"$wheel")" -lt 5000000 ] || fail "$wheel is larger than 5 MB"
 done

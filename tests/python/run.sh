@@ -24,16 +24,18 @@ wheels "$work/venv" pyvista || true
 unset VIRTUAL_ENV CONDA_PREFIX
 if [ "$slow" = "not slow" ]; then
     # as the program is compiled, and with what was compiled for it: half the work of a wheel that is small
-    set -- --target-dir "${CARGO_TARGET_DIR:-$root/target}" \
-        --config profile.release.codegen-units=16 --config profile.release.package.spinneb.codegen-units=16 \
-        --config 'profile.release.package."*".opt-level=3'
+    set -- --release --target-dir "${CARGO_TARGET_DIR:-$root/target}"
     most=
 else
-    # in one part, as tools/release.sh makes it
-    set -- --config profile.release.package.spinneb.codegen-units=1
+    # linked by zig, as tools/release.sh makes it
+    set -- --profile wheel
+    if [ "$(uname -s)" = Linux ] && wheels "$work/venv" ziglang; then
+        set -- "$@" --zig --compatibility manylinux2014
+        PATH=$bin:$PATH
+    fi
     most=5000000
 fi
-(cd "$root/python" && "$bin/maturin" build --quiet --release --locked --interpreter "$bin/python" --out "$work/wheels" "$@")
+(cd "$root/python" && "$bin/maturin" build --quiet --locked --interpreter "$bin/python" --out "$work/wheels" "$@")
 wheel=$(ls "$work"/wheels/*.whl)
 size=$(wc -c <"$wheel")
 echo "python: $(basename "$wheel"), $size bytes"
