@@ -116,18 +116,12 @@ fn longest(v: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::energy::{Hamiltonian, Medium, TermSpec};
-    use crate::lattice::{Lattice, LatticeSpec};
+    use crate::energy::test_terms::{hamiltonian, lattice};
+    use crate::lattice::Lattice;
     use crate::linalg::remove;
     use crate::path::Path;
     use crate::spins::Spins;
     use rand::{RngExt, SeedableRng};
-
-    fn film(lattice: &Lattice, terms: &[&str]) -> Hamiltonian {
-        let medium = Medium::new(lattice, None, None);
-        let term = |text: &&str| serde_json::from_str::<TermSpec>(text).unwrap().member().build(&medium).unwrap();
-        Hamiltonian::new(lattice, terms.iter().map(term).collect()).unwrap()
-    }
 
     /// Walls at several places, each with so much noise.
     fn walls(lattice: &Lattice, noise: f64) -> Path {
@@ -147,9 +141,9 @@ mod tests {
     #[test]
     fn what_is_left_of_a_force_by_rounding_moves_no_spin_by_more() {
         let spec = r#"{"square": {"cells": [40, 40], "periodic": true}}"#;
-        let lattice = serde_json::from_str::<LatticeSpec>(spec).unwrap().resolve().unwrap();
+        let lattice = lattice(spec);
         let easy = r#"{"anisotropy": {"K": "0.08 meV", "axis": [0, 0, 1]}}"#;
-        let h = film(&lattice, &[r#"{"exchange": {"J": ["1 meV"]}}"#, easy]);
+        let h = hamiltonian(&lattice, &[r#"{"exchange": {"J": ["1 meV"]}}"#, easy]);
         // the last has radial forces alone, of rounding: towards the poles all images are uniform
         let images = [0.0, 0.3, 0.6, 1e-9, 1e-13, 0.0].map(|angle: f64| {
             let m = vec![[angle.sin(), 0.0, angle.cos()]; lattice.sites];
@@ -179,11 +173,11 @@ mod tests {
             r#"{"triangular": {"cells": [40, 40], "shape": {"disc": {"radius": 19}}}}"#,
             r#"{"honeycomb": {"cells": [30, 30]}}"#,
         ] {
-            let lattice = serde_json::from_str::<LatticeSpec>(kind).unwrap().resolve().unwrap();
+            let lattice = lattice(kind);
             for (terms, noise) in
                 [(&[exchange, easy][..], 0.01), (&[exchange, easy, dmi], 0.01), (&[exchange, easy], 0.6)]
             {
-                let h = film(&lattice, terms);
+                let h = hamiltonian(&lattice, terms);
                 let mut band = Band::new(&h, walls(&lattice, noise));
                 band.evaluate();
                 let mut room = Iterated::by(Arc::new(Iterated::stand_in(&band, 0.16).expect("factors are dear")));

@@ -40,6 +40,9 @@ pub struct Hamiltonian {
     axes: Vec<Vector>,
 }
 
+/// Unit vectors whose vector product is shorter are parallel.
+const PARALLEL: f64 = 1e-6;
+
 impl Hamiltonian {
     /// The sum of `terms` on `lattice`.
     pub fn new(lattice: &Lattice, terms: Vec<Box<dyn EnergyTerm>>) -> Result<Hamiltonian> {
@@ -143,6 +146,17 @@ impl Hamiltonian {
     /// Unit vectors about which a rotation of all spins leaves every term as it is: none, one, or x, y and z.
     pub fn symmetry_axes(&self) -> &[Vector] {
         &self.axes
+    }
+
+    /// Axes that the terms single out, no two of them parallel.
+    pub fn own_axes(&self) -> Vec<Vector> {
+        let mut own: Vec<Vector> = Vec::new();
+        for axis in self.axes.iter().copied().chain(self.terms.iter().flat_map(|t| t.axes())) {
+            if own.iter().all(|known| vector::norm(vector::cross(*known, axis)) > PARALLEL) {
+                own.push(axis);
+            }
+        }
+        own
     }
 
     /// The symmetry axes that also leave the frozen spins of `m` as they are.

@@ -30,6 +30,8 @@ mod recorded;
 mod shared;
 mod spec;
 mod symmetry;
+#[cfg(test)]
+pub mod test_terms;
 mod zeeman;
 
 pub use anisotropy::{Anisotropy, AnisotropySpec};

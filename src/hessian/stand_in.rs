@@ -81,21 +81,18 @@ fn on_their_own(h: &Hamiltonian, m: &[f64], g: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::energy::{Medium, TermSpec};
+    use crate::energy::test_terms::{hamiltonian, lattice};
     use crate::geometry::Direction;
-    use crate::lattice::LatticeSpec;
     use crate::linalg::slab;
     use crate::spins::Spins;
 
     #[test]
     fn at_a_uniform_end_with_an_easy_axis_it_is_the_hessian_and_nearly_inverted() {
         let spec = r#"{"square": {"cells": [40, 36], "periodic": [true, false]}}"#;
-        let lattice = serde_json::from_str::<LatticeSpec>(spec).unwrap().resolve().unwrap();
-        let medium = Medium::new(&lattice, None, None);
+        let lattice = lattice(spec);
         let terms =
             [r#"{"exchange": {"J": ["1 meV", "-0.2 meV"]}}"#, r#"{"anisotropy": {"K": "0.1 meV", "axis": [0, 0, 1]}}"#];
-        let term = |text: &&str| serde_json::from_str::<TermSpec>(text).unwrap().member().build(&medium).unwrap();
-        let h = Hamiltonian::new(&lattice, terms.iter().map(term).collect()).unwrap();
+        let h = hamiltonian(&lattice, &terms);
         let ends = [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]].map(|v| Spins::uniform(h.sites(), Direction::new(v).unwrap()));
         let gradient = |m: &Spins| {
             let mut g = vec![0.0; 3 * h.sites()];

@@ -47,12 +47,12 @@ impl Lattice {
         (0..self.sites).map(|i| vector::dot(self.place(i), n)).collect()
     }
 
-    /// From a cell to the next along each direction, in spacings; across the others where there is only one cell.
+    /// From a cell to the next along each direction, in spacings; across the others where there is only one place.
     pub fn cell_vectors(&self) -> [Vector; 3] {
-        let length = self.spacing_nm.unwrap_or(1.0);
+        let (length, extents) = (self.spacing_nm.unwrap_or(1.0), self.extents());
         let given = [0, 1, 2].map(|d| {
             let (step, along) = self.steps[d];
-            self.grid.extends(d).then(|| vector::scale(step / length, along.vector()))
+            extents[d].then(|| vector::scale(step / length, along.vector()))
         });
         let mut made = given;
         for d in 0..3 {

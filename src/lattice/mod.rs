@@ -23,6 +23,7 @@ mod measure;
 mod order;
 mod picture;
 mod places;
+mod rows;
 mod selection;
 mod shape;
 mod shells;

@@ -65,17 +65,27 @@ impl Push {
 fn block(lattice: &Lattice, random: &mut ChaCha8Rng) -> Vec<usize> {
     let one = random.random_bool(ONE_SITE);
     let (grid, centre) = (&lattice.grid, random.random_range(0..lattice.sites));
+    let places = lattice.places_in_cell();
     let mut length = |d: usize| {
-        let most = (grid.size[d] / 2).max(1) as f64;
-        if one { 1 } else { libm::exp(random.random_range(0.0..1.0) * libm::log(most + 1.0)) as isize }
+        let most = (grid.size[d] * places[d] / 2).max(1) as f64;
+        if one { 1 } else { libm::exp(random.random_range(0.0..1.0) * libm::log(most + 1.0)) as usize }
     };
-    let [x, y, z] = [length(0), length(1), length(2)];
-    let around = |n: isize| -n / 2..n - n / 2;
-    let shifts = around(z).flat_map(|c| around(y).flat_map(move |b| around(x).map(move |a| [a, b, c])));
-    let (own, cell) = lattice.cell(centre);
-    let cells = shifts.filter_map(|shift| grid.shifted(cell, shift));
-    let atoms = if one { own..own + 1 } else { 0..lattice.atoms.len() };
-    cells.flat_map(|cell| atoms.clone().filter_map(move |atom| lattice.site(atom, cell))).collect()
+    let lengths = [length(0), length(1), length(2)];
+    if one {
+        return vec![centre];
+    }
+    let middle = lattice.steps_to(centre);
+    let is_in = |i: &usize| {
+        let here = lattice.steps_to(*i);
+        (0..3).all(|d| {
+            let (size, n) = (grid.size[d] as f64, lengths[d]);
+            let away = here[d] - middle[d];
+            let away = if grid.periodic[d] { away - size * (away / size).round() } else { away };
+            let first = -((n / 2) as f64) - 0.5;
+            (first..first + n as f64).contains(&(places[d] as f64 * away))
+        })
+    };
+    (0..lattice.sites).filter(is_in).collect()
 }
 
 /// A direction across another one.
@@ -90,20 +100,21 @@ fn across(along: Vector, random: &mut ChaCha8Rng) -> Option<Direction> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lattice::LatticeSpec;
+    use crate::energy::test_terms::lattice;
     use rand::SeedableRng;
 
     #[test]
     fn blocks_are_sites_of_the_lattice_once_each_and_up_to_half_as_long() {
         let mut random = ChaCha8Rng::seed_from_u64(1);
-        for text in [
-            r#"{"chain": {"sites": 1}}"#,
-            r#"{"chain": {"sites": 12}}"#,
-            r#"{"chain": {"sites": 12, "periodic": true}}"#,
-            r#"{"square": {"cells": [4, 6], "periodic": [true, false]}}"#,
-            r#"{"kagome": {"cells": [4, 2]}}"#,
+        for (text, most) in [
+            (r#"{"chain": {"sites": 1}}"#, 1),
+            (r#"{"chain": {"sites": 12}}"#, 6),
+            (r#"{"chain": {"sites": 12, "periodic": true}}"#, 6),
+            (r#"{"square": {"cells": [4, 6], "periodic": [true, false]}}"#, 6),
+            // half as long along both vectors, in places half a vector apart, a quarter of which are empty
+            (r#"{"kagome": {"cells": [4, 2], "periodic": true}}"#, 6),
         ] {
-            let lattice = serde_json::from_str::<LatticeSpec>(text).unwrap().resolve().unwrap();
+            let lattice = lattice(text);
             let mut sizes = std::collections::BTreeSet::new();
             for _ in 0..400 {
                 let mut sites = block(&lattice, &mut random);
@@ -113,9 +124,37 @@ mod tests {
                 assert!(sites.len() == count && count > 0 && sites.iter().all(|i| *i < lattice.sites), "{sites:?}");
                 sizes.insert(count);
             }
-            let most: usize = lattice.grid.size.iter().map(|n| (n / 2).max(1)).product();
-            let most = most * lattice.atoms.len();
             assert!(sizes.contains(&1) && sizes.last() == Some(&most), "{text}: {sizes:?}");
         }
+    }
+
+    /// Atoms of one large cell, at such places of a grid.
+    fn crystal(size: [usize; 2], at: impl Fn(usize) -> [f64; 2]) -> Lattice {
+        let basis: Vec<String> = (0..size[0] * size[1])
+            .map(|i| {
+                let [x, y] = at(i);
+                format!(r#"{{"at": [{}, {}, 0]}}"#, x / size[0] as f64, y / size[1] as f64)
+            })
+            .collect();
+        let [x, y] = size;
+        let vectors = format!("[[{x}, 0, 0], [0, {y}, 0], [0, 0, 1]]");
+        let basis = basis.join(", ");
+        lattice(&format!(r#"{{"crystal": {{"vectors": {vectors}, "basis": [{basis}], "cells": [1, 1, 1]}}}}"#))
+    }
+
+    #[test]
+    fn blocks_are_places_whichever_cells_the_lattice_is_made_of() {
+        let square = lattice(r#"{"square": {"cells": [4, 6]}}"#);
+        let whole = crystal([4, 6], |i| [(i % 4) as f64, (i / 4) as f64]);
+        let [mut one, mut other] = [1, 1].map(ChaCha8Rng::seed_from_u64);
+        for _ in 0..100 {
+            assert_eq!(block(&square, &mut one), block(&whole, &mut other));
+        }
+        // where no two atoms are in one row: about as many places as in a grid
+        let slanted =
+            crystal([6, 6], |i| [(i % 6) as f64 + 0.1 * (i / 6) as f64, (i / 6) as f64 + 0.1 * (i % 6) as f64]);
+        assert_eq!((whole.places_in_cell(), slanted.places_in_cell()), ([4, 6, 1], [6, 6, 1]));
+        let largest = (0..400).map(|_| block(&slanted, &mut one).len()).max();
+        assert!(largest.is_some_and(|n| (6..=12).contains(&n)), "{largest:?}");
     }
 }

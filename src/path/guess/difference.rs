@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 
 /// Spins that differ by less (rad) do not count.
 const DIFFERS: f64 = 1.0;
-/// A difference goes all the way through along a direction if it is in this part of the cells along it.
+/// A difference goes all the way through along a direction if it is in this part of the rows across it.
 const THROUGH: f64 = 0.9;
 /// Points nearest to the middle among which a hollow is looked for, by the number of dimensions.
 const NEAR: [usize; 4] = [0, 6, 16, 32];
@@ -33,14 +33,17 @@ impl Difference {
         let differ: Vec<usize> = (0..a.sites()).filter(|i| angle(a.get(*i), b.get(*i)) > DIFFERS).collect();
         let sites: Vec<usize> = if differ.is_empty() { (0..a.sites()).collect() } else { differ };
         let cells = lattice.cell_vectors();
+        let (places, extents) = (lattice.places_in_cell(), lattice.extents());
         let goes_through = |d: usize| {
-            let (mut any, mut here) = (vec![false; grid.size[d]], vec![false; grid.size[d]]);
-            (0..a.sites()).for_each(|i| any[lattice.cell(i).1[d]] = true);
-            sites.iter().for_each(|i| here[lattice.cell(*i).1[d]] = true);
+            let rows = grid.size[d] * places[d];
+            let row = |i: usize| ((lattice.steps_to(i)[d] * places[d] as f64 + EQUAL).floor() as usize).min(rows - 1);
+            let (mut any, mut here) = (vec![false; rows], vec![false; rows]);
+            (0..a.sites()).for_each(|i| any[row(i)] = true);
+            sites.iter().for_each(|i| here[row(*i)] = true);
             let count = |cells: &[bool]| cells.iter().filter(|c| **c).count() as f64;
             count(&here) >= THROUGH * count(&any)
         };
-        let extended = (0..3).filter(|d| grid.extends(*d));
+        let extended = (0..3).filter(|d| extents[*d]);
         let (through, local): (Vec<usize>, Vec<usize>) = extended.partition(|d| goes_through(*d));
         let vectors = |of: &[usize]| of.iter().map(|d| cells[*d]).collect::<Vec<Vector>>();
         let through = orthonormal(&vectors(&through));
@@ -105,9 +108,9 @@ fn middle(lattice: &Lattice, sites: &[usize], a: &Spins, b: &Spins) -> Vector {
     let weight = |i: usize| (1.0 - vector::dot(a.get(i), b.get(i))).max(1e-12);
     let mut turn: Vec<[f64; 2]> = vec![[0.0; 2]; 3];
     for &i in sites {
-        let (_, cell) = lattice.cell(i);
+        let steps = lattice.steps_to(i);
         for d in 0..3 {
-            let (sin, cos) = libm::sincos(TAU * cell[d] as f64 / size[d] as f64);
+            let (sin, cos) = libm::sincos(TAU * steps[d] / size[d] as f64);
             turn[d] = [turn[d][0] + weight(i) * cos, turn[d][1] + weight(i) * sin];
         }
     }

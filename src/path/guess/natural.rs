@@ -6,9 +6,9 @@
 //! | in a band across the lattice | geodesic; a front from either side of it |
 //! | everywhere | geodesic; a front from every edge (face); a droplet from every corner; where directions are periodic a front along each, and where all are a droplet from the middle |
 //!
-//! Opposite spins turn in the sense whose image halfway has the least energy, of ±x, ±y, ±z, the energy's own axes, and fronts also
-//! outwards, inwards and both ways round of their way; and in the opposite sense too where that has another energy. Of paths whose
-//! energies are the same all along, images of each other by a symmetry, the first stays.
+//! Opposite spins turn in the sense whose image halfway has the least energy, of ±x, ±y, ±z, the axes that terms of the energy single
+//! out, and fronts also outwards, inwards and both ways round of their way; and in the opposite sense too where that has another
+//! energy. Of paths whose energies are the same all along, images of each other by a symmetry, the first stays.
 
 use super::difference::Difference;
 use super::drift::exits;
@@ -83,8 +83,8 @@ impl Route {
     /// The senses that may differ.
     fn senses(&self, h: &Hamiltonian, choice: bool) -> Vec<Sense> {
         let cartesian = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-        let oblique = h.symmetry_axes().iter().filter(|v| v.iter().all(|c| c.abs() < 1.0));
-        let axes = cartesian.iter().chain(oblique).flat_map(|v| [*v, v.map(|c| -c)]);
+        let oblique = h.own_axes().into_iter().filter(|v| v.iter().all(|c| c.abs() < 1.0));
+        let axes = cartesian.into_iter().chain(oblique).flat_map(|v| [v, v.map(|c| -c)]);
         let axes = axes.filter_map(|v| Direction::new(v).ok()).map(Sense::About);
         let around = [0.0, PI, FRAC_PI_2, -FRAC_PI_2].map(Sense::AtHelicity);
         match self {

@@ -1,7 +1,8 @@
 //! Edges and corners of a lattice: where fronts enter.
 //!
-//! A box of cells has two edges (faces) along each open direction and a corner wherever these meet. A lattice with sites left out has
-//! one of each every 30° around, in three dimensions one in each of the 26 directions to the faces, edges and corners of a cube.
+//! A box of cells has two edges (faces) along each open direction and a corner wherever these meet. A lattice with sites left out, or
+//! of the atoms of one cell, has one of each every 30° around, in three dimensions one in each of the 26 directions to the faces, edges
+//! and corners of a cube.
 
 use crate::geometry::{Vector, vector};
 use crate::lattice::Lattice;
@@ -22,7 +23,8 @@ impl Outline {
     /// Of a lattice; without edges where all its directions are periodic.
     pub(super) fn of(lattice: &Lattice) -> Outline {
         let cells = lattice.cell_vectors();
-        let extended: Vec<usize> = (0..3).filter(|d| lattice.grid.extends(*d)).collect();
+        let extents = lattice.extents();
+        let extended: Vec<usize> = (0..3).filter(|d| extents[*d]).collect();
         let open: Vec<usize> = extended.iter().copied().filter(|d| !lattice.grid.periodic[*d]).collect();
         let normal = |d: usize| {
             let others: Vec<Vector> = extended.iter().filter(|k| **k != d).map(|k| cells[*k]).collect();
@@ -31,7 +33,8 @@ impl Outline {
         };
         let normals: Vec<Vector> = open.iter().map(|d| normal(*d)).collect();
         let both = |n: &Vector| [vector::scale(-1.0, *n), *n];
-        let of_a_box = lattice.slots.are_all();
+        // atoms of a single cell may have any shape
+        let of_a_box = lattice.slots.are_all() && extended.iter().all(|d| lattice.grid.extends(*d));
         let edges: Vec<Vector> = match of_a_box || open.len() != extended.len() || open.len() < 2 {
             true => normals.iter().flat_map(both).collect(),
             false => all_around(&orthonormal(&open.iter().map(|d| cells[*d]).collect::<Vec<_>>())),
