@@ -66,21 +66,18 @@ pub fn quench(h: Evaluator, here: &mut Point, next: &mut Point, trail: &mut Trai
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::energy::{Hamiltonian, Medium, TermSpec};
+    use crate::energy::Hamiltonian;
+    use crate::energy::test_terms::{hamiltonian, lattice};
     use crate::geometry::{Vector, vector};
-    use crate::lattice::LatticeSpec;
     use crate::path::largest_angle;
     use crate::spins::Spins;
 
     const CELLS: usize = 13;
 
     fn film() -> Hamiltonian {
-        let spec = format!(r#"{{"square": {{"cells": [{CELLS}, {CELLS}]}}}}"#);
-        let lattice = serde_json::from_str::<LatticeSpec>(&spec).unwrap().resolve().unwrap();
-        let medium = Medium::new(&lattice, None, None);
-        let terms = [r#"{"exchange": {"J": ["1 meV"]}}"#, r#"{"anisotropy": {"K": "0.2 meV", "axis": [0, 0, 1]}}"#];
-        let term = |text: &&str| serde_json::from_str::<TermSpec>(text).unwrap().member().build(&medium).unwrap();
-        Hamiltonian::new(&lattice, terms.iter().map(term).collect()).unwrap()
+        let lattice = lattice(&format!(r#"{{"square": {{"cells": [{CELLS}, {CELLS}]}}}}"#));
+        let easy = r#"{"anisotropy": {"K": "0.2 meV", "axis": [0, 0, 1]}}"#;
+        hamiltonian(&lattice, &[r#"{"exchange": {"J": ["1 meV"]}}"#, easy])
     }
 
     /// A bubble about the middle, whose spins lean along x.
@@ -102,11 +99,13 @@ mod tests {
         let start = Point::at(h, bubble().as_slice().to_vec());
         let (mut here, mut next, mut trail) = (start.clone(), Point::default(), Trail::from(&start.m));
         assert!(quench(h, &mut here, &mut next, &mut trail, [0.05, 0.3]), "it comes to rest");
-        assert!(here.max_torque_mev() < 1e-4 * start.max_torque_mev().max(1.0), "{}", here.max_torque_mev());
+        let points = trail.into_points();
+        // a bubble that shrinks is steeper than the one it began as; the steepest place may lie between two points
+        let largest = points.iter().map(|m| Point::at(h, m.clone()).max_torque_mev()).fold(0.0, f64::max);
+        assert!(here.max_torque_mev() < 2.0 * LEFT * largest, "{}", here.max_torque_mev());
         assert!(start.above_mev(&here) > 1.0, "{}", start.above_mev(&here));
         let uniform = Spins::uniform(h.sites(), crate::geometry::Direction::Z);
         assert!(largest_angle(&here.m, uniform.as_slice()) < 0.01);
-        let points = trail.into_points();
         assert!(points.len() > 3);
         for m in points.iter().chain([&here.m]) {
             for i in 0..CELLS * CELLS {
