@@ -5,7 +5,8 @@ use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::Deserialize;
 use spinneb::config::load_text;
-use spinneb::drive::{Outcome, Problem};
+use spinneb::drive::survey::survey;
+use spinneb::drive::{Outcome, Problem, Silent};
 use spinneb::energy::{Anisotropy, Exchange, Hamiltonian};
 use spinneb::geometry::{Direction, tangent_basis, vector};
 use spinneb::landscape::Effort;
@@ -1038,4 +1039,34 @@ fn a_square_thin_cell_lives_as_long_as_a_spin_with_an_easy_axis_of_its_barrier()
     let spin = solve(&with(Build::open(1).easy(barrier).reversal(), settings(1, moment, 0.1, 300.0)));
     let [cell, spin] = [&cell, &spin].map(|outcome| rate(outcome, Way::Forward).langer.expect("Langer").hz_at(300.0));
     assert!((cell / spin - 1.0).abs() < 1e-9, "{cell} {spin}");
+}
+
+#[test]
+fn a_network_of_all_places_of_a_skyrmion_says_what_its_path_says() {
+    // in the lower field it rests between the atoms: two places for each of them, and half as many saddles as places
+    for (tesla, places, kelvin) in [(5.5, 144, 0.5), (4.8, 288, 0.7)] {
+        let text = format!(
+            r#"{{"material": {{"name": "skyrmion", "moment": "1 mu_B", "energy": [{{"exchange": {{"J": ["1 meV", "1 meV"]}}}},
+            {{"dmi": {{"D": "1 meV", "kind": "interfacial"}}}}]}}, "energy": [{{"zeeman": {{"B": ["0 T", "0 T", "{tesla} T"]}}}}],
+            "lattice": {{"triangular": {{"cells": [12, 12], "periodic": true}}}}, "initial": {{"skyrmion": {{"radius": 3}}}},
+            "final": {{"uniform": {{"direction": [0, 0, 1]}}}}, "rates": {{"temperatures": ["{kelvin} K"], "damping": 1}},
+            "landscape": {{"effort": "quick", "energy_window": "41 meV"}}}}"#
+        );
+        let loaded = load_text("skyrmion.json".as_ref(), text).unwrap();
+        let outcome = solve(&loaded.problem().unwrap());
+        let escape = &outcome.rates.as_ref().unwrap().transitions[0].rows[0].escape;
+        let found = survey(&loaded.survey().unwrap(), &mut Silent).unwrap();
+        assert!(found.is_whole());
+        assert_eq!(found.minima.len(), 1 + places);
+        let rows = &found.lifetimes.as_ref().unwrap().rows;
+        let row = |from: &str, to: Option<&str>| rows.iter().find(|r| r.from == from && r.to.as_deref() == to).unwrap();
+        for to in [None, Some("minimum 0")] {
+            let times = row("minimum 1", to).ln_time_s.map(Option::unwrap);
+            for (time, rate) in times.into_iter().zip([escape.ln_htst_per_s, escape.ln_langer_per_s]) {
+                assert!((time + rate.unwrap()).abs() < 1e-9, "{tesla} T: {time} {escape:?}");
+            }
+        }
+        let hop = row("minimum 1", Some("minimum 2"));
+        assert!(hop.ln_time_s == [None, None] && hop.reason.as_ref().unwrap().contains("one state"), "{hop:?}");
+    }
 }

@@ -8,8 +8,8 @@ use super::symmetry::{free_shifts, places, states_on_the_way};
 use super::validity::{Fluctuations, Validity, warnings};
 use super::zero_modes::ZeroMode;
 use super::{
-    Equivalents, RateSettings, Refusal, Theory, Unstable, ZeroModes, crossover_temperature, equivalent_saddles,
-    growth_rate, unstable_mode, zero_modes,
+    Equivalents, RateSettings, Refusal, Theory, Unstable, ZeroKind, ZeroModes, crossover_temperature,
+    equivalent_saddles, growth_rate, unstable_mode, zero_modes,
 };
 use crate::energy::Evaluator;
 use crate::spins::Spins;
@@ -187,6 +187,15 @@ impl SaddleRate {
     pub fn ln_rate_of_one_per_s(&self, theory: Theory, temperature_k: f64) -> Option<f64> {
         let all = self.ln_rate_per_s(theory, temperature_k)?;
         Some(all - libm::log(self.equivalents.count as f64) + self.ln_places)
+    }
+
+    /// Whether what is on both sides of the saddle slides, and the saddle holds it on neither side: two places of one state, whose integral
+    /// over the valley each side has in full already. `back`: the rate over the same saddle from its other side; a temperature (K).
+    pub fn is_within_one(&self, back: &SaddleRate, temperature_k: f64) -> bool {
+        [self, back].iter().all(|side| {
+            let slides = side.minimum_zeros.iter().any(|zeros| zeros.kind == ZeroKind::Translation);
+            slides && side.barrier_mev.is_some_and(|barrier| barrier < LEAST_BARRIER * K_B * temperature_k)
+        })
     }
 
     /// ln of the factor within which the rate is known at a temperature (K).

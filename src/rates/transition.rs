@@ -1,8 +1,8 @@
 //! The rate of the whole path, over all its saddles.
 
 use super::passage::{TEN_YEARS_S, blocking_temperature, first_passage, passages};
-use super::rate::{LEAST_BARRIER, factor};
-use super::{Equivalents, RateSettings, Refusal, Row, SaddleRate, Theory, Way, ZeroKind};
+use super::rate::factor;
+use super::{Equivalents, RateSettings, Refusal, Row, SaddleRate, Theory, Way};
 use crate::units::K_B;
 
 /// How many of each stationary state symmetry makes of the path's own with both ends kept: from a minimum of a kind of which there
@@ -69,15 +69,6 @@ pub fn transitions(
     Way::BOTH.map(|way| transition(saddles, orbits, settings, doubt, way)).into()
 }
 
-/// Whether what is on both sides of a saddle slides, and the saddle holds it on neither side: two places of one state, whose integral
-/// over the valley each side has in full already.
-fn is_within_one(onward: &SaddleRate, back: &SaddleRate, t: f64) -> bool {
-    [onward, back].iter().all(|side| {
-        let slides = side.minimum_zeros.iter().any(|zeros| zeros.kind == ZeroKind::Translation);
-        slides && side.barrier_mev.is_some_and(|barrier| barrier < LEAST_BARRIER * K_B * t)
-    })
-}
-
 fn transition(
     saddles: &[SaddleRate],
     orbits: &Orbits,
@@ -97,7 +88,7 @@ fn transition(
     let count = onward.len();
     let number = |i: usize| if way == Way::Forward { i } else { count - 1 - i };
     // the saddles that part states
-    let parting = |t: f64| -> Vec<usize> { (0..count).filter(|i| !is_within_one(onward[*i], back[*i], t)).collect() };
+    let parting = |t: f64| -> Vec<usize> { (0..count).filter(|i| !onward[*i].is_within_one(back[*i], t)).collect() };
     let ln_rates = |rates: &[&SaddleRate], side: usize, theory: Theory, t: f64| -> Option<Vec<f64>> {
         let all = parting(t).into_iter().map(|i| (i, rates[i]));
         all.map(|(i, r)| Some(r.ln_rate_per_s(theory, t)? + orbits.ln_more(number(i), side, r.equivalents.count)))
@@ -164,7 +155,7 @@ fn highest(onward: &[&SaddleRate], back: &[&SaddleRate]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rates::{Prefactor, ZeroModes};
+    use crate::rates::{Prefactor, ZeroKind, ZeroModes};
 
     const LOWEST_MEV: f64 = 1e-6;
 

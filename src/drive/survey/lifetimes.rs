@@ -6,6 +6,7 @@ use crate::network::{Network, Parts};
 use crate::rates::{LEAST_BARRIER, RateSettings, SaddleRate, Theory, saddle_rates};
 use crate::symmetry::Group;
 use crate::units::K_B;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Climbs that differ by less than this part are alike.
 const ALIKE: f64 = 1e-9;
@@ -54,9 +55,11 @@ impl Lifetimes {
         let saddles = passes.iter().enumerate().map(|(k, pass)| over(land, group, pass, k, settings)).collect();
         let groups = groups(survey, asked);
         let mut found = Lifetimes { settings: settings.clone(), groups, saddles, rows: Vec::new() };
-        let transitions = found.transitions(survey);
+        let ascending = found.ascending(survey);
         for t in &settings.temperatures_k {
-            let networks = Theory::ALL.map(|theory| found.network(survey, theory, *t));
+            let places = found.places(survey, *t);
+            let networks = Theory::ALL.map(|theory| found.network(survey, &places, theory, *t));
+            let transitions = found.transitions(survey, &places, &ascending);
             let rows: Vec<Lifetime> =
                 transitions.iter().map(|transition| found.row(survey, transition, *t, &networks)).collect();
             found.rows.extend(rows);
@@ -69,7 +72,8 @@ impl Lifetimes {
         let mut words = self.unrated();
         let hottest = self.settings.temperatures_k.iter().copied().fold(0.0, f64::max);
         let low = |r: &SaddleRate| r.barrier_mev.is_some_and(|e| e < LEAST_BARRIER * K_B * hottest);
-        let count = self.saddles.iter().filter(|both| both.iter().any(low)).count();
+        let parts = |[on, back]: &&[SaddleRate; 2]| !on.is_within_one(back, hottest);
+        let count = self.saddles.iter().filter(parts).filter(|both| both.iter().any(low)).count();
         let low = format!(
             "{count} kinds of saddles are lower than {LEAST_BARRIER} k_BT at {hottest} K above a minimum beside them: such a minimum hardly \
              holds the spins there, and its part in the times is formal"
@@ -95,48 +99,75 @@ impl Lifetimes {
         asked.filter_map(of).collect()
     }
 
+    /// Which minima are places of one state at a temperature (K).
+    fn places(&self, survey: &Survey, temperature_k: f64) -> Places {
+        let mut parts = Parts::of(survey.minima.len());
+        for saddle in &survey.saddles {
+            let [on, back] = &self.saddles[saddle.kind];
+            if on.is_within_one(back, temperature_k) {
+                parts.join(saddle.minima[0], saddle.minima[1]);
+            }
+        }
+        let state: Vec<usize> = (0..survey.minima.len()).map(|k| parts.root(k)).collect();
+        let kind = |k: usize| (state[k], survey.minima[k].kind);
+        let mut alike: BTreeMap<(usize, usize), usize> = BTreeMap::new();
+        (0..state.len()).for_each(|k| *alike.entry(kind(k)).or_default() += 1);
+        let ln_alike = (0..state.len()).map(|k| libm::log(alike[&kind(k)] as f64)).collect();
+        Places { state, ln_alike }
+    }
+
     /// The network at a temperature (K), of all saddles that have a rate; nothing where none has.
-    pub fn network(&self, survey: &Survey, theory: Theory, temperature_k: f64) -> Option<Network> {
+    fn network(&self, survey: &Survey, places: &Places, theory: Theory, temperature_k: f64) -> Option<Network> {
         let mut network = Network::new(survey.minima.len());
         for saddle in &survey.saddles {
             let [a, b] = saddle.minima;
-            if a == b {
-                continue;
-            }
             let [on, back] = &self.saddles[saddle.kind];
-            // those that are equivalent are saddles of their own here, and places states of their own
-            let ln = |r: &SaddleRate| r.ln_rate_of_one_per_s(theory, temperature_k);
-            if let (Some(on), Some(back)) = (ln(on), ln(back)) {
-                network.add(a, b, on);
-                network.add(b, a, back);
+            // those that are equivalent are saddles of their own here, and places share a state's time, each kind of them all of it
+            let ln = |r: &SaddleRate, from: usize| {
+                Some(r.ln_rate_of_one_per_s(theory, temperature_k)? - places.ln_alike[from])
+            };
+            if let (Some(on), Some(back)) = (ln(on, a), ln(back, b)) {
+                network.add(places.state[a], places.state[b], on);
+                network.add(places.state[b], places.state[a], back);
             }
         }
         self.saddles.iter().any(|both| has_rate(&both[0], theory)).then_some(network)
     }
 
-    /// Out of each group, and from it to each other one.
-    fn transitions(&self, survey: &Survey) -> Vec<Transition> {
+    /// The passes by ascending energy: all of them, and those that have a rate by each theory.
+    fn ascending(&self, survey: &Survey) -> [Vec<([usize; 2], f64)>; 3] {
         let ascending = |is_in: &dyn Fn(usize) -> bool| {
             let all = survey.saddles.iter().zip(survey.passes()).filter(|(saddle, _)| is_in(saddle.kind));
             let mut passes: Vec<([usize; 2], f64)> = all.map(|(_, pass)| pass).collect();
             passes.sort_by(|p, q| p.1.total_cmp(&q.1));
             passes
         };
-        let all = ascending(&|_| true);
-        let rated = Theory::ALL.map(|theory| ascending(&|kind| has_rate(&self.saddles[kind][0], theory)));
+        let [htst, langer] = Theory::ALL.map(|theory| ascending(&|kind| has_rate(&self.saddles[kind][0], theory)));
+        [ascending(&|_| true), htst, langer]
+    }
+
+    /// Out of each group with all places of its states, and from it to each other one.
+    fn transitions(
+        &self,
+        survey: &Survey,
+        places: &Places,
+        [all, htst, langer]: &[Vec<([usize; 2], f64)>; 3],
+    ) -> Vec<Transition> {
         let mut found = Vec::new();
         for (from, states) in &self.groups {
-            let outside: Vec<usize> = (0..survey.minima.len()).filter(|k| !states.contains(k)).collect();
+            let own = places.all_of(states);
+            let outside: Vec<usize> = (0..survey.minima.len()).filter(|k| !own.contains(k)).collect();
             let others = self
                 .groups
                 .iter()
                 .filter(|(name, _)| name != from)
                 .map(|(name, goal)| (Some(name.clone()), goal.clone()));
             for (to, goal) in std::iter::once((None, outside)).chain(others) {
-                let climb_mev = climb(survey, &all, states, &goal);
+                let climb_mev = climb(survey, all, states, &goal);
                 let lowest = |passes: &Vec<_>| climb(survey, passes, states, &goal) <= climb_mev * (1.0 + ALIKE);
-                let rated = rated.each_ref().map(lowest);
-                found.push(Transition { from: from.clone(), to, states: states.clone(), goal, climb_mev, rated });
+                let rated = [htst, langer].map(lowest);
+                let [states, goal] = [states, &goal].map(|group| places.states_of(group));
+                found.push(Transition { from: from.clone(), to, states, goal, climb_mev, rated });
             }
         }
         found
@@ -156,6 +187,8 @@ impl Lifetimes {
             Some("not all states that symmetry makes are listed".to_string())
         } else if climb_mev == f64::INFINITY {
             Some("no passes lead there".to_string())
+        } else if states.iter().any(|k| goal.contains(k)) {
+            Some("some of both are places of one state".to_string())
         } else if climb_mev < LEAST_BARRIER * K_B * temperature_k {
             Some(format!("the climb is below {LEAST_BARRIER} k_BT"))
         } else if (0..2).all(|k| time(k).is_none()) {
@@ -199,10 +232,33 @@ fn groups(survey: &Survey, asked: &SurveyProblem) -> Vec<(String, Vec<usize>)> {
     held.filter(|(_, states): &(String, Vec<usize>)| !states.is_empty()).collect()
 }
 
+/// The minima as states at a temperature: those between which a sliding state hops freely are one.
+struct Places {
+    /// The state of each minimum: the least of its places.
+    state: Vec<usize>,
+    /// ln of how many places of its state are of its kind.
+    ln_alike: Vec<f64>,
+}
+
+impl Places {
+    /// The states of some minima, each once, in the order of the minima.
+    fn states_of(&self, minima: &[usize]) -> Vec<usize> {
+        let mut seen = BTreeSet::new();
+        minima.iter().map(|k| self.state[*k]).filter(|state| seen.insert(*state)).collect()
+    }
+
+    /// All places of the states of some minima.
+    fn all_of(&self, minima: &[usize]) -> BTreeSet<usize> {
+        let states: BTreeSet<usize> = minima.iter().map(|k| self.state[*k]).collect();
+        (0..self.state.len()).filter(|k| states.contains(&self.state[*k])).collect()
+    }
+}
+
 /// From one group of minima to another, or to any other minimum.
 struct Transition {
     from: String,
     to: Option<String>,
+    /// The states of the group, and those that it goes to.
     states: Vec<usize>,
     goal: Vec<usize>,
     /// The highest saddle of the lowest way, above the lowest minimum of the group (meV).
@@ -230,4 +286,89 @@ fn over(land: &Landscape, group: &Group, pass: &Pass, number: usize, settings: &
     let h = land.evaluator();
     let doubt = pass.doubt(h).map(|doubt| doubt.to_string());
     saddle_rates(h, number, &pass.crossing(group, doubt.as_deref()), settings)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drive::survey::{Effort, FoundMinimum, FoundSaddle, Unseen};
+    use crate::geometry::Direction;
+    use crate::landscape::Searched;
+    use crate::rates::{Prefactor, Refusal, ZeroKind, ZeroModes, refused};
+    use crate::spins::Spins;
+
+    const HOP_MEV: f64 = 1e-6;
+
+    fn settings() -> RateSettings {
+        RateSettings {
+            temperatures_k: vec![20.0, 1e-6],
+            damping: 0.3,
+            g_factor: 2.0,
+            theories: Theory::ALL.to_vec(),
+            moments_mub: Vec::new(),
+        }
+    }
+
+    /// The rates over a saddle of such barriers (meV), between states that slide or do not.
+    fn both(ln_hz: f64, barriers_mev: [f64; 2], slide: [bool; 2]) -> [SaddleRate; 2] {
+        let mut both = refused(0, &settings(), barriers_mev.map(Some), &Refusal::Path(String::new()));
+        let prefactor = Prefactor { frequency_per_s: 1e12, ln_hz, exponent: 0.0, pinning_mev: [[0.0; 3]; 2] };
+        let translation = ZeroModes {
+            kind: ZeroKind::Translation,
+            count: 2,
+            volume: 6e3,
+            hop_volume: None,
+            pinning_mev: vec![HOP_MEV; 2],
+        };
+        for (rate, slides) in both.iter_mut().zip(slide) {
+            (rate.htst, rate.langer, rate.refused) = (Some(prefactor), Some(prefactor), Vec::new());
+            rate.minimum_zeros = if slides { vec![translation.clone()] } else { Vec::new() };
+        }
+        both
+    }
+
+    /// A uniform state, 0, and a skyrmion's four places: two of one kind, 1 and 2, from which it collapses, and two of another between
+    /// them, 3 and 4.
+    fn survey() -> Survey {
+        let spins = || Spins::uniform(1, Direction::Z);
+        let saddle = |kind: usize, minima: [usize; 2]| FoundSaddle { kind, minima, spins: spins() };
+        Survey {
+            minimum_kinds: Vec::new(),
+            saddle_kinds: Vec::new(),
+            minima: [0, 1, 1, 2, 2].map(|kind| FoundMinimum { kind, spins: spins() }).into(),
+            saddles: [(0, [1, 3]), (0, [2, 3]), (0, [2, 4]), (0, [1, 4]), (1, [1, 0]), (1, [2, 0])]
+                .map(|(kind, minima)| saddle(kind, minima))
+                .into(),
+            effort: Effort::Quick,
+            searched: Searched::default(),
+            shares: 1,
+            seeds: 0,
+            unseen: Unseen::default(),
+            symmetry_order: 1,
+            lifetimes: None,
+            warnings: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn each_kind_of_places_between_which_nothing_holds_a_sliding_state_has_all_of_its_time() {
+        let survey = survey();
+        let saddles = vec![both(27.0, [HOP_MEV, 0.5 * HOP_MEV], [true; 2]), both(25.0, [20.0, 50.0], [true, false])];
+        let found = Lifetimes { settings: settings(), groups: Vec::new(), saddles, rows: Vec::new() };
+        let escape = |kelvin: f64, group: &[usize]| {
+            let places = found.places(&survey, kelvin);
+            let network = found.network(&survey, &places, Theory::Langer, kelvin).unwrap();
+            let all: Vec<usize> = places.all_of(group).into_iter().collect();
+            (all.len(), network.ln_escape_s(&places.states_of(group)).unwrap())
+        };
+        let collapse = -found.saddles[1][0].ln_rate_per_s(Theory::Langer, 20.0).unwrap();
+        for group in [&[1][..], &[4], &[1, 2, 3, 4]] {
+            let (places, time) = escape(20.0, group);
+            assert!(places == 4 && (time - collapse).abs() < 1e-12 * collapse.abs(), "{group:?}: {time} {collapse}");
+        }
+        // where hops take long each place is a state, which is left by hops
+        let (places, time) = escape(1e-6, &[1]);
+        let hop = -found.saddles[0][0].ln_rate_per_s(Theory::Langer, 1e-6).unwrap();
+        assert!(places == 1 && (time - hop + libm::log(2.0)).abs() < 1e-12, "{time} {hop}");
+    }
 }

@@ -27,8 +27,6 @@ use crate::stationary::relax_to_minimum;
 use crate::symmetry::Group;
 use std::collections::BTreeSet;
 
-/// Images by symmetry of every minimum and pass, at most.
-const IMAGES: usize = 1000;
 /// Searches and joins follow each other so many times at most.
 const ROUNDS: usize = 4;
 /// Of spins, so many are evaluated at most for each step of effort, and so many times as many of a Hessian's blocks.
@@ -116,7 +114,7 @@ fn searched<T: Send>(
         let mut run = Run::prepare(&asked.problem, observer)?;
         let alike = asked.rates.as_ref().map_or(&[][..], |rates| &rates.moments_mub);
         let group = Group::of(&asked.problem.hamiltonian, run.ends[0].spins.as_slice(), alike);
-        run.land.unfold_by(&group, IMAGES);
+        run.land.unfold_by(&group, group.order());
         let planted = run.plant(asked)?;
         let searched = run.explore(asked)?;
         tell(run, &group, planted, searched)
