@@ -278,9 +278,9 @@ impl<'a> Landscape<'a> {
         (0..self.minima.len()).filter(|k| self.orbits[*k] == *k)
     }
 
-    /// How many minima below a height there are (meV above the reference) of which no symmetry makes another one.
-    pub fn orbits_below(&self, height_mev: f64) -> usize {
-        self.firsts().filter(|k| self.stands_for[*k] == *k && self.heights_mev[*k] < height_mev).count()
+    /// How many passes below a height there are (meV above the reference), images not counted.
+    pub fn passes_below(&self, height_mev: f64) -> usize {
+        self.edges.iter().filter(|e| e.by.is_none() && e.height_mev < height_mev).count()
     }
 
     /// The minimum that stands for one of the minima.

@@ -10,7 +10,7 @@
 //! many shares there are, not on who makes them.
 //!
 //! Where all passes below an energy are looked for, T is that, every new saddle is news, and the number of searches without any
-//! grows with the number of states to search from.
+//! grows with the number of passes known: of n that are found equally often, q searches miss one with a chance of e^(−q/n).
 
 use super::rivals::{Cut, Rival, rivals, scouts};
 use super::{Landscape, Pass, Saddle, Slopes};
@@ -60,13 +60,13 @@ impl Effort {
         }
     }
 
-    /// And so many for each state, where all are looked for.
-    fn a_state(self) -> usize {
+    /// And so many for each pass that is known, where all are looked for.
+    fn a_pass(self) -> usize {
         match self {
             Effort::None => 0,
-            Effort::Quick => 2,
-            Effort::Normal => 6,
-            Effort::Thorough => 20,
+            Effort::Quick => 1,
+            Effort::Normal => 3,
+            Effort::Thorough => 10,
         }
     }
 }
@@ -109,7 +109,7 @@ impl Aim {
     fn quiet(self, effort: Effort, found: bool, land: &Landscape) -> usize {
         match self {
             Aim::Route(..) => effort.quiet(found),
-            Aim::All(_) => effort.quiet(true).max(effort.a_state() * land.orbits_below(self.top_mev(land))),
+            Aim::All(_) => effort.quiet(true).max(effort.a_pass() * land.passes_below(self.top_mev(land))),
         }
     }
 }

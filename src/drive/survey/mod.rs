@@ -1,8 +1,8 @@
 //! The landscape as a result: all minima and passes below an energy, as far as they are found, and what follows from them.
 //!
 //! Seeds (the states of the problem, uniform ones along and against x, y and z, random ones) are relaxed to minima. Then climbs from
-//! these and from what they lead to, along soft modes, from between neighbours and from local turns, until they bring no news; what is
-//! not joined by then is joined by first paths and their bands, and what these meet is searched from in turn.
+//! these and from what they lead to, along soft modes, from between neighbours, from local turns and from blocks of random spins, until
+//! they bring no news; what is not joined by then is joined by first paths and their bands, and what these meet is searched from in turn.
 
 mod found;
 mod lifetimes;

@@ -1,5 +1,6 @@
 //! Where a saddle below the top of the best route may be looked for. One file a rival.
 
+mod melt;
 mod modes;
 mod near;
 mod push;
@@ -17,7 +18,12 @@ pub(super) fn rivals() -> Vec<Box<dyn Rival>> {
 
 /// Those that look for all there is.
 pub(super) fn scouts() -> Vec<Box<dyn Rival>> {
-    vec![Box::<modes::Modes>::default(), Box::<near::Near>::default(), Box::<push::Push>::default()]
+    vec![
+        Box::<modes::Modes>::default(),
+        Box::<near::Near>::default(),
+        Box::<push::Push>::default(),
+        Box::<melt::Melt>::default(),
+    ]
 }
 
 /// Names states from which climbs may lead to passes below the top.
