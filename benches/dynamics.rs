@@ -4,7 +4,7 @@
 //! equation), a chain of ten spins that reverses in a field by a wall from one of its ends, and a skyrmion of 144 spins near the field
 //! in which it collapses, which slides over a periodic film: k_BT is 0.06 to 0.03 of the nearest exchange. Rates by forward flux
 //! (`spinneb::dynamics`), at the lowest barrier also by waiting for escapes. Times are in units of μ/γ per meV. The table and a figure
-//! go to `results/gallery/dynamics/`. The whole campaign takes five minutes of one processor. With the name of a problem after
+//! go to `results/gallery/dynamics/`. The whole campaign takes 18 minutes of one processor. With the name of a problem after
 //! `--` that one is done anew, with the word `quick` little is simulated and nothing written.
 
 #[allow(dead_code, unused_imports)]
@@ -21,9 +21,6 @@ use std::fmt::Write;
 use std::path::Path;
 
 const FOLDER: &str = "results/gallery/dynamics";
-/// Steps that trajectories in A are left to themselves before they count.
-const SETTLE: usize = 1000;
-
 /// A problem, and how its escapes are looked at.
 struct Case {
     name: &'static str,
@@ -37,13 +34,32 @@ struct Case {
     /// How many λ there are beyond the first one, and what part of the way to the other side the last one is.
     interfaces: usize,
     reach: f64,
-    /// Time step.
+    /// Time step, and how many of them trajectories in A are left to themselves before they count.
     step: f64,
+    settle: usize,
     /// Crossings and trials of a block, and blocks.
     amount: [usize; 2],
-    /// Escapes that are waited for at the lowest barrier.
+    /// Escapes that are waited for at the lowest barrier; none, and nothing is.
     escapes: usize,
 }
+
+const SKYRMION: Case = Case {
+    name: "skyrmion, 144 spins",
+    config: r#"{"material": {"name": "skyrmion", "moment": "1 mu_B", "energy": [{"exchange": {"J": ["1 meV", "1 meV"]}},
+        {"dmi": {"D": "1 meV", "kind": "interfacial"}}]}, "energy": [{"zeeman": {"B": ["0 T", "0 T", "5.5 T"]}}],
+        "lattice": {"triangular": {"cells": [12, 12], "periodic": true}},
+        "initial": {"skyrmion": {"radius": 3}}, "final": {"uniform": {"direction": [0, 0, 1]}}"#,
+    colour: GREEN,
+    damping: 1.0,
+    barriers: &[4.0, 6.0, 8.0],
+    order: |m| (m[2] - 0.5).min(0.0),
+    interfaces: 32,
+    reach: 0.95,
+    step: 0.05,
+    settle: 1000,
+    amount: [320, 64],
+    escapes: 800,
+};
 
 const CASES: [Case; 3] = [
     Case {
@@ -58,6 +74,7 @@ const CASES: [Case; 3] = [
         interfaces: 12,
         reach: 0.8,
         step: 0.01,
+        settle: 1000,
         amount: [4000, 24],
         escapes: 6000,
     },
@@ -74,25 +91,17 @@ const CASES: [Case; 3] = [
         interfaces: 20,
         reach: 0.8,
         step: 0.04,
+        settle: 1000,
         amount: [2000, 24],
         escapes: 6000,
     },
-    Case {
-        name: "skyrmion, 144 spins",
-        config: r#"{"material": {"name": "skyrmion", "moment": "1 mu_B", "energy": [{"exchange": {"J": ["1 meV", "1 meV"]}},
-            {"dmi": {"D": "1 meV", "kind": "interfacial"}}]}, "energy": [{"zeeman": {"B": ["0 T", "0 T", "5.5 T"]}}],
-            "lattice": {"triangular": {"cells": [12, 12], "periodic": true}},
-            "initial": {"skyrmion": {"radius": 3}}, "final": {"uniform": {"direction": [0, 0, 1]}}"#,
-        colour: GREEN,
-        damping: 1.0,
-        barriers: &[4.0, 6.0, 8.0],
-        order: |m| (m[2] - 0.5).min(0.0),
-        interfaces: 32,
-        reach: 0.95,
-        step: 0.05,
-        amount: [320, 16],
-        escapes: 800,
-    },
+    SKYRMION,
+];
+
+/// The skyrmion's highest barrier again: of the rate in units of Langer's neither the damping nor the step should tell.
+const CHECKS: [Case; 2] = [
+    Case { name: "skyrmion, α = 0.3", damping: 0.3, settle: 4000, barriers: &[8.0], escapes: 0, ..SKYRMION },
+    Case { name: "skyrmion, half the step", step: 0.025, settle: 2000, barriers: &[8.0], escapes: 0, ..SKYRMION },
 ];
 
 /// One barrier of a case, a line of the table. Rates are over Langer's, with their standard errors.
@@ -113,7 +122,7 @@ fn main() {
     let (quick, all) = (!quick.is_empty(), names.is_empty());
     let asked = |case: &&Case| all || names.iter().any(|name| case.name.starts_with(name.as_str()));
     let mut found: Vec<Row> = Vec::new();
-    for case in CASES.iter().filter(asked) {
+    for case in cases().filter(asked) {
         found.extend(rows(case, quick));
     }
     if !quick {
@@ -121,10 +130,14 @@ fn main() {
         let known = std::fs::read_to_string(format!("{FOLDER}/table.md")).unwrap_or_default();
         let other = known.lines().filter_map(Row::read).filter(|row| found.iter().all(|own| own.name != row.name));
         found.extend(other.collect::<Vec<_>>());
-        found.sort_by_key(|row| CASES.iter().position(|case| case.name == row.name));
+        found.sort_by_key(|row| cases().position(|case| case.name == row.name));
         write(&found);
     }
     print!("{}", table(&found));
+}
+
+fn cases() -> impl Iterator<Item = &'static Case> {
+    CASES.iter().chain(&CHECKS)
 }
 
 fn write(rows: &[Row]) {
@@ -198,15 +211,15 @@ fn row(case: &Case, problem: &Problem, outcome: &Outcome, k: usize, thermal: f64
         crossings: trials,
         trials,
         blocks,
-        settle: SETTLE,
+        settle: case.settle,
         seed: 1000 * k as u64,
         interfaces: interfaces.clone(),
     };
     let found = forward_flux(&bath, start.as_slice(), &order, &flux);
     let last = interfaces[interfaces.len() - 1];
-    let escapes = if quick { 20 } else { case.escapes };
-    let waited =
-        (k == 0).then(|| escape_rate(&bath, start.as_slice(), &order, [interfaces[0], last], SETTLE, escapes, 7000));
+    let escapes = if quick { case.escapes.min(20) } else { case.escapes };
+    let waited = (k == 0 && escapes > 0)
+        .then(|| escape_rate(&bath, start.as_slice(), &order, [interfaces[0], last], case.settle, escapes, 7000));
     let rates = outcome.rates.as_ref().expect("rates");
     let passage = &rates.transitions[0].rows[k].passage;
     let langer = libm::exp(passage.ln_langer_per_s.expect("a rate")) / (1e12 * 2.0 / HBAR);
@@ -232,11 +245,11 @@ fn row(case: &Case, problem: &Problem, outcome: &Outcome, k: usize, thermal: f64
 fn interfaces(case: &Case, bath: &Bath, start: &[f64], goal: f64) -> Vec<f64> {
     let (mut walkers, begin) = (Walkers::new(start, 99), total(&case.order, start));
     let mut seen = Vec::new();
-    for step in 0..10_000 {
+    for step in 0..10 * case.settle {
         bath.step(&mut walkers);
         // what has left A says nothing of it
         let inside = walkers.orders(&case.order).into_iter().filter(|own| *own < begin + 0.3 * (goal - begin));
-        seen.extend(inside.filter(|_| step > SETTLE));
+        seen.extend(inside.filter(|_| step > case.settle));
     }
     seen.sort_by(f64::total_cmp);
     let at = |part: f64| seen[(part * (seen.len() - 1) as f64) as usize];
