@@ -8,8 +8,9 @@ use super::run::{FEWEST_IMAGES, Run};
 use super::settled::Settled;
 use crate::band::Band;
 use crate::error::Result;
-use crate::landscape::{Assembled, Connector, Doubt, Pass, PathEnd, Saddle, Slopes, assemble, peaks, same};
+use crate::landscape::{Assembled, Connector, Doubt, Pass, PathEnd, Saddle, assemble, peaks, same};
 use crate::path::distance;
+use crate::spins::Spins;
 
 /// Neighbouring images of an automatic path are at most this far apart, any spin (rad).
 const RESOLVED: f64 = 1.0;
@@ -167,8 +168,7 @@ impl<'a> Run<'a, '_> {
                 None => Pass::between(h, highest.clone(), ends.clone()),
                 Some(_) => None,
             };
-            let slopes = Slopes::of(&c.band, highest, self.land.minima());
-            let pass = alone.map_or_else(|| Pass::recorded(h, highest.clone(), scale, &slopes), Ok)?;
+            let pass = alone.map_or_else(|| Pass::recorded(h, highest.clone(), scale, &self.both_ends()), Ok)?;
             let doubts = pass.doubt(h).into_iter().collect();
             return Ok(Proof { ends, links: vec![pass], doubts });
         }
@@ -181,8 +181,7 @@ impl<'a> Run<'a, '_> {
             if own.iter().any(|pass| pass.is_on_a_level_with(h, saddle)) {
                 continue;
             }
-            let slopes = Slopes::of(&c.band, saddle, self.land.minima());
-            let pass = Pass::recorded(h, saddle.clone(), scale, &slopes)?;
+            let pass = Pass::recorded(h, saddle.clone(), scale, &self.both_ends())?;
             doubts.extend(pass.doubt(h));
             if pass.doubt(h).is_none() {
                 self.land.add(pass.clone());
@@ -212,6 +211,10 @@ impl<'a> Run<'a, '_> {
         doubts.extend(unproven.map(|(_, which)| Doubt::NoMinimum(which)));
         doubts.dedup_by_key(|doubt| doubt.to_string());
         Ok(Proof { ends, links, doubts })
+    }
+
+    fn both_ends(&self) -> [&Spins; 2] {
+        self.ends.each_ref().map(|end| &end.spins)
     }
 
     fn tools(&self) -> Tools<'a> {

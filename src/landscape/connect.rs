@@ -1,7 +1,7 @@
 //! Connecting two minima by a band's saddles: the graph names the next pair, a way between the two is relaxed a little, and its
 //! peaks are refined to saddles, whose passes go into the graph; until a route leads from end to end.
 
-use super::pass::{FLAT, Pass, Slopes};
+use super::pass::{FLAT, Pass};
 use super::ways::{WAYS, way};
 use super::zoom::{ZOOMS, zoomed};
 use super::{Doubt, Landscape, Saddle, highest, peaks, turned, turns};
@@ -142,22 +142,22 @@ impl Connector<'_> {
             }
             let energy = |f: &Saddle| f.refined.state.energy_mev;
             if energy(&found) <= most {
-                return self.add(land, found, &band);
+                self.add(land, found)?;
+                return Ok(());
             }
             if high.as_ref().is_none_or(|f| energy(&found) < energy(f)) {
                 high = Some(found);
             }
         }
         if let Some(found) = high {
-            self.add(land, found, &band)?;
+            self.add(land, found)?;
         }
         Ok(())
     }
 
-    /// Puts the pass of a band's saddle in if it is proven.
-    fn add(&self, land: &mut Landscape, saddle: Saddle, band: &Band) -> Result<()> {
-        let slopes = Slopes::of(band, &saddle, land.minima());
-        let pass = Pass::recorded(land.evaluator(), saddle, self.c, &slopes)?;
+    /// Puts the pass of a saddle in if it is proven.
+    fn add(&self, land: &mut Landscape, saddle: Saddle) -> Result<()> {
+        let pass = Pass::recorded(land.evaluator(), saddle, self.c, &[])?;
         if pass.doubt(land.evaluator()).is_none() {
             land.add(pass);
         }

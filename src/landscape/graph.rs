@@ -455,7 +455,6 @@ mod tests {
     use super::*;
     use crate::energy::{Anisotropy, EnergyTerm, Hamiltonian};
     use crate::geometry::Direction;
-    use crate::landscape::Slopes;
     use crate::lattice::Chain;
     use crate::stationary::Limits;
 
@@ -483,7 +482,7 @@ mod tests {
         let limits =
             Limits { steps: 40, without_mode: 8, radius: 0.5, ceiling_mev: f64::INFINITY, known: &|_, _| false };
         let saddle = Saddle::climbed(h.into(), start.as_slice(), &limits).unwrap();
-        Pass::of(h.into(), saddle, 1.0, &Slopes::default()).unwrap()
+        Pass::of(h.into(), saddle, 1.0, &[]).unwrap()
     }
 
     #[test]

@@ -41,7 +41,7 @@ pub use connect::{Bands, Connector};
 pub use doubt::{Doubt, PathEnd};
 pub use graph::{Edge, Landscape, Route};
 pub use minimum::{Minimum, is_same_state};
-pub use pass::{Pass, Slopes};
+pub use pass::Pass;
 pub use peaks::{Peak, direction, highest, peaks};
 pub use saddle::{Saddle, same};
 pub use search::{Aim, Effort, Searched, Settings, Standing, search};

@@ -1,13 +1,12 @@
 //! Saddles with the minima on their two sides.
 
 use super::{Doubt, Minimum, Saddle};
-use crate::band::Band;
 use crate::energy::{Evaluator, recorded};
 use crate::error::Result;
 use crate::linalg::slab;
 use crate::rates::Crossing;
 use crate::spins::Spins;
-use crate::stationary::{Ahead, Spectrum, descend, lowest_eigenvalues_mev, relax_to_minimum};
+use crate::stationary::{Spectrum, descend, lowest_eigenvalues_mev, relax_to_minimum};
 use crate::symmetry::{Group, Operation};
 use serde::{Deserialize, Serialize};
 
@@ -56,65 +55,21 @@ pub struct Pass {
     pub given: bool,
 }
 
-/// What the band that led to a saddle tells of the slopes on its two sides: where one falls from there, image by image, to a minimum
-/// that is known.
-#[derive(Clone, Debug, Default)]
-pub struct Slopes<'a> {
-    ahead: [Option<Ahead<'a>>; 2],
-    ends: [Option<&'a Minimum>; 2],
-}
-
-impl<'a> Slopes<'a> {
-    /// Of a band whose peak led to a saddle; nothing where factors are cheap, and descents need no such help.
-    pub fn of(band: &'a Band, saddle: &Saddle, known: &'a [Minimum]) -> Slopes<'a> {
-        let mut slopes = Slopes::default();
-        if !band.hamiltonian().has_dear_factors() {
-            return slopes;
-        }
-        let (path, last) = (band.path(), band.images() - 1);
-        let far = path.distances_from(saddle.spins());
-        let top = (0..=last).min_by(|i, j| far[*i].total_cmp(&far[*j])).unwrap_or(0);
-        let rows: [Vec<usize>; 2] = [(0..top).rev().collect(), (top + 1..=last).collect()];
-        for (side, row) in rows.iter().enumerate() {
-            let Some((end, inner)) = row.split_last() else { continue };
-            let Some(minimum) = known.iter().find(|m| m.is_proven() && m.spins.as_slice() == path.image(*end)) else {
-                continue;
-            };
-            let energies: Vec<f64> = row.iter().map(|k| band.energies_mev()[*k]).collect();
-            if energies[0] <= saddle.refined.state.energy_mev && energies.is_sorted_by(|p, q| p >= q) {
-                let states = inner.iter().map(|k| path.image(*k)).collect();
-                slopes.ahead[side] = Some(Ahead { states, end: path.image(*end) });
-                slopes.ends[side] = Some(minimum);
-            }
-        }
-        slopes
-    }
-
-    /// What tells it from others.
-    fn rows(&self) -> impl Iterator<Item = &'a [f64]> {
-        self.ahead.iter().flatten().flat_map(|ahead| ahead.states.iter().copied().chain([ahead.end]))
-    }
-}
-
 impl Pass {
-    /// Descends from a saddle on both sides.
-    pub fn of(h: Evaluator, saddle: Saddle, c: f64, slopes: &Slopes) -> Result<Pass> {
+    /// Descends from a saddle on both sides; where a slope forks, to one of the states `beside` it, if one of them is.
+    pub fn of(h: Evaluator, saddle: Saddle, c: f64, beside: &[&Spins]) -> Result<Pass> {
         let state = &saddle.refined.state;
-        let falling = falling(&saddle);
-        let sign = if slab::dot(&falling, &saddle.top.tau) < 0.0 { -1.0 } else { 1.0 };
-        let side = |side: usize| -> Result<(Minimum, f64, Vec<Spins>)> {
-            let direction = [-sign, sign][side];
-            let valley: Vec<f64> = falling.iter().map(|v| direction * v).collect();
-            let d = descend(h, state, &valley, c, slopes.ahead[side].as_ref());
-            let way = d.way.into_iter().map(|m| Spins::from_unit_components(&m)).collect();
-            if let Some(end) = slopes.ends[side].filter(|_| d.is_known) {
-                return Ok((end.clone(), d.fallen_mev, way));
-            }
+        let falls = falling(&saddle);
+        let sign = if slab::dot(&falls, &saddle.top.tau) < 0.0 { -1.0 } else { 1.0 };
+        let side = |direction: f64| -> Result<(Minimum, f64, Vec<Spins>)> {
+            let valley: Vec<f64> = falls.iter().map(|v| direction * sign * v).collect();
+            let d = descend(h, state, &valley, c, beside);
             let relaxed = relax_to_minimum(h, &Spins::from_unit_components(&d.m), 1e-14 * h.stiffness_mev())?;
+            let way = d.way.into_iter().map(|m| Spins::from_unit_components(&m)).collect();
             Ok((Minimum::examine(h, &relaxed.spins), d.fallen_mev, way))
         };
         let spectrum = Spectrum::of(h, state, 0);
-        let sides = rayon::join(|| side(0), || side(1));
+        let sides = rayon::join(|| side(-1.0), || side(1.0));
         let ((before, f, back), (after, g, on)) = (sides.0?, sides.1?);
         Ok(Pass { spectrum, before, after, fallen_mev: [f, g], ways: [back, on], saddle, given: false })
     }
@@ -132,11 +87,12 @@ impl Pass {
     }
 
     /// The same, as far as it is not on record.
-    pub fn recorded(h: Evaluator, saddle: Saddle, c: f64, slopes: &Slopes) -> Result<Pass> {
+    pub fn recorded(h: Evaluator, saddle: Saddle, c: f64, beside: &[&Spins]) -> Result<Pass> {
         let Saddle { top, refined } = &saddle;
         let [m, valley, tau] = [&refined.state.m, &refined.valley, &top.tau].map(Vec::clone);
-        let inputs: Vec<&[f64]> = [&m[..], &valley, &tau].into_iter().chain(slopes.rows()).collect();
-        recorded(h, "descents", &inputs, || Pass::of(h, saddle, c, slopes))
+        let states = beside.iter().map(|spins| spins.as_slice());
+        let inputs: Vec<&[f64]> = [&m[..], &valley, &tau].into_iter().chain(states).collect();
+        recorded(h, "descents", &inputs, || Pass::of(h, saddle, c, beside))
     }
 
     /// The saddle's lowest eigenvalues (meV), ascending, as many as are reported: what takes longest to find of all that is told of
@@ -206,64 +162,5 @@ impl Pass {
         }
         let unproven = [&self.before, &self.after].into_iter().find(|m| !m.is_proven())?;
         Some(Doubt::Descent { negative: unproven.spectrum.negative, torque_mev: unproven.max_torque_mev })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::energy::test_terms::{hamiltonian, lattice};
-    use crate::geometry::Direction;
-    use crate::landscape::peaks;
-    use crate::path::Path;
-
-    const CELLS: usize = 40;
-    const K: f64 = 0.02;
-
-    /// A wall that enters at one side of a film, crosses it and leaves.
-    fn walls() -> Path {
-        let spin = |i: usize, place: f64| {
-            let x = (2.0 * K).sqrt() * ((i % CELLS) as f64 - place);
-            [1.0 / x.cosh(), 0.0, x.tanh()]
-        };
-        let image = |k: usize| {
-            let place = (CELLS - 1) as f64 * (k as f64 - 3.0) / 10.0;
-            Spins::from_vectors(&(0..CELLS * CELLS).map(|i| spin(i, place)).collect::<Vec<_>>()).unwrap()
-        };
-        let up = |z: f64| Spins::uniform(CELLS * CELLS, Direction::new([0.0, 0.0, z]).unwrap());
-        Path::new(&[up(1.0)].into_iter().chain((1..16).map(image)).chain([up(-1.0)]).collect::<Vec<_>>())
-    }
-
-    #[test]
-    fn what_a_band_tells_of_its_slopes_leads_to_the_minima_that_descents_find() {
-        let lattice = lattice(&format!(r#"{{"square": {{"cells": [{CELLS}, {CELLS}]}}}}"#));
-        let easy = format!(r#"{{"anisotropy": {{"K": "{K} meV", "axis": [0, 0, 1]}}}}"#);
-        let h = hamiltonian(&lattice, &[r#"{"exchange": {"J": ["1 meV"]}}"#, &easy]);
-        let (h, c) = (Evaluator::from(&h), 2.0 * K);
-        assert!(h.has_dear_factors());
-        let mut band = Band::new(h, walls());
-        band.evaluate();
-        let top = peaks(&band, 0.0, c).into_iter().next().expect("a peak");
-        let saddle = Saddle::at(h, top, c, 0.1);
-        let known = [0, band.images() - 1].map(|k| Minimum::examine(h, &band.path().spins(k)));
-        let slopes = Slopes::of(&band, &saddle, &known);
-        assert!(slopes.ahead.iter().all(Option::is_some));
-        assert!(Slopes::of(&band, &saddle, &known[..1]).ahead[1].is_none(), "an end that is no minimum tells nothing");
-        // the other sense: what rises first tells nothing
-        let images: Vec<Spins> = (0..band.images()).map(|k| band.path().spins(if k == 5 { 12 } else { k })).collect();
-        let mut rising = Band::new(h, Path::new(&images));
-        rising.evaluate();
-        let slopes_of_rising = Slopes::of(&rising, &saddle, &known);
-        assert!(slopes_of_rising.ahead[0].is_none() && slopes_of_rising.ahead[1].is_some());
-        let told = Pass::of(h, saddle.clone(), c, &slopes).unwrap();
-        let found = Pass::of(h, saddle, c, &Slopes::default()).unwrap();
-        assert!(told.doubt(h).is_none() && found.doubt(h).is_none());
-        for (told, found, known) in [(&told.before, &found.before, &known[0]), (&told.after, &found.after, &known[1])] {
-            assert!(told.is_identical(h, found) && told.spins == known.spins);
-        }
-        for (told, found) in told.fallen_mev.iter().zip(found.fallen_mev) {
-            assert!((told - found).abs() < 1e-9 * found, "{told} {found}");
-        }
-        assert!(told.ways.iter().all(|way| way.len() > 5));
     }
 }

@@ -5,8 +5,7 @@
 //! (H + 1/Δt) v = −g, whose Δt grows as long as H + 1/Δt stays positive definite and the energy falls as foretold: the steepest
 //! descent with its stiff directions relaxed. Where the forces vanish in double precision but a direction is still negative, the
 //! descent goes on along that direction, and ends only where the inertia counts none. Where factors are dear, gradients alone are tried
-//! first, from a step along the valley to where the slope ends, and where that is on a plateau, from the last state of a band that
-//! leads down from here, if there is one; then Δt grows as the torque falls.
+//! first, from a step along the valley to where the slope ends; then Δt grows as the torque falls.
 
 use super::pinned::Pinned;
 use super::point::Point;
@@ -17,8 +16,9 @@ use super::trail::Trail;
 use crate::energy::Evaluator;
 use crate::field::project;
 use crate::linalg::{Factors, Matrix, slab};
-use crate::path::{blend, largest_angle};
-use crate::sphere::{SAME, rotation_of};
+use crate::path::{Path, largest_angle};
+use crate::sphere::rotation_of;
+use crate::spins::Spins;
 use std::mem::{swap, take};
 
 /// Largest rotation of a spin in one step (rad).
@@ -51,7 +51,7 @@ const STEPS: usize = 20_000;
 /// So many steps down the gradient shorter than this (rad, any spin) are a crawl.
 const CRAWL: usize = 4;
 const SHORT: f64 = 0.05;
-/// A minimum farther than this from a state (rad, any spin) is not beside it.
+/// A state whose spins are turned by less than this (rad, any spin) is beside another.
 const BESIDE: f64 = 1.5;
 /// How often a descent goes on along a valley.
 const ROUNDS: usize = 24;
@@ -65,27 +65,18 @@ pub struct Descent {
     pub fallen_mev: f64,
     /// It ended at a stationary point without a negative direction.
     pub arrived: bool,
-    /// That is the minimum that was known to lie ahead.
-    pub is_known: bool,
     /// Points on the way, each with a spin turned by a quarter radian or more since the last (more on long chains, so that they
     /// fit into memory).
     pub way: Vec<Vec<f64>>,
 }
 
-/// What a band tells of the slope on one side of a saddle: it falls all the way to a minimum.
-#[derive(Clone, Debug)]
-pub struct Ahead<'a> {
-    /// Its states from the saddle on, without that.
-    pub states: Vec<&'a [f64]>,
-    /// The minimum it ends in.
-    pub end: &'a [f64],
-}
-
-/// Descends from a saddle along ± its valley (a unit field of 3N numbers); c is the stiffness scale (meV).
-pub fn descend(h: Evaluator, saddle: &State, valley: &[f64], c: f64, ahead: Option<&Ahead>) -> Descent {
+/// Descends from a saddle along ± its valley (a unit field of 3N numbers); c is the stiffness scale (meV). Where its slope forks, it
+/// goes to one of the states `beside` it, if one of them is.
+pub fn descend(h: Evaluator, saddle: &State, valley: &[f64], c: f64, beside: &[&Spins]) -> Descent {
     let mut walk = Walk {
         h,
         c,
+        beside,
         here: saddle.point.clone(),
         next: Point::default(),
         tau: valley.to_vec(),
@@ -93,21 +84,15 @@ pub fn descend(h: Evaluator, saddle: &State, valley: &[f64], c: f64, ahead: Opti
         trail: Trail::from(&saddle.m),
         room: Room::default(),
     };
-    let is_known = h.has_dear_factors() && ahead.is_some_and(|ahead| walk.roll_to(ahead));
-    let arrived = is_known || h.has_dear_factors() && walk.roll() || walk.down();
-    Descent {
-        fallen_mev: saddle.above_mev(&walk.here),
-        arrived,
-        is_known,
-        m: walk.here.m,
-        way: walk.trail.into_points(),
-    }
+    let arrived = h.has_dear_factors() && walk.roll() || walk.down();
+    Descent { fallen_mev: saddle.above_mev(&walk.here), arrived, m: walk.here.m, way: walk.trail.into_points() }
 }
 
 /// A descent on its way.
 struct Walk<'a> {
     h: Evaluator<'a>,
     c: f64,
+    beside: &'a [&'a Spins],
     here: Point,
     /// Where the step that is being tried leads.
     next: Point,
@@ -176,10 +161,13 @@ impl Walk<'_> {
     /// is back where it began.
     fn roll(&mut self) -> bool {
         let (from, tau, points) = (self.here.clone(), self.tau.clone(), self.trail.len());
-        let arrived = self.step_off()
+        self.room.v.clone_from(&self.tau);
+        slab::scale(&mut self.room.v, FIRST / rotation_of(&self.tau));
+        self.here.go(self.h, &from, &self.room.v);
+        let arrived = quench(self.h, &mut self.here, &mut self.next, &mut self.trail, [FIRST, CAP])
             && from.above_mev(&self.here) > self.h.rounding_mev()
             && matches!(self.fall(true), Fall::Arrived)
-            && self.is_minimum();
+            && (self.is_minimum() || self.fork());
         if !arrived {
             self.trail.go_back_to(points);
             (self.here, self.tau) = (from, tau);
@@ -187,61 +175,24 @@ impl Walk<'_> {
         arrived
     }
 
-    /// The same to a minimum that is known to lie ahead: from a step along the valley, or, where the slope is flat at first or forks,
-    /// as by symmetry at a skyrmion between two places of its lattice, from the band's last state before it.
-    fn roll_to(&mut self, ahead: &Ahead) -> bool {
-        let (from, points) = (self.here.clone(), self.trail.len());
-        let end = Point::at(self.h, ahead.end.to_vec());
-        let rests = self.step_off();
-        let mut arrived = self.falls_to(&end, rests);
-        if !arrived && let Some(last) = ahead.states.last() {
-            self.trail.go_back_to(points);
-            ahead.states.iter().for_each(|m| self.trail.pass(m));
-            self.here = Point::at(self.h, last.to_vec());
-            let falls = from.above_mev(&self.here) > self.h.rounding_mev();
-            let rests = self.quench();
-            arrived = falls && self.falls_to(&end, rests);
-        }
-        if arrived {
-            self.here = end;
-        } else {
-            self.trail.go_back_to(points);
-            self.here = from;
-        }
-        arrived
-    }
-
-    /// A step along the valley, and down by gradients alone.
-    fn step_off(&mut self) -> bool {
-        let mut step = self.tau.clone();
-        slab::scale(&mut step, FIRST / rotation_of(&self.tau));
-        self.next.go(self.h, &self.here, &step);
-        swap(&mut self.here, &mut self.next);
-        self.quench()
-    }
-
-    fn quench(&mut self) -> bool {
-        quench(self.h, &mut self.here, &mut self.next, &mut self.trail, [FIRST, CAP])
-    }
-
-    /// Whether a minimum is beside this state, which is on a slope or at rest, and the valley between the two falls all the way, as the
-    /// place half-way tells. A minimum is above none.
-    fn falls_to(&mut self, end: &Point, rests: bool) -> bool {
-        let far = largest_angle(&self.here.m, &end.m);
-        if !(SAME..BESIDE).contains(&far) {
-            return far < SAME;
-        }
-        if rests && self.is_minimum() {
-            return false;
-        }
+    /// From a stationary state that is no minimum, where the slope forks, as by symmetry at a skyrmion between two places of its
+    /// lattice: to a state beside it, if the valley falls all the way, as the place half-way tells; whether that is a minimum.
+    fn fork(&mut self) -> bool {
         let (from, rounding) = (self.here.clone(), self.h.rounding_mev());
-        let mut half = vec![0.0; end.m.len()];
-        blend(&from.m, &end.m, 0.5, &mut half);
-        self.here = Point::at(self.h, half.clone());
-        self.quench();
-        largest_angle(&self.here.m, &half) < far
-            && from.above_mev(&self.here) > -rounding
-            && self.here.above_mev(end) > -rounding
+        let far = |end: &&&Spins| largest_angle(end.as_slice(), &from.m);
+        let Some(end) = self.beside.iter().min_by(|p, q| far(p).total_cmp(&far(q))).filter(|end| far(end) < BESIDE)
+        else {
+            return false;
+        };
+        let way = Path::new(&[Spins::from_unit_components(&from.m), (*end).clone()]).resampled(3);
+        let end = Point::at(self.h, end.as_slice().to_vec());
+        self.here = Point::at(self.h, way.image(1).to_vec());
+        let falls = quench(self.h, &mut self.here, &mut self.next, &mut self.trail, [FIRST, CAP])
+            && largest_angle(&self.here.m, way.image(1)) < 0.5 * BESIDE
+            && from.above_mev(&self.here) > rounding
+            && self.here.above_mev(&end) > rounding;
+        self.here = end;
+        falls && self.is_minimum()
     }
 
     /// Whether no direction is negative here.

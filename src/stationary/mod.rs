@@ -22,7 +22,7 @@ mod trail;
 mod valley;
 
 pub(crate) use border::{Border, Pin, pin};
-pub use descent::{Ahead, Descent, descend};
+pub use descent::{Descent, descend};
 pub use modes::follow_modes;
 pub use pinned::Pinned;
 pub use point::Point;

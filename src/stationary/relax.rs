@@ -152,7 +152,7 @@ fn way_down(h: Evaluator, p: &Point, memory: &mut Matrix) -> Option<(Point, WayD
     }
     let state = State::of(h, p.clone());
     let mode = state.field(&state.lowest_mode()?.vector);
-    let below = Point::at(h, descend(h, &state, &mode, h.stiffness_mev(), None).m);
+    let below = Point::at(h, descend(h, &state, &mode, h.stiffness_mev(), &[]).m);
     let turns = Components::new(&mode);
     let largest = (0..h.sites()).max_by(|i, j| vector::norm(turns.get(*i)).total_cmp(&vector::norm(turns.get(*j))));
     let site = largest.unwrap_or(0);
