@@ -3,19 +3,6 @@
 # Installs spirit and numpy into a virtual environment (a temporary one unless DIR is given) and builds spinneb.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
-root=$(cd "$here/../.." && pwd)
-venv=
-if [ "${1:-}" = "--venv" ]; then
-    [ $# -ge 2 ] || { echo "run.sh: --venv needs a folder" >&2; exit 2; }
-    venv=$2
-    shift 2
-fi
-if [ -z "$venv" ]; then
-    venv=$(mktemp -d)
-    trap 'rm -rf "$venv"' EXIT
-fi
-[ -x "$venv/bin/python" ] || python3 -m venv "$venv"
-"$venv/bin/python" -m pip install --quiet --disable-pip-version-check spirit==2.2.0 numpy==2.2.6
-cargo build --release --quiet --manifest-path "$root/Cargo.toml"
-export PYTHONDONTWRITEBYTECODE=1
-"$venv/bin/python" "$here/compare.py" --spinneb "${CARGO_TARGET_DIR:-$root/target}/release/spinneb" "$@"
+packages="spirit==2.2.0 numpy==2.2.6"
+. "$here/../shared/campaign.sh"
+"$python" "$here/compare.py" --spinneb "$spinneb" "$@"
