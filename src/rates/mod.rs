@@ -36,6 +36,8 @@ mod refusal;
 mod settings;
 mod sliding;
 mod symmetry;
+#[cfg(test)]
+pub mod test_rates;
 mod transition;
 mod unstable;
 mod validity;

@@ -155,49 +155,12 @@ fn highest(onward: &[&SaddleRate], back: &[&SaddleRate]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rates::{Prefactor, ZeroKind, ZeroModes};
-
-    const LOWEST_MEV: f64 = 1e-6;
-
-    /// One way over a saddle, from a minimum that slides in two directions if at all.
-    fn side(saddle: usize, way: Way, barrier_mev: f64, slides: bool) -> SaddleRate {
-        let prefactor =
-            Prefactor { frequency_per_s: 1e12, ln_hz: 25.0 + saddle as f64, exponent: 0.0, pinning_mev: [[0.0; 3]; 2] };
-        let translation = ZeroModes {
-            kind: ZeroKind::Translation,
-            count: 2,
-            volume: 6e3,
-            hop_volume: None,
-            pinning_mev: vec![LOWEST_MEV; 2],
-        };
-        SaddleRate {
-            saddle,
-            way,
-            barrier_mev: Some(barrier_mev),
-            htst: Some(prefactor),
-            langer: Some(prefactor),
-            entropy_factor: None,
-            minimum_zeros: if slides { vec![translation] } else { Vec::new() },
-            saddle_zeros: Vec::new(),
-            equivalents: Equivalents { count: 1, by: String::new() },
-            ln_places: 0.0,
-            crossover_k: None,
-            validity: None,
-            rows: Vec::new(),
-            blocking_k: [None; 2],
-            refused: Vec::new(),
-            warnings: Vec::new(),
-        }
-    }
+    use crate::rates::test_rates::{HOP_MEV, both, settings};
 
     /// A skyrmion's hop from place to place, then its collapse; whether it slides.
     fn hop_and_collapse(slides: bool) -> Vec<SaddleRate> {
-        vec![
-            side(0, Way::Forward, LOWEST_MEV, slides),
-            side(0, Way::Backward, 0.5 * LOWEST_MEV, slides),
-            side(1, Way::Forward, 20.0, slides),
-            side(1, Way::Backward, 50.0, false),
-        ]
+        let hop = both(0, 25.0, [HOP_MEV, 0.5 * HOP_MEV], [slides; 2]);
+        [hop, both(1, 26.0, [20.0, 50.0], [slides, false])].concat()
     }
 
     fn row(saddles: &[SaddleRate], way: usize, temperature_k: f64) -> TransitionRow {
@@ -206,13 +169,7 @@ mod tests {
             minima: vec![1; saddles.len() / 2 + 1],
             paths: Equivalents { count: 1, by: String::new() },
         };
-        let settings = RateSettings {
-            temperatures_k: vec![temperature_k],
-            damping: 0.3,
-            g_factor: 2.0,
-            theories: Theory::ALL.to_vec(),
-            moments_mub: Vec::new(),
-        };
+        let settings = settings(&[temperature_k]);
         transitions(saddles, &orbits, &settings, None)[way].rows[0].clone()
     }
 

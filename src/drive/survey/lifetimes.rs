@@ -56,10 +56,15 @@ impl Lifetimes {
         let groups = groups(survey, asked);
         let mut found = Lifetimes { settings: settings.clone(), groups, saddles, rows: Vec::new() };
         let ascending = found.ascending(survey);
+        // most temperatures have the same states as the one before
+        let (mut state, mut transitions) = (Vec::new(), Vec::new());
         for t in &settings.temperatures_k {
             let places = found.places(survey, *t);
             let networks = Theory::ALL.map(|theory| found.network(survey, &places, theory, *t));
-            let transitions = found.transitions(survey, &places, &ascending);
+            if state != places.state {
+                transitions = found.transitions(survey, &places, &ascending);
+                state = places.state;
+            }
             let rows: Vec<Lifetime> =
                 transitions.iter().map(|transition| found.row(survey, transition, *t, &networks)).collect();
             found.rows.extend(rows);
@@ -294,38 +299,8 @@ mod tests {
     use crate::drive::survey::{Effort, FoundMinimum, FoundSaddle, Unseen};
     use crate::geometry::Direction;
     use crate::landscape::Searched;
-    use crate::rates::{Prefactor, Refusal, ZeroKind, ZeroModes, refused};
+    use crate::rates::test_rates::{HOP_MEV, both, settings};
     use crate::spins::Spins;
-
-    const HOP_MEV: f64 = 1e-6;
-
-    fn settings() -> RateSettings {
-        RateSettings {
-            temperatures_k: vec![20.0, 1e-6],
-            damping: 0.3,
-            g_factor: 2.0,
-            theories: Theory::ALL.to_vec(),
-            moments_mub: Vec::new(),
-        }
-    }
-
-    /// The rates over a saddle of such barriers (meV), between states that slide or do not.
-    fn both(ln_hz: f64, barriers_mev: [f64; 2], slide: [bool; 2]) -> [SaddleRate; 2] {
-        let mut both = refused(0, &settings(), barriers_mev.map(Some), &Refusal::Path(String::new()));
-        let prefactor = Prefactor { frequency_per_s: 1e12, ln_hz, exponent: 0.0, pinning_mev: [[0.0; 3]; 2] };
-        let translation = ZeroModes {
-            kind: ZeroKind::Translation,
-            count: 2,
-            volume: 6e3,
-            hop_volume: None,
-            pinning_mev: vec![HOP_MEV; 2],
-        };
-        for (rate, slides) in both.iter_mut().zip(slide) {
-            (rate.htst, rate.langer, rate.refused) = (Some(prefactor), Some(prefactor), Vec::new());
-            rate.minimum_zeros = if slides { vec![translation.clone()] } else { Vec::new() };
-        }
-        both
-    }
 
     /// A uniform state, 0, and a skyrmion's four places: two of one kind, 1 and 2, from which it collapses, and two of another between
     /// them, 3 and 4.
@@ -353,8 +328,9 @@ mod tests {
     #[test]
     fn each_kind_of_places_between_which_nothing_holds_a_sliding_state_has_all_of_its_time() {
         let survey = survey();
-        let saddles = vec![both(27.0, [HOP_MEV, 0.5 * HOP_MEV], [true; 2]), both(25.0, [20.0, 50.0], [true, false])];
-        let found = Lifetimes { settings: settings(), groups: Vec::new(), saddles, rows: Vec::new() };
+        let saddles =
+            vec![both(0, 27.0, [HOP_MEV, 0.5 * HOP_MEV], [true; 2]), both(0, 25.0, [20.0, 50.0], [true, false])];
+        let found = Lifetimes { settings: settings(&[20.0, 1e-6]), groups: Vec::new(), saddles, rows: Vec::new() };
         let escape = |kelvin: f64, group: &[usize]| {
             let places = found.places(&survey, kelvin);
             let network = found.network(&survey, &places, Theory::Langer, kelvin).unwrap();
