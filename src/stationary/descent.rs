@@ -16,7 +16,7 @@ use super::trail::Trail;
 use crate::energy::Evaluator;
 use crate::field::project;
 use crate::linalg::{Factors, Matrix, slab};
-use crate::path::{Path, largest_angle};
+use crate::path::{blend, largest_angle};
 use crate::sphere::rotation_of;
 use crate::spins::Spins;
 use std::mem::{swap, take};
@@ -184,11 +184,12 @@ impl Walk<'_> {
         else {
             return false;
         };
-        let way = Path::new(&[Spins::from_unit_components(&from.m), (*end).clone()]).resampled(3);
         let end = Point::at(self.h, end.as_slice().to_vec());
-        self.here = Point::at(self.h, way.image(1).to_vec());
+        let mut half = vec![0.0; end.m.len()];
+        blend(&from.m, &end.m, 0.5, &mut half);
+        self.here = Point::at(self.h, half.clone());
         let falls = quench(self.h, &mut self.here, &mut self.next, &mut self.trail, [FIRST, CAP])
-            && largest_angle(&self.here.m, way.image(1)) < 0.5 * BESIDE
+            && largest_angle(&self.here.m, &half) < 0.5 * BESIDE
             && from.above_mev(&self.here) > rounding
             && self.here.above_mev(&end) > rounding;
         self.here = end;
