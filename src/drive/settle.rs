@@ -14,9 +14,6 @@ use crate::spins::Spins;
 
 /// Neighbouring images of an automatic path are at most this far apart, any spin (rad).
 const RESOLVED: f64 = 1.0;
-/// Neighbours that are farther apart than this many times the mean are a step over a minimum, which stays as long as it is however
-/// many images there are.
-const STEP: f64 = 4.0;
 /// Most images of an automatic path.
 const MOST_IMAGES: usize = 2001;
 /// Evaluations of a band before its minima are looked at.
@@ -69,7 +66,7 @@ impl<'a> Run<'a, '_> {
     fn relax_resolved(&mut self, c: &mut FirstPath<'a>, more: usize) -> Result<()> {
         loop {
             let before = c.band.images();
-            self.resolve(c, more)?;
+            self.resolve(c)?;
             let images = c.band.images();
             self.seat_top(c);
             self.relax(c, Goal::Tight, c.band.evaluations().saturating_add(more))?;
@@ -248,7 +245,7 @@ impl<'a> Run<'a, '_> {
     }
 
     /// More images, each time relaxed loosely: to the number asked for, or until neighbours are within 1 rad a spin.
-    fn resolve(&mut self, c: &mut FirstPath<'a>, more: usize) -> Result<()> {
+    fn resolve(&mut self, c: &mut FirstPath<'a>) -> Result<()> {
         if !c.stop.is_converged() {
             self.relax(c, Goal::Loose, c.band.evaluations() + 24)?;
         }
@@ -256,9 +253,8 @@ impl<'a> Run<'a, '_> {
         loop {
             let now = c.band.images();
             let before = std::mem::replace(&mut apart, c.band.path().largest_rotation());
-            let steps =
-                apart > 0.8 * before && (more < usize::MAX || apart * now as f64 > STEP * c.band.path().rotation());
-            if steps && self.problem.images == Images::Auto && now >= FEWEST_IMAGES {
+            // a step over a minimum stays as long as it is, however many images there are
+            if apart > 0.8 * before && self.problem.images == Images::Auto && now >= FEWEST_IMAGES {
                 return Ok(());
             }
             let next = match self.problem.images {

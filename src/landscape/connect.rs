@@ -23,8 +23,6 @@ const FEWEST: usize = 5;
 const EVALUATIONS: usize = 30;
 /// Maxima of a way that are refined, at most.
 const PEAKS: usize = 5;
-/// A saddle higher than a way's highest peak by more than this part of the way's height is not the way's.
-const ABOVE: f64 = 0.2;
 /// How many evaluations may pass until a flat way shows.
 const FLAT_EVALUATIONS: usize = 60;
 /// A way that is lower than this part of c after a little relaxation may be flat.
@@ -112,7 +110,7 @@ impl Connector<'_> {
         Some(Path::new(&row).resampled((i.abs_diff(j) + 1).max(IMAGES)))
     }
 
-    /// Relaxes a way a little and puts the pass of its highest new saddle in; of saddles far above it one if there is no other.
+    /// Relaxes a way a little and puts the pass of its highest new saddle in.
     fn follow(&self, land: &mut Landscape, pair: [usize; 2], way: Path) -> Result<()> {
         let h = land.evaluator();
         let mut band = Band::new(h, way);
@@ -127,30 +125,14 @@ impl Connector<'_> {
             self.bands.loosely(&mut band, EVALUATIONS)?;
         }
         let tops = peaks(&band, f64::INFINITY, self.c);
-        let e = band.energies_mev();
-        let (first, last) = (e[0], e[band.images() - 1]);
-        let highest = tops.first().map_or(first.max(last), |top| top.energy_mev);
-        let most = highest + ABOVE * (highest - first.min(last));
-        if highest - land.reference_mev() > self.below_mev + ABOVE * (highest - first.min(last)) {
+        if tops.first().is_some_and(|top| top.floor_mev - land.reference_mev() > self.below_mev) {
             return Ok(());
         }
-        let mut high: Option<Saddle> = None;
         for top in tops.into_iter().take(PEAKS) {
             let found = Saddle::recorded(h, top, self.c, self.hop)?;
-            if !found.is_saddle(self.c) || land.knows(&found) {
-                continue;
+            if found.is_saddle(self.c) && !land.knows(&found) {
+                return self.add(land, found);
             }
-            let energy = |f: &Saddle| f.refined.state.energy_mev;
-            if energy(&found) <= most {
-                self.add(land, found)?;
-                return Ok(());
-            }
-            if high.as_ref().is_none_or(|f| energy(&found) < energy(f)) {
-                high = Some(found);
-            }
-        }
-        if let Some(found) = high {
-            self.add(land, found)?;
         }
         Ok(())
     }

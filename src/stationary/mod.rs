@@ -26,7 +26,6 @@ pub use descent::{Descent, descend};
 pub use modes::follow_modes;
 pub use pinned::Pinned;
 pub use point::Point;
-pub use polish::polish;
 pub use relax::{Relaxed, WayDown, relax_to_minimum};
 pub use search::{Climb, GaveUp, Limits, Saddle, climb, relax_nearby};
 pub use spectrum::{Spectrum, lowest_eigenvalues_mev};

@@ -1,6 +1,6 @@
 //! Relaxing a state to its minimum: Newton's method with a shift that keeps the Hessian positive, and descent checked.
 
-use super::{Point, Spectrum, State, descend, polish};
+use super::{Point, Spectrum, State, descend};
 use crate::energy::Evaluator;
 use crate::error::{Error, Result};
 use crate::field::Components;
@@ -16,8 +16,6 @@ use std::mem::take;
 const CAP: f64 = 0.5;
 /// Most Newton steps to a stationary state.
 const STEPS: usize = 500;
-/// Forces of this many tolerances are rounding error beside steps that a shift makes short: the state is as good as stationary.
-const NEARLY: f64 = 1e6;
 /// The first shift and the least one, in parts of the largest stiffness; one below the third gives way to none where it can.
 const SHIFTS: [f64; 3] = [1e-3, 1e-9, 1e-4];
 
@@ -100,10 +98,6 @@ fn stationary(h: Evaluator, mut p: Point, tolerance_mev: f64, steps: &mut usize,
         stalled = if torque > 0.5 * before && torque < 20.0 * tolerance_mev { stalled + 1 } else { 0 };
         p = next;
         *steps += 1;
-    }
-    if p.max_torque_mev() > tolerance_mev && p.max_torque_mev() < NEARLY * tolerance_mev {
-        // the shift makes steps along a valley that is all but flat short
-        p = polish(h, p);
     }
     Ok(p)
 }

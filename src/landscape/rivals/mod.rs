@@ -4,7 +4,6 @@ mod melt;
 mod modes;
 mod near;
 mod push;
-mod walls;
 
 use super::Landscape;
 use crate::path::guess::GuessContext;
@@ -13,7 +12,7 @@ use std::fmt::Debug;
 
 /// All rivals, in the order of their turns.
 pub(super) fn rivals() -> Vec<Box<dyn Rival>> {
-    vec![Box::<walls::Walls>::default(), Box::<near::Near>::default(), Box::<push::Push>::default()]
+    vec![Box::<near::Near>::default(), Box::<push::Push>::default()]
 }
 
 /// Those that look for all there is.
@@ -57,14 +56,6 @@ impl<'l> Cut<'l> {
     pub fn of(land: &'l Landscape<'l>, ends: Option<[usize; 2]>, top_mev: f64, context: GuessContext<'l>) -> Cut<'l> {
         let ends = ends.map(|ends| ends.map(|k| land.standing_for(k)));
         Cut { land, ends, top_mev, part: land.parts_below(top_mev), context }
-    }
-
-    /// The highest saddle of the route (3N), if there is one.
-    pub fn highest_saddle(&self) -> Option<&'l [f64]> {
-        let [from, to] = self.ends?;
-        let route = self.land.route(from, to)?;
-        let edges = route.steps.iter().map(|(k, _)| &self.land.edges()[*k]);
-        edges.max_by(|p, q| p.height_mev.total_cmp(&q.height_mev)).map(|edge| &edge.saddle[..])
     }
 
     /// Whether a minimum is joined with one of the two ends below T; where all are looked for, every one is as good as an end.
