@@ -10,6 +10,7 @@ use crate::path::guess::{
     Edge, Geodesic, GuessContext, GuessSpec, NoiseSpec, Rotation, Sweep, Ways, best_turn, natural,
 };
 use crate::spins::Spins;
+use crate::stationary::{ALIKE, LOWER};
 use crate::threads::{MADE, apiece};
 use crate::units::Angle;
 use rayon::prelude::*;
@@ -17,11 +18,8 @@ use rayon::prelude::*;
 /// Noise that frees a swept wall from accidental symmetries (rad).
 const NOISE: f64 = 2e-3;
 
-/// Energies that differ by more than this part of the largest stiffness tell two senses of rotation apart.
-const DIFFERENT: f64 = 1e-6;
-
-/// Walls whose energies differ by this part are alike.
-const ALIKE: f64 = 1e-2;
+/// Walls whose energies differ by no more than this part are compared all along their ways.
+const CLOSE: f64 = 1e-2;
 /// Images of the way on which alike walls are compared.
 const WAY: usize = 9;
 
@@ -116,7 +114,7 @@ fn both_senses(
     let cost = |axis: Direction, images: usize| guess.highest_mev(problem, ways, context, axis, images);
     let axis = axis.unwrap_or_else(|| best_axis(problem, ways, cost));
     let other = axis.reversed();
-    let least = DIFFERENT * problem.hamiltonian.stiffness_mev();
+    let least = LOWER * problem.hamiltonian.stiffness_mev();
     let differ = ways.have_a_choice() && (cost(axis, 3) - cost(other, 3)).abs() > least;
     if differ { vec![guess.about(axis), guess.about(other)] } else { vec![guess.about(axis)] }
 }
@@ -172,7 +170,7 @@ fn best_axis(problem: &Problem, ways: &Ways, cost: impl Fn(Direction, usize) -> 
     let halfway = costs(&axes, 3);
     let Some((least, first)) = lowest(&halfway, h.stiffness_mev()) else { return Direction::X };
     let above = (least - h.energy_mev(ways.a.as_slice())).abs();
-    let near = least + ALIKE * above + 1e-9 * h.stiffness_mev();
+    let near = least + CLOSE * above + ALIKE * h.stiffness_mev();
     let alike: Vec<Direction> = halfway.iter().filter(|(e, _)| *e <= near).map(|(_, axis)| *axis).collect();
     if alike.len() < 2 || !(holds_wall(ways.a) || holds_wall(ways.b)) {
         return first;
@@ -184,7 +182,7 @@ fn best_axis(problem: &Problem, ways: &Ways, cost: impl Fn(Direction, usize) -> 
 fn lowest(costs: &[(f64, Direction)], stiffness: f64) -> Option<(f64, Direction)> {
     let mut best: Option<(f64, Direction)> = None;
     for found in costs {
-        if best.is_none_or(|(e, _)| found.0 < e - 1e-9 * stiffness) {
+        if best.is_none_or(|(e, _)| found.0 < e - ALIKE * stiffness) {
             best = Some(*found);
         }
     }

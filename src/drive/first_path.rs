@@ -6,10 +6,8 @@ use crate::band::Band;
 use crate::geometry::Direction;
 use crate::landscape::Saddle;
 use crate::path::guess::{Drift, GuessSpec};
+use crate::stationary::LOWER;
 use crate::units::Angle;
-
-/// Barriers that differ by no more than this part are alike.
-const ROUNDING: f64 = 1e-6;
 
 /// A first path on its way.
 pub struct FirstPath<'a> {
@@ -23,8 +21,6 @@ pub struct FirstPath<'a> {
     pub history: Vec<HistoryRow>,
     /// Its refined top.
     pub found: Option<Saddle>,
-    /// Saddles of higher index that were left: energy above the first image (meV) and index.
-    pub escapes: Vec<(f64, usize)>,
     /// The highest that it passes (meV above the first image), if it was followed from end to end.
     pub followed_mev: Option<f64>,
 }
@@ -32,7 +28,7 @@ pub struct FirstPath<'a> {
 impl<'a> FirstPath<'a> {
     /// A band that started from `name`, with nothing known of it yet.
     pub fn new(name: String, band: Band<'a>, stop: Stop) -> FirstPath<'a> {
-        FirstPath { name, band, stop, history: Vec::new(), found: None, escapes: Vec::new(), followed_mev: None }
+        FirstPath { name, band, stop, history: Vec::new(), found: None, followed_mev: None }
     }
 
     /// The kind of guess that it started from, the first word of its name.
@@ -74,7 +70,7 @@ pub fn rejection(c: &FirstPath, best: &FirstPath, scale: f64) -> RejectedPath {
     let lower = c.followed_mev.map_or(0.0, |mev| best.barrier_mev(scale) - mev);
     let reason = match found {
         Some(f) if f.refined.index > 1 => "its top is a saddle of higher index".to_string(),
-        Some(_) if lower > ROUNDING * best.barrier_mev(scale) => {
+        Some(_) if lower > LOWER * best.barrier_mev(scale) => {
             format!("followed from end to end, it passes {lower:.1e} meV lower, but could not be proven")
         }
         Some(_) if c.followed_mev.is_some() => {

@@ -11,6 +11,7 @@ use crate::error::Result;
 use crate::landscape::{Peak, Saddle, ZOOMS, highest, zoomed};
 use crate::path::Path;
 use crate::path::guess::{GuessSpec, NoiseSpec, add_noise, moving_sites, smooth};
+use crate::stationary::ALIKE;
 
 /// Evaluations after which first paths are compared.
 const TRIAL: usize = 8;
@@ -20,8 +21,6 @@ const COARSEST: f64 = 2.0;
 const ESCAPES: usize = 3;
 /// On a film the best path of another kind is followed to its saddle too, unless its top is higher than the lowest saddle times this.
 const OF_OTHER_KINDS: f64 = 1.5;
-/// Barriers that differ by less than this part are equal.
-const ALIKE: f64 = 1e-9;
 
 impl<'a> Run<'a, '_> {
     /// The first paths, the most promising first: the one that was asked for, or the natural ones.
@@ -103,13 +102,12 @@ impl<'a> Run<'a, '_> {
                 align_rotations(band.path_mut(), &self.axes);
                 band.evaluate();
                 let top = |b: &Band| b.energies_mev()[b.highest()];
-                if best.as_ref().is_none_or(|b| top(&band) < top(b) - 1e-9 * scale) {
+                if best.as_ref().is_none_or(|b| top(&band) < top(b) - ALIKE * scale) {
                     best = Some(band);
                 }
             }
             let Some(band) = best else { break };
             self.observer.stage(&format!("leaving a saddle of index {}", found.refined.index));
-            c.escapes.push((found.refined.state.energy_mev - c.band.energies_mev()[0], found.refined.index));
             c.band = band;
             c.stop = Stop::NotFinite;
         }

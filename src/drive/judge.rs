@@ -7,6 +7,7 @@ use super::{Problem, Verdict};
 use crate::band::Band;
 use crate::landscape::Minimum;
 use crate::landscape::{Doubt, PathEnd};
+use crate::stationary::{ALIKE, LOWER};
 
 /// What a path shows.
 pub struct Seen<'a> {
@@ -42,7 +43,7 @@ impl Seen<'_> {
         let mut highest = self.saddles.iter().map(|s| s.above_initial_mev).fold(f64::NEG_INFINITY, f64::max);
         let seen = self.band.energies_mev()[self.band.highest()] - self.band.energies_mev()[0];
         let (ends, height) = (self.above_final.max(0.0), height(self.band));
-        if seen > highest + 1e-6 * height && seen > ends + 1e-9 * height {
+        if seen > highest + LOWER * height && seen > ends + ALIKE * height {
             highest = seen;
             doubts.extend(self.problem.seeks_saddles().then_some(Doubt::HigherImage));
         }

@@ -131,13 +131,6 @@ pub struct EndPoint {
     pub moved_rad: Option<f64>,
 }
 
-impl EndPoint {
-    /// Whether it relaxed so far, any spin by more than 90°, that it may be another state than meant.
-    pub fn moved_far(&self) -> bool {
-        self.moved_rad.is_some_and(|angle| angle > MOVED_FAR_RAD)
-    }
-}
-
 /// A minimum between the ends.
 #[derive(Clone, Debug)]
 pub struct IntermediateMinimum {

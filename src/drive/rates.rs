@@ -13,11 +13,8 @@ use crate::rates::{
     saddle_rates, transitions,
 };
 use crate::spins::Spins;
-use crate::stationary::{self, Refined, State};
+use crate::stationary::{self, ALIKE, Refined, State};
 use crate::symmetry::Group;
-
-/// A stored energy above the initial state and that of the stored spins differ by less than this part of the scale.
-const AGREE: f64 = 1e-9;
 
 /// What is known of a path.
 pub struct Known<'a> {
@@ -120,7 +117,7 @@ pub fn stored_rates(
             return Err(format!("saddle {k}: {doubt}"));
         }
         let above = h.difference_mev(saddle.spins.as_slice(), initial);
-        if (above - saddle.above_initial_mev).abs() > AGREE * h.stiffness_mev() {
+        if (above - saddle.above_initial_mev).abs() > ALIKE * h.stiffness_mev() {
             return Err(format!(
                 "saddle {k} lies {above} meV above the initial state, and summary.json says otherwise"
             ));
@@ -139,7 +136,6 @@ fn stored_link(h: Evaluator, saddle: &SaddlePoint, beside: &[Minimum]) -> Pass {
     let spectrum = stationary::Spectrum::of(h, &state, 0);
     let lowest = state.lowest_mode();
     let valley = lowest.as_ref().map_or_else(|| vec![0.0; state.m.len()], |mode| state.field(&mode.vector));
-    let curvature_mev = lowest.map_or(0.0, |mode| mode.value);
     let mut tau = valley.clone();
     let size = slab::norm(&tau);
     slab::scale(&mut tau, 1.0 / size.max(f64::MIN_POSITIVE));
@@ -147,8 +143,7 @@ fn stored_link(h: Evaluator, saddle: &SaddlePoint, beside: &[Minimum]) -> Pass {
     let top = Peak { m: state.m.clone(), tau, energy_mev: state.energy_mev, s, image, floor_mev: f64::NEG_INFINITY };
     let index = spectrum.negative;
     let verdict = if index > 1 { stationary::Verdict::HigherIndex } else { stationary::Verdict::Saddle };
-    let refined =
-        Refined { verdict, state, valley, steps: 0, factorisations: 0, index, curvature_mev, rotation_rad: 0.0 };
+    let refined = Refined { verdict, state, valley, factorisations: 0, index, rotation_rad: 0.0 };
     Pass {
         saddle: Saddle { top, refined },
         spectrum,

@@ -1,12 +1,11 @@
 //! A state relaxed by itself, with what it was before and what kind of state it is now.
 
 use super::ends::{judge_end, kept};
-use super::run::END_TOLERANCE;
 use crate::energy::Evaluator;
 use crate::error::Result;
 use crate::landscape::Minimum;
 use crate::spins::Spins;
-use crate::stationary::{Relaxed, relax_to_minimum};
+use crate::stationary::{RELAXED, Relaxed, relax_to_minimum};
 
 /// A state before and after it was relaxed.
 #[derive(Clone, Debug)]
@@ -32,7 +31,7 @@ impl RelaxedState {
 
 /// Relaxes a state as a run relaxes its ends; `modes` of its eigenvalues are computed, and `which` names it in warnings.
 pub fn relaxed_state(h: Evaluator, spins: &Spins, modes: usize, which: &str) -> Result<RelaxedState> {
-    let relaxed = relax_to_minimum(h, spins, END_TOLERANCE * h.stiffness_mev())?;
+    let relaxed = relax_to_minimum(h, spins, RELAXED * h.stiffness_mev())?;
     let minimum = Minimum::with_modes(h, &relaxed.spins, modes);
     let mut warnings = judge_end(&relaxed, which);
     let s = &minimum.spectrum;

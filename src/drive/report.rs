@@ -15,7 +15,7 @@ use crate::landscape::{Minimum, Pass};
 use crate::linalg::slab;
 use crate::path::Path;
 use crate::spins::Spins;
-use crate::stationary::Relaxed;
+use crate::stationary::{LOWER, Relaxed};
 use crate::threads::{MADE, apiece};
 use rayon::prelude::*;
 use std::time::Instant;
@@ -332,7 +332,7 @@ fn band_saddles(problem: &Problem, band: &Band) -> Vec<SaddlePoint> {
             lowest_eigenvalues_mev: Vec::new(),
         }
     };
-    prominent_maxima(band.energies_mev(), 1e-6 * height(band)).into_iter().map(point).collect()
+    prominent_maxima(band.energies_mev(), LOWER * height(band)).into_iter().map(point).collect()
 }
 
 /// Where a path passes the saddles of its links, and the minima between them.

@@ -16,7 +16,7 @@ use crate::landscape::{Doubt, Landscape, Minimum};
 use crate::path::distance;
 use crate::path::guess::{FirstGuess, GuessContext, Rotation};
 use crate::spins::Spins;
-use crate::stationary::{Relaxed, relax_to_minimum};
+use crate::stationary::{ALIKE, LOWER, RELAXED, Relaxed, relax_to_minimum};
 use crate::threads::both;
 use std::sync::Arc;
 use std::time::Instant;
@@ -27,12 +27,8 @@ pub const FEWEST_IMAGES: usize = 17;
 const SECOND_TRIES: usize = 2;
 /// They are not beside a path that cannot be proven if their top is higher than its times this.
 const SECOND_BELOW: f64 = 1.2;
-/// Another path is tried beside a proven one if its top is lower by more than this part.
-const BELOW: f64 = 1e-6;
 /// A proven path takes the place of an unproven one unless it is higher by more than this part: images may straddle a top.
 const AS_LOW: f64 = 1e-3;
-/// Force at a relaxed end, in parts of the largest stiffness.
-pub(super) const END_TOLERANCE: f64 = 1e-14;
 
 /// Finds the minimum-energy path of a problem, taking what its [`Control`](crate::control::Control) finds on record from there, and
 /// recording what it computes. A run that its control stops ends with [`Error::Stopped`](crate::error::Error::Stopped), one that meets an
@@ -152,7 +148,7 @@ impl<'a, 'o> Run<'a, 'o> {
         for mut next in firsts.by_ref().take(tries) {
             // a proven path is the one, unless what is known of another lies below its highest saddle
             let proven = best.proof.doubts.is_empty();
-            let below = if proven { (1.0 - BELOW) * best.seen_mev() } else { f64::INFINITY };
+            let below = if proven { (1.0 - LOWER) * best.seen_mev() } else { f64::INFINITY };
             if next.barrier_mev(scale) > below.min(SECOND_BELOW * best.seen_mev()) {
                 others.push(next);
                 continue;
@@ -219,7 +215,7 @@ impl<'a, 'o> Run<'a, 'o> {
         let path = Rotation { axis }.path(a, b, images, &self.context())?;
         let mut band = Band::new(h, path);
         band.evaluate();
-        if height(&band) > 1e-9 * h.stiffness_mev() {
+        if height(&band) > ALIKE * h.stiffness_mev() {
             return Ok(None);
         }
         let stop = Stop::Converged { rotation: 0.0, tolerance: self.problem.neb.tolerance };
@@ -231,7 +227,7 @@ impl<'a, 'o> Run<'a, 'o> {
 
 /// The minima that two states relax to.
 fn relaxed_ends(h: Evaluator, given: [&Spins; 2]) -> Result<[Relaxed; 2]> {
-    let relax = |spins: &Spins| relax_to_minimum(h, spins, END_TOLERANCE * h.stiffness_mev());
+    let relax = |spins: &Spins| relax_to_minimum(h, spins, RELAXED * h.stiffness_mev());
     let (a, b) = both(3 * h.sites(), || relax(given[0]), || relax(given[1]));
     Ok([a?, b?])
 }

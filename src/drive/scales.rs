@@ -5,7 +5,7 @@ use crate::field::Components;
 use crate::lattice::{BondFamily, Lattice};
 use crate::linalg::{eigenvalues_symmetric, slab};
 use crate::state::StateContext;
-use crate::stationary::State;
+use crate::stationary::{ALIKE, State};
 use crate::threads::both;
 use serde::{Deserialize, Serialize};
 
@@ -30,12 +30,12 @@ impl Scales {
     pub fn of_ends(h: Evaluator, a: &[f64], b: &[f64]) -> Scales {
         let (of_a, of_b) = both(a.len(), || softest_mode(h, a), || softest_mode(h, b));
         let softest = of_a.max(of_b);
-        Scales::new(&h, if softest > 1e-9 * h.stiffness_mev() { softest } else { on_site_gap(&h) })
+        Scales::new(&h, if softest > ALIKE * h.stiffness_mev() { softest } else { on_site_gap(&h) })
     }
 
     fn new(h: &Hamiltonian, c: f64) -> Scales {
         let exchange = exchange_stiffness(h);
-        let floor = 1e-9 * h.stiffness_mev();
+        let floor = ALIKE * h.stiffness_mev();
         let c = c.max(floor);
         let width = (exchange / c).sqrt().clamp(0.25, h.sites().max(1) as f64);
         Scales { stiffness_mev: c, exchange_mev: exchange, wall_width_sites: width }

@@ -14,7 +14,7 @@ use crate::hessian::factorisation_flops;
 use crate::landscape::{Aim, Effort, Landscape, Minimum, Settings, search};
 use crate::record::Count;
 use crate::spins::Spins;
-use crate::stationary::{Relaxed, relax_to_minimum};
+use crate::stationary::{RELAXED, Relaxed, relax_to_minimum};
 
 /// Single states are evaluated until so many spins were, or so many times as often as for the first paths; and their Hessians until
 /// so many operations were spent on factorising them, or as many times as often.
@@ -112,7 +112,7 @@ impl<'a> Run<'a, '_> {
             if self.land.height_mev(domain.as_slice()) >= top {
                 continue;
             }
-            let relaxed = relax_to_minimum(h, &domain, super::run::END_TOLERANCE * h.stiffness_mev())?;
+            let relaxed = relax_to_minimum(h, &domain, RELAXED * h.stiffness_mev())?;
             let third = Minimum::examine(h, &relaxed.spins);
             if !third.is_proven() || self.land.height_mev(third.spins.as_slice()) >= top {
                 continue;

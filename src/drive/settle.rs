@@ -8,9 +8,11 @@ use super::run::{FEWEST_IMAGES, Run};
 use super::settled::Settled;
 use crate::band::Band;
 use crate::error::Result;
-use crate::landscape::{Assembled, Connector, Doubt, Pass, PathEnd, Saddle, assemble, peaks, same};
-use crate::path::distance;
+use crate::landscape::{Assembled, Connector, Doubt, Pass, PathEnd, Saddle, assemble, peaks};
+use crate::path::{distance, is_within};
+use crate::sphere::SAME;
 use crate::spins::Spins;
+use crate::stationary::LOWER;
 
 /// Neighbouring images of an automatic path are at most this far apart, any spin (rad).
 const RESOLVED: f64 = 1.0;
@@ -25,7 +27,7 @@ const WINDOW: f64 = 0.1;
 fn over(c: &FirstPath, links: &[Pass]) -> f64 {
     let e = c.band.energies_mev();
     let saddles = links.iter().map(|l| l.saddle.refined.state.energy_mev - e[0]);
-    saddles.fold((e[e.len() - 1] - e[0]).max(0.0), f64::max) + 1e-6 * height(&c.band)
+    saddles.fold((e[e.len() - 1] - e[0]).max(0.0), f64::max) + LOWER * height(&c.band)
 }
 
 impl<'a> Run<'a, '_> {
@@ -103,7 +105,7 @@ impl<'a> Run<'a, '_> {
     /// Whether a path is better put together from the stretches of its route: it has minima between its ends, the band is not where
     /// the saddles are, or the route leads elsewhere.
     fn needs_leading(&self, c: &FirstPath<'a>, found: &[Saddle], proof: &Proof) -> bool {
-        let is_own = |pass: &Pass| found.iter().any(|f| same(f.spins(), pass.saddle.spins()));
+        let is_own = |pass: &Pass| found.iter().any(|f| is_within(f.spins(), pass.saddle.spins(), SAME));
         self.is_coarse(c)
             || !c.stop.is_converged()
             || proof.links.len() > 1
@@ -237,7 +239,7 @@ impl<'a> Run<'a, '_> {
                 Some(f) => Saddle { top, refined: f.refined.clone() },
                 None => Saddle::recorded(h, top, scale, self.scales.half_site_rad())?,
             };
-            if f.is_saddle(scale) && !found.iter().any(|g| same(&g.refined.state.m, &f.refined.state.m)) {
+            if f.is_saddle(scale) && !found.iter().any(|g| is_within(g.spins(), f.spins(), SAME)) {
                 found.push(f);
             }
         }

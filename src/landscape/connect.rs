@@ -1,7 +1,7 @@
 //! Connecting two minima by a band's saddles: the graph names the next pair, a way between the two is relaxed a little, and its
 //! peaks are refined to saddles, whose passes go into the graph; until a route leads from end to end.
 
-use super::pass::{FLAT, Pass};
+use super::pass::Pass;
 use super::ways::{WAYS, way};
 use super::zoom::{ZOOMS, zoomed};
 use super::{Doubt, Landscape, Saddle, highest, peaks, turned, turns};
@@ -11,6 +11,7 @@ use crate::error::Result;
 use crate::path::guess::GuessContext;
 use crate::path::{Path, distance};
 use crate::spins::Spins;
+use crate::stationary::FLAT;
 
 /// Most pairs that are tried.
 const MOST: usize = 600;

@@ -11,16 +11,11 @@ use crate::network::Parts;
 use crate::path::{Path, is_within, largest_angle};
 use crate::sphere::SAME;
 use crate::spins::Spins;
+use crate::stationary::{ALIKE, LOWER};
 use crate::symmetry::{Group, Operation};
-
-/// Minima and saddles with energies that differ by more than this part of the stiffness are not compared.
-const ENERGY: f64 = 1e-9;
 
 /// A climb that comes so near to a saddle (rad, any spin) ends there.
 const BESIDE: f64 = 0.05;
-/// Passes count as lower by more than this part of the height, and of the stiffness.
-const LOWER: f64 = 1e-7;
-const ROUNDING: f64 = 1e-10;
 /// Images by symmetry of every minimum and pass, at most, and of how many spins; and minima, from which on no more images are added.
 const IMAGES: usize = 64;
 const MINIMA: usize = 1000;
@@ -181,7 +176,7 @@ impl<'a> Landscape<'a> {
 
     /// By how much a pass must be lower than one of this height to count as lower (meV).
     pub fn tolerance_mev(&self, height_mev: f64) -> f64 {
-        (ROUNDING * self.h.stiffness_mev()).max(LOWER * height_mev.abs())
+        (ALIKE * self.h.stiffness_mev()).max(LOWER * height_mev.abs())
     }
 
     /// The minimum that this one is, which is put in with its images if it is new.
@@ -216,7 +211,7 @@ impl<'a> Landscape<'a> {
     /// Which of the minima one is.
     fn known(&self, minimum: &Minimum) -> Option<usize> {
         let height = self.height_mev(minimum.spins.as_slice());
-        let near = ENERGY * self.h.stiffness_mev();
+        let near = ALIKE * self.h.stiffness_mev();
         let alike =
             |k: &usize| (self.heights_mev[*k] - height).abs() < near && self.minima[*k].is_identical(self.h, minimum);
         (0..self.minima.len()).find(alike)
@@ -336,7 +331,7 @@ impl<'a> Landscape<'a> {
 
     /// Whether a saddle is as high as this.
     pub fn has_height(&self, height_mev: f64) -> bool {
-        self.edges.iter().any(|e| (e.height_mev - height_mev).abs() < ENERGY * self.h.stiffness_mev())
+        self.edges.iter().any(|e| (e.height_mev - height_mev).abs() < ALIKE * self.h.stiffness_mev())
     }
 
     /// Whether a saddle is known.
@@ -350,7 +345,7 @@ impl<'a> Landscape<'a> {
 
     /// The edges over a saddle.
     fn edges_over(&self, m: &[f64], height_mev: f64) -> impl Iterator<Item = &Edge> {
-        let near = ENERGY * self.h.stiffness_mev();
+        let near = ALIKE * self.h.stiffness_mev();
         let over = move |e: &&Edge| (e.height_mev - height_mev).abs() < near && is_same_state(self.h, &e.saddle, m);
         self.edges.iter().filter(over)
     }

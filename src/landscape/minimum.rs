@@ -7,7 +7,7 @@ use crate::geometry::vector;
 use crate::path::{is_within, largest_angle};
 use crate::sphere::SAME;
 use crate::spins::Spins;
-use crate::stationary::{Spectrum, State};
+use crate::stationary::{FLAT, Spectrum, State};
 use crate::symmetry::Operation;
 use crate::threads::both;
 use serde::{Deserialize, Serialize};
@@ -58,7 +58,7 @@ impl Minimum {
         if self.is_identical(h, other) {
             return true;
         }
-        let noise = 1e-12 * h.stiffness_mev();
+        let noise = FLAT * h.stiffness_mev();
         let both_flat = self.spectrum.flat > 0 && other.spectrum.flat > 0;
         both_flat && h.difference_mev(self.spins.as_slice(), other.spins.as_slice()).abs() < noise
     }

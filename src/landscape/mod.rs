@@ -43,7 +43,7 @@ pub use graph::{Edge, Landscape, Route};
 pub use minimum::{Minimum, is_same_state};
 pub use pass::Pass;
 pub use peaks::{Peak, direction, highest, peaks};
-pub use saddle::{Saddle, same};
+pub use saddle::Saddle;
 pub use search::{Aim, Effort, Searched, Settings, Standing, search};
 pub use stored::{are_counts, are_finite, fit};
 pub use turns::{turned, turns};

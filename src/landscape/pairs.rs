@@ -8,12 +8,11 @@ use super::{Landscape, turned, turns};
 use crate::geometry::Direction;
 use crate::linalg::slab;
 use crate::path::guess::best_turn;
+use crate::sphere::SAME;
 use std::collections::BTreeMap;
 
 /// A pair that was tried k times counts as (1 + k)⁴ times as far.
 const TIRED: i32 = 4;
-/// Squares of distances that differ by less are equal.
-const EQUAL: f64 = 1e-5;
 
 /// What is known of pairs of minima.
 #[derive(Debug, Default)]
@@ -68,7 +67,7 @@ impl Landscape<'_> {
     /// What pairs share that are images of each other by symmetry.
     fn alike(&self, pair: [usize; 2], squared: f64) -> ([usize; 2], i64) {
         let [a, b] = pair.map(|k| self.orbit(k));
-        ([a.min(b), a.max(b)], (squared / EQUAL).round() as i64)
+        ([a.min(b), a.max(b)], (squared / SAME).round() as i64)
     }
 
     fn tries(&self, pairs: &Pairs, pair: [usize; 2], squared: f64) -> usize {

@@ -6,12 +6,10 @@ use crate::error::Result;
 use crate::linalg::slab;
 use crate::rates::Crossing;
 use crate::spins::Spins;
-use crate::stationary::{Spectrum, descend, lowest_eigenvalues_mev, relax_to_minimum};
+use crate::stationary::{FLAT, RELAXED, Spectrum, descend, lowest_eigenvalues_mev, relax_to_minimum};
 use crate::symmetry::{Group, Operation};
 use serde::{Deserialize, Serialize};
 
-/// Energies that differ by less than this part of the largest stiffness along a whole way make it flat.
-pub const FLAT: f64 = 1e-11;
 /// How many eigenvalues of a saddle are reported.
 const REPORTED: usize = 6;
 /// A valley with less than this (of its curvature) left over when the Hessian acts on it is a mode.
@@ -64,7 +62,7 @@ impl Pass {
         let side = |direction: f64| -> Result<(Minimum, f64, Vec<Spins>)> {
             let valley: Vec<f64> = falls.iter().map(|v| direction * sign * v).collect();
             let d = descend(h, state, &valley, c, beside);
-            let relaxed = relax_to_minimum(h, &Spins::from_unit_components(&d.m), 1e-14 * h.stiffness_mev())?;
+            let relaxed = relax_to_minimum(h, &Spins::from_unit_components(&d.m), RELAXED * h.stiffness_mev())?;
             let way = d.way.into_iter().map(|m| Spins::from_unit_components(&m)).collect();
             Ok((Minimum::examine(h, &relaxed.spins), d.fallen_mev, way))
         };

@@ -1,14 +1,14 @@
 //! From a peak of a band to the refined saddle.
 
 use super::peaks::Peak;
-use super::turns::{turned, turns};
 use crate::energy::{Evaluator, recorded};
 use crate::error::Result;
 use crate::linalg::{Matrix, lowest_modes, slab};
 use crate::path::largest_angle;
 use crate::sphere::rotation_of;
-use crate::spins::Spins;
-use crate::stationary::{self, Climb, Limits, Refined, Spectrum, State, Verdict, climb, follow_modes, refine};
+use crate::stationary::{
+    self, ALIKE, Climb, Limits, Refined, STATIONARY, Spectrum, State, Verdict, climb, follow_modes, refine,
+};
 use crate::symmetry::Operation;
 use serde::{Deserialize, Serialize};
 
@@ -41,8 +41,8 @@ impl Saddle {
 
     /// The saddle of index one that a climb from any state leads to, if it leads to one within the limits.
     pub fn climbed(h: Evaluator, start: &[f64], limits: &Limits) -> Option<Saddle> {
-        let Climb { saddle, steps } = climb(h, start, limits);
-        let stationary::Saddle { point, mode, curvature_mev } = saddle.ok()?;
+        let Climb { saddle, steps: factorisations } = climb(h, start, limits);
+        let stationary::Saddle { point, mode, .. } = saddle.ok()?;
         let top = Peak {
             m: start.to_vec(),
             tau: mode.clone(),
@@ -55,10 +55,8 @@ impl Saddle {
         let refined = Refined {
             verdict: Verdict::Saddle,
             valley: mode,
-            steps,
-            factorisations: steps,
+            factorisations,
             index: 1,
-            curvature_mev,
             rotation_rad,
             state: State::of(h, point),
         };
@@ -81,7 +79,7 @@ impl Saddle {
 
     /// Follows the modes of a saddle that the valley's search left where sliding over the lattice still has a torque.
     fn sharpen(&mut self, h: Evaluator, c: f64) {
-        let rest = |r: &Refined| r.state.max_torque_mev() / (1e-12 * r.state.hessian.norm1());
+        let rest = |r: &Refined| r.state.max_torque_mev() / (STATIONARY * r.state.hessian.norm1());
         if !self.is_stationary(c) || rest(&self.refined) <= 1.0 {
             return;
         }
@@ -145,28 +143,13 @@ impl Saddle {
     /// Stationary to machine precision, and still the start's saddle: near it, and near its height.
     pub fn is_stationary(&self, c: f64) -> bool {
         let done = matches!(self.refined.verdict, Verdict::Saddle | Verdict::Flat | Verdict::HigherIndex);
-        let zero = (1e-9 * c).max(1e-12 * self.refined.state.hessian.norm1());
+        let zero = (ALIKE * c).max(STATIONARY * self.refined.state.hessian.norm1());
         let near = self.refined.state.energy_mev >= self.top.floor_mev;
         done && near && self.refined.state.max_torque_mev() < zero && self.refined.rotation_rad < SAME_PLACE
-    }
-
-    /// Whether `other` ended in this saddle too, symmetry turns apart.
-    pub fn is_same(&self, h: Evaluator, other: &Saddle) -> bool {
-        let (a, b) = (&self.refined.state, &other.refined.state);
-        if (a.energy_mev - b.energy_mev).abs() > 1e-9 * h.stiffness_mev() {
-            return false;
-        }
-        let [p, q] = [a, b].map(|s| Spins::from_unit_components(&s.m));
-        same(&a.m, turned(&q, &turns(h, &q, &p)).as_slice())
     }
 
     /// A stationary state with at most one negative direction.
     pub fn is_saddle(&self, c: f64) -> bool {
         self.is_stationary(c) && self.refined.index <= 1
     }
-}
-
-/// Whether two configurations are the same but for a rotation of no spin by more than 1e-4 rad.
-pub fn same(a: &[f64], b: &[f64]) -> bool {
-    largest_angle(a, b) < 1e-4
 }

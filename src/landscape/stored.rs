@@ -38,14 +38,14 @@ fn is_tangent(h: Evaluator, v: &[f64]) -> bool {
 impl Stored for Saddle {
     fn restored(mut self, h: Evaluator) -> Option<Self> {
         let Saddle { top: Peak { m, tau, energy_mev, s, image, floor_mev }, refined } = &mut self;
-        let Refined { state, valley, steps, factorisations, index, .. } = refined;
+        let Refined { state, valley, factorisations, index, .. } = refined;
         let is_sound = are_spins(h, m)
             && are_spins(h, &state.m)
             && is_tangent(h, tau)
             && is_tangent(h, valley)
             && are_finite(&[*energy_mev, *s])
             && !floor_mev.is_nan()
-            && are_counts(&[*image, *steps, *factorisations, *index]);
+            && are_counts(&[*image, *factorisations, *index]);
         is_sound.then_some(())?;
         *state = State::at(h, std::mem::take(&mut state.point.m));
         Some(self)

@@ -18,6 +18,7 @@ mod search;
 mod spectrum;
 mod state;
 mod step;
+mod tolerances;
 mod trail;
 mod valley;
 
@@ -30,4 +31,5 @@ pub use relax::{Relaxed, WayDown, relax_to_minimum};
 pub use search::{Climb, GaveUp, Limits, Saddle, climb, relax_nearby};
 pub use spectrum::{Spectrum, lowest_eigenvalues_mev};
 pub use state::State;
+pub use tolerances::{ALIKE, FLAT, LOWER, RELAXED, STATIONARY};
 pub use valley::{Refined, Verdict, refine};

@@ -24,16 +24,14 @@ pub fn follow_modes(h: Evaluator, m: &[f64], floor_mev: f64) -> Option<Refined> 
     let mut search = Search::from(h, m, Wanted::Saddle, RADIUS);
     let left = |here: &Point| largest_angle(m, &here.m) > FARTHEST || here.energy_mev < floor_mev;
     let found = search.run(STEPS, |here, _| left(here).then_some(GaveUp::Stuck));
-    let steps = search.steps;
+    let factorisations = search.steps;
     let saddle = found.and_then(|()| search.saddle()).ok()?;
     Some(Refined {
         verdict: Verdict::Saddle,
         rotation_rad: largest_angle(m, &saddle.point.m),
         state: State::of(h, saddle.point),
         valley: saddle.mode,
-        steps,
-        factorisations: steps,
+        factorisations,
         index: 1,
-        curvature_mev: saddle.curvature_mev,
     })
 }

@@ -4,6 +4,7 @@
 
 use super::point::Point;
 use super::step::{Region, Wanted};
+use super::tolerances::SHARP;
 use crate::energy::Evaluator;
 
 /// Most steps.
@@ -22,7 +23,7 @@ pub fn polish(h: Evaluator, mut here: Point) -> Point {
         }
         // a NaN is no small rotation either
         let is_near = region.plain(&here) < FARTHEST;
-        if best.max_torque_mev() <= 4e-15 * h.stiffness_mev() || !is_near {
+        if best.max_torque_mev() <= SHARP * h.stiffness_mev() || !is_near {
             break;
         }
         here.move_by(h, &region.v);

@@ -4,13 +4,11 @@ use super::point::Point;
 use super::spectrum::Spectrum;
 use super::state::State;
 use super::step::{Region, Step, Wanted};
+use super::tolerances::{FLAT, SHARP};
 use crate::energy::Evaluator;
 use crate::linalg::Matrix;
 use std::mem::swap;
 
-/// A torque of this part of the stiffness is rounding error. Below the other one, a search ends with a step that does not halve it.
-const SHARP: f64 = 4e-15;
-const LOOSE: f64 = 1e-11;
 /// A Newton step to a saddle that is shorter (rad, any spin) tells its energy, to this part of how far that is.
 const CLOSE: f64 = 0.15;
 const TOLD: f64 = 0.3;
@@ -116,7 +114,7 @@ impl<'a> Search<'a> {
 
     /// Until the torque is rounding error; `each` may end it before any step.
     pub fn run(&mut self, most: usize, mut each: impl FnMut(&Point, &Step) -> Option<GaveUp>) -> Result<(), GaveUp> {
-        let [sharp, loose] = [SHARP, LOOSE].map(|part| part * self.h.stiffness_mev());
+        let [sharp, loose] = [SHARP, FLAT].map(|part| part * self.h.stiffness_mev());
         while self.steps < most {
             if self.h.is_stopped() {
                 return Err(GaveUp::Stopped);

@@ -6,6 +6,7 @@
 use super::border::pin;
 use super::point::Point;
 use super::state::State;
+use super::tolerances::STATIONARY;
 use crate::energy::Evaluator;
 use crate::linalg::{Factors, Matrix, lowest_modes};
 use serde::{Deserialize, Serialize};
@@ -57,7 +58,7 @@ impl Spectrum {
 
     /// Whether a torque is zero as far as double precision tells: |grad|∞ ≤ 1e-12·‖H‖₁.
     pub fn is_stationary(&self, torque_mev: f64) -> bool {
-        torque_mev <= 1e-12 * self.norm_mev
+        torque_mev <= STATIONARY * self.norm_mev
     }
 }
 

@@ -12,6 +12,7 @@
 use super::pinned::Pinned;
 use super::polish::polish;
 use super::state::State;
+use super::tolerances::{ALIKE, SHARP};
 use crate::energy::Evaluator;
 use crate::linalg::{Matrix, Mode, lowest_modes, orthonormal, rayleigh_ritz, remove, slab, soft_modes, soft_space};
 use crate::path::{distance, largest_angle};
@@ -49,14 +50,10 @@ pub struct Refined {
     pub state: State,
     /// Unit tangent field (3N) of the valley there.
     pub valley: Vec<f64>,
-    /// Newton steps.
-    pub steps: usize,
-    /// Banded factorisations.
+    /// Factorisations that it took.
     pub factorisations: usize,
     /// Negative directions, zero modes apart.
     pub index: usize,
-    /// Curvature along the valley (meV), wᵀHw/|w|².
-    pub curvature_mev: f64,
     /// Largest rotation of a spin from the start (rad).
     pub rotation_rad: f64,
 }
@@ -120,12 +117,10 @@ pub fn refine(h: Evaluator, m: &[f64], tau: &[f64], c: f64, floor_mev: f64) -> R
         torques: Vec::new(),
     };
     let mut verdict = Verdict::Stalled;
-    let mut steps = 0;
     for step in 0..STEPS {
         if h.is_stopped() {
             break;
         }
-        steps = step + 1;
         match s.step(step) {
             Next::Move(v, tau) => {
                 let m = s.state.moved(&v);
@@ -139,12 +134,12 @@ pub fn refine(h: Evaluator, m: &[f64], tau: &[f64], c: f64, floor_mev: f64) -> R
             }
         }
     }
-    s.report(verdict, steps)
+    s.report(verdict)
 }
 
 impl Search<'_> {
     fn tolerance(&self) -> f64 {
-        4e-15 * self.h.stiffness_mev()
+        SHARP * self.h.stiffness_mev()
     }
 
     /// The Hessian pinned along the soft mode, without negative directions beside it if that can be had.
@@ -367,7 +362,7 @@ impl Search<'_> {
         }
         let modes = self.complement(p, 6, 0.0);
         match modes.first() {
-            Some(lowest) if lowest.value < -1e-9 * self.c => {
+            Some(lowest) if lowest.value < -ALIKE * self.c => {
                 let mut v = self.state.field(&lowest.vector);
                 let size = rotation_of(&v);
                 slab::scale(&mut v, 0.25 / size);
@@ -383,7 +378,7 @@ impl Search<'_> {
         }
     }
 
-    fn report(mut self, verdict: Verdict, steps: usize) -> Refined {
+    fn report(mut self, verdict: Verdict) -> Refined {
         if verdict != Verdict::Left {
             self.state = State::of(self.h, polish(self.h, self.state.point));
             self.tau = unit_tangent(&self.state.m, &self.tau);
@@ -392,14 +387,11 @@ impl Search<'_> {
         let frozen: Vec<Vec<f64>> = self.frozen.iter().map(|f| self.state.basis.coordinates(f)).collect();
         let p = Pinned::new(&self.state, &t, 0.0, &frozen, self.kappa);
         self.factorisations += 1;
-        let (w, nl) = p.valley();
         Refined {
             verdict,
             valley: self.state.field(p.soft()),
-            steps,
             factorisations: self.factorisations,
             index: p.index,
-            curvature_mev: -nl / slab::dot(&w, &w),
             rotation_rad: largest_angle(&self.start, &self.state.m),
             state: self.state,
         }

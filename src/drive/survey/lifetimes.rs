@@ -4,12 +4,11 @@ use super::{Survey, SurveyProblem};
 use crate::landscape::{Landscape, Pass};
 use crate::network::{Network, Parts};
 use crate::rates::{LEAST_BARRIER, RateSettings, SaddleRate, Theory, saddle_rates};
+use crate::stationary::ALIKE;
 use crate::symmetry::Group;
 use crate::units::K_B;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Climbs that differ by less than this part are alike.
-const ALIKE: f64 = 1e-9;
 /// So many of the lowest minima are groups of their own, where none are named.
 const LOWEST: usize = 8;
 

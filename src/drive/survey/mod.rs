@@ -12,7 +12,7 @@ pub use found::{FoundMinimum, FoundSaddle, Kind, Survey};
 pub use lifetimes::{Lifetime, Lifetimes};
 pub use unseen::Unseen;
 
-use super::run::{END_TOLERANCE, Run};
+use super::run::Run;
 use super::{Observer, Problem};
 use crate::energy::recorded_each;
 use crate::error::Result;
@@ -23,7 +23,7 @@ use crate::lattice::Triangles;
 use crate::rates::RateSettings;
 use crate::record::Count;
 use crate::spins::Spins;
-use crate::stationary::relax_to_minimum;
+use crate::stationary::{RELAXED, relax_to_minimum};
 use crate::symmetry::Group;
 use std::collections::BTreeSet;
 
@@ -155,7 +155,7 @@ impl Run<'_, '_> {
         let starts = asked.starts();
         let input: Vec<&[f64]> = starts.iter().map(Spins::as_slice).collect();
         let relaxed = |k: usize| -> Result<Minimum> {
-            let relaxed = relax_to_minimum(h, &starts[k], END_TOLERANCE * h.stiffness_mev())?;
+            let relaxed = relax_to_minimum(h, &starts[k], RELAXED * h.stiffness_mev())?;
             Ok(Minimum::examine(h, &relaxed.spins))
         };
         let minima: Vec<Minimum> = recorded_each(h, "seeds", &input, relaxed)?;
