@@ -4,7 +4,7 @@
 //! ```text
 //! P A P x = P (F⊥ + σ y_u − A d τ),   P = 1 − C Cᵀ,   A = H + (σ + μ)·1,   y = d τ + x
 //! ```
-//! (see [`Complement`]), until a hundredth of the residual is left: the next evaluation changes the right-hand
+//! (see [`Complement`]), until 3 % of the residual are left: the next evaluation changes the right-hand
 //! side by more. A direction of negative curvature on the way makes μ grow, as a negative pivot does where there are factors. (T.
 //! Steihaug, SIAM J. Numer. Anal. 20, 626 (1983), doi:10.1137/0720042, for conjugate gradients that end so; R. S. Dembo, S. C.
 //! Eisenstat, T. Steihaug, SIAM J. Numer. Anal. 19, 400 (1982), doi:10.1137/0719025, for how far they are to go.)
@@ -18,7 +18,7 @@ use crate::linalg::{orthonormal, slab};
 use std::sync::Arc;
 
 /// The residual that is left.
-const TOLERANCE: f64 = 1e-2;
+const TOLERANCE: f64 = 3e-2;
 
 /// An image with room for its linear algebra.
 #[derive(Debug)]
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn a_move_solves_the_bordered_equations_of_its_image_to_a_hundredth() {
+    fn a_move_solves_the_bordered_equations_of_its_image_nearly() {
         let exchange = r#"{"exchange": {"J": ["1 meV", "-0.1 meV"]}}"#;
         let easy = r#"{"anisotropy": {"K": "0.08 meV", "axis": [0, 0, 1]}}"#;
         let dmi = r#"{"dmi": {"D": "0.2 meV", "kind": "interfacial"}}"#;

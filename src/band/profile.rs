@@ -76,6 +76,12 @@ impl Profile {
         points
     }
 
+    /// The highest energy above the first image (meV), of the images and between them.
+    pub fn highest_mev(&self) -> f64 {
+        let between = self.extrema().into_iter().map(|x| x.energy);
+        self.energy.iter().copied().chain(between).fold(f64::NEG_INFINITY, f64::max)
+    }
+
     /// Maxima and minima inside the path, in path order.
     pub fn extrema(&self) -> Vec<Extremum> {
         let last = self.s.len() - 1;

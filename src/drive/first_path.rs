@@ -41,6 +41,11 @@ impl<'a> FirstPath<'a> {
         self.band.energies_mev()[self.band.highest()] - self.band.energies_mev()[0]
     }
 
+    /// The highest of the interpolated energy above the first image (meV): a narrow top may lie between images.
+    pub fn peak_mev(&self) -> f64 {
+        self.band.profile().highest_mev()
+    }
+
     /// Its refined top, if that is stationary.
     fn stationary(&self, c: f64) -> Option<&Saddle> {
         self.found.as_ref().filter(|f| f.is_stationary(c))

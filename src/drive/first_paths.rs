@@ -46,13 +46,13 @@ impl<'a> Run<'a, '_> {
             self.observer.stage(&format!("first path: {name}"));
             tried.push(self.start(name, guess, noise.as_ref(), None, TRIAL)?);
         }
-        tried.sort_by(|p, q| p.top_mev().total_cmp(&q.top_mev()));
+        tried.sort_by(|p, q| p.peak_mev().total_cmp(&q.peak_mev()));
         let scale = self.scales.stiffness_mev;
         let is_row = self.problem.hamiltonian.lattice().is_row();
         let (mut finished, mut lowest_barrier) = (0, f64::INFINITY);
         let mut kinds: Vec<String> = vec!["geodesic".into()];
         for c in &mut tried {
-            let lowest = c.top_mev();
+            let lowest = c.peak_mev();
             let worth = finished < 2 && !(finished == 1 && lowest > 1.2 * lowest_barrier);
             // a collapse and an escape over an edge are two answers, and both are told
             let other = !is_row && !kinds.iter().any(|k| k == c.kind()) && lowest < OF_OTHER_KINDS * lowest_barrier;

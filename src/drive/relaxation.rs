@@ -135,6 +135,8 @@ struct Iterate {
     optimiser: Box<dyn Optimiser>,
     sweep: Sweep,
     progress: Progress,
+    /// The highest of the interpolated energy above the first image (meV) when it was last looked at.
+    peak_mev: Option<f64>,
 }
 
 impl Relaxation<'_> {
@@ -175,6 +177,7 @@ impl Relaxation<'_> {
             optimiser: method.start(h.stiffness_mev()),
             sweep: Sweep::new(self.scales.stiffness_mev),
             progress: Progress::new(method.follows()),
+            peak_mev: None,
         }
     }
 
@@ -193,7 +196,7 @@ impl Relaxation<'_> {
         band.evaluate();
         let force = band.max_perpendicular_mev();
         let enough = LOOSE * self.scales.stiffness_mev;
-        if goal == Goal::Loose && (force < enough || self.top_stands(band, enough)) {
+        if goal == Goal::Loose && (force < enough || self.top_stands(band, now, enough)) {
             let rotation = force.min(enough) / self.scales.stiffness_mev;
             self.record(band, rotation);
             return Some(Stop::Converged { rotation, tolerance: LOOSE });
@@ -223,17 +226,20 @@ impl Relaxation<'_> {
         None
     }
 
-    /// Whether the highest image is relaxed, all but |F⊥|²/c of its energy, and stays as high as it is. In a row all images relax about
-    /// as quickly; on other lattices the way down from a nucleus, which no barrier depends on, takes much longer than its top.
-    fn top_stands(&self, band: &Band, enough: f64) -> bool {
-        let Some(last) = self.history.last().filter(|last| last.images == band.images()) else { return false };
-        let (e, top) = (band.energies_mev(), band.highest());
-        let height = e[top] - e[0].max(e[e.len() - 1]);
-        let moved = (e[top] - e[0] - last.highest_image_mev).abs();
+    /// Whether the highest image is relaxed, all but |F⊥|²/c of its energy, and the path's top stays as high as it is: the interpolated
+    /// one, as the images may slide down on both sides of a narrow top. In a row all images relax about as quickly; on other lattices
+    /// the way down from a nucleus, which no barrier depends on, takes much longer than its top.
+    fn top_stands(&self, band: &Band, now: &mut Iterate, enough: f64) -> bool {
+        if band.hamiltonian().lattice().is_row() {
+            return false;
+        }
+        let (e, top, peak) = (band.energies_mev(), band.highest(), band.profile().highest_mev());
+        let Some(before) = now.peak_mev.replace(peak) else { return false };
+        let height = peak - (e[e.len() - 1] - e[0]).max(0.0);
         let perpendicular = band.perpendicular(top);
         let lowered = slab::dot(perpendicular, perpendicular) / self.scales.stiffness_mev;
         let relaxed = band.force(top) < enough || lowered < LOWERED * height;
-        !band.hamiltonian().lattice().is_row() && height > 0.0 && moved < STILL * height && relaxed
+        height > 0.0 && (peak - before).abs() < STILL * height && relaxed
     }
 
     fn align(&self, band: &mut Band) {
@@ -298,6 +304,7 @@ struct Stand {
     /// What the optimiser remembers.
     memory: Vec<Vec<f64>>,
     progress: Progress,
+    peak_mev: Option<f64>,
     rows: Vec<HistoryRow>,
 }
 
@@ -318,6 +325,7 @@ impl Iterate {
             shifts: self.sweep.shifts().to_vec(),
             memory: self.optimiser.memory(),
             progress: self.progress.clone(),
+            peak_mev: self.peak_mev,
             rows: rows.to_vec(),
         }
     }
@@ -327,6 +335,7 @@ impl Iterate {
         band.restore(stand.path.as_slice(), stand.evaluations);
         self.sweep.set_shifts(stand.shifts);
         self.optimiser.remember(stand.memory);
+        self.peak_mev = stand.peak_mev;
         let Progress { best, since, damping, .. } = stand.progress;
         (self.progress.best, self.progress.since, self.progress.damping) = (best, since, damping);
         stand.rows
@@ -344,7 +353,7 @@ impl Stand {
             && are_finite(&self.shifts)
             && (self.shifts.is_empty() || self.shifts.len() == band.images())
             && self.memory.iter().all(is_memory)
-            && are_finite(&[self.progress.damping]);
+            && are_finite(&[self.progress.damping, self.peak_mev.unwrap_or(0.0)]);
         let rows = self.rows.restored(band.evaluator())?;
         is_sound.then_some(Stand { rows, ..self })
     }

@@ -155,6 +155,10 @@ impl<'a, 'o> Run<'a, 'o> {
             }
             if next.found.is_none() {
                 self.conclude(&mut next)?;
+                if next.barrier_mev(scale) > below {
+                    others.push(next);
+                    continue;
+                }
             }
             let next = self.settle(next, below)?;
             // the images of an unproven path are an upper bound all the same

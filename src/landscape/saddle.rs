@@ -94,11 +94,21 @@ impl Saddle {
         }
     }
 
+    /// In a row walls stand between one site and the next in valleys that are flat to rounding, and the valley's search comes first;
+    /// on other lattices following the lowest mode takes a step less, and arrives from farther away.
     fn near(h: Evaluator, top: Peak, c: f64, hop: f64) -> Saddle {
+        let is_row = h.lattice().is_row();
+        let follow = |top: &Peak| follow_modes(h, &top.m, top.floor_mev);
+        if !is_row && let Some(refined) = follow(&top) {
+            let found = Saddle { top: top.clone(), refined };
+            if found.is_stationary(c) {
+                return found;
+            }
+        }
         let refined = refine(h, &top.m, &top.tau, c, top.floor_mev);
         let mut found = Saddle { top, refined };
         if !found.is_stationary(c) {
-            if let Some(refined) = follow_modes(h, &found.top.m, found.top.floor_mev) {
+            if is_row && let Some(refined) = follow(&found.top) {
                 found.refined = refined;
             }
             return found;

@@ -18,8 +18,8 @@ const MOST_AS_IT_IS: usize = 60;
 /// The `count` lowest modes of `matrix` in the space orthogonal to `known` (orthonormal vectors, invariant under it),
 /// ascending. Fewer where the space is smaller. Deterministic.
 ///
-/// By Rayleigh-quotient iteration in brackets that the inertia gives (see `slices`); where a factorisation is dear, block Lanczos on
-/// (A − s)⁻¹ (see `together`). The inertia tells whether one was missed. Either way takes the other's place where that does not
+/// By Rayleigh-quotient iteration in brackets that the inertia gives (see `slices`); of sparse matrices, whose factors are dearer
+/// than solutions by them, block Lanczos on (A − s)⁻¹ (see `together`). The inertia tells whether one was missed. Either way takes the other's place where that does not
 /// arrive.
 pub fn lowest_modes(matrix: &Matrix, count: usize, known: &[Vec<f64>]) -> Vec<Mode> {
     soft_modes(matrix, count, known, f64::INFINITY)
@@ -37,7 +37,7 @@ pub fn soft_modes(matrix: &Matrix, count: usize, known: &[Vec<f64>], below: f64)
     let slices = || sliced(matrix, count, known, below);
     let found = match matrix {
         Matrix::Tail(_) => None,
-        _ if matrix.is_dear() => {
+        Matrix::Sparse(_) => {
             let (modes, complete) = together(matrix, known, Modes { count, below });
             if complete { Some(modes) } else { slices().or(Some(modes)) }
         }

@@ -88,11 +88,6 @@ impl Matrix {
         }
     }
 
-    /// Whether factors take so much more arithmetic than a solution by them that few factors and many solutions are quicker.
-    pub fn is_dear(&self) -> bool {
-        matches!(self, Matrix::Sparse(sparse) if sparse.is_dear())
-    }
-
     /// Adds `v` to the entry (i, j) and, off the diagonal, to its mirror image. The entry must be one that the matrix keeps.
     #[inline(always)]
     pub fn add(&mut self, i: usize, j: usize, v: f64) {

@@ -31,24 +31,23 @@ pub fn interpolation(matrix: &Rows) -> Rows {
         *number = columns;
         columns += 1;
     }
-    let row = |i: usize| match kinds[i] {
-        Kind::Stays => vec![(number[i], 1.0)],
+    Rows::filled(kinds.len(), columns, |i, row| match kinds[i] {
+        Kind::Stays => row.push((number[i], 1.0)),
         _ => {
             let stays = |j: usize| kinds[j] == Kind::Stays && strong.row(i).any(|(k, _)| k == j);
-            follow(matrix, i, stays).into_iter().map(|(j, w)| (number[j], w)).collect()
+            follow(matrix, i, stays, row);
+            row.iter_mut().for_each(|(j, _)| *j = number[*j]);
         }
-    };
-    Rows::new(columns, (0..kinds.len()).map(row).collect::<Vec<_>>())
+    })
 }
 
 /// The strong entries.
 fn strong(matrix: &Rows) -> Rows {
-    let row = |i: usize| {
+    Rows::filled(matrix.order(), matrix.order(), |i, row| {
         let others = || matrix.row(i).filter(move |(j, _)| *j != i);
         let largest = others().fold(0.0f64, |most, (_, a)| most.max(a.abs()));
-        others().filter(|(_, a)| *a != 0.0 && a.abs() >= STRONG * largest).collect()
-    };
-    Rows::new(matrix.order(), (0..matrix.order()).map(row).collect::<Vec<_>>())
+        row.extend(others().filter(|(_, a)| *a != 0.0 && a.abs() >= STRONG * largest));
+    })
 }
 
 /// Unknown by unknown, the one first that most of the others hang on: it stays, those follow.
@@ -77,11 +76,10 @@ fn split(strong: &Rows) -> Vec<Kind> {
     kinds
 }
 
-/// The weights of the unknowns from which this one follows.
-fn follow(matrix: &Rows, i: usize, stays: impl Fn(usize) -> bool) -> Vec<(usize, f64)> {
+/// Writes the weights of the unknowns from which this one follows.
+fn follow(matrix: &Rows, i: usize, stays: impl Fn(usize) -> bool, from: &mut Vec<(usize, f64)>) {
     let (mut all, mut those, mut own) = ([0.0; 2], [0.0; 2], 0.0);
     let sign = |a: f64| usize::from(a > 0.0);
-    let mut from = Vec::new();
     for (j, a) in matrix.row(i) {
         if j == i {
             own = a;
@@ -97,7 +95,7 @@ fn follow(matrix: &Rows, i: usize, stays: impl Fn(usize) -> bool) -> Vec<(usize,
         own += if those[s] == 0.0 { all[s] } else { 0.0 };
     }
     let own = own.max(1e-3 * matrix.diagonal(i));
-    from.iter().map(|(j, a)| (*j, -a * all[sign(*a)] / (those[sign(*a)] * own))).collect()
+    from.iter_mut().for_each(|(_, a)| *a = -*a * all[sign(*a)] / (those[sign(*a)] * own));
 }
 
 #[cfg(test)]

@@ -15,20 +15,36 @@ impl Rows {
     /// From the entries of every row, in any order; those of one column are added.
     pub fn new(columns: usize, rows: impl IntoIterator<Item = Vec<(usize, f64)>>) -> Rows {
         let mut matrix = Rows { starts: vec![0], columns, ..Rows::default() };
-        for mut row in rows {
-            row.sort_by_key(|(j, _)| *j);
-            let first = matrix.at.len();
-            for (j, a) in row {
-                if matrix.at.len() > first && matrix.at.last() == Some(&(j as u32)) {
-                    *matrix.entries.last_mut().expect("as many as columns") += a;
-                } else {
-                    matrix.at.push(j as u32);
-                    matrix.entries.push(a);
-                }
-            }
-            matrix.starts.push(matrix.at.len() as u32);
+        rows.into_iter().for_each(|mut row| matrix.push(&mut row));
+        matrix
+    }
+
+    /// Row after row, each written by `fill` into a list that is empty.
+    pub(super) fn filled(order: usize, columns: usize, mut fill: impl FnMut(usize, &mut Vec<(usize, f64)>)) -> Rows {
+        let mut matrix = Rows { starts: Vec::with_capacity(order + 1), columns, ..Rows::default() };
+        matrix.starts.push(0);
+        let mut row = Vec::new();
+        for i in 0..order {
+            row.clear();
+            fill(i, &mut row);
+            matrix.push(&mut row);
         }
         matrix
+    }
+
+    /// One row more.
+    fn push(&mut self, row: &mut [(usize, f64)]) {
+        row.sort_by_key(|(j, _)| *j);
+        let first = self.at.len();
+        for (j, a) in row {
+            if self.at.len() > first && self.at.last() == Some(&(*j as u32)) {
+                *self.entries.last_mut().expect("as many as columns") += *a;
+            } else {
+                self.at.push(*j as u32);
+                self.entries.push(*a);
+            }
+        }
+        self.starts.push(self.at.len() as u32);
     }
 
     /// Number of rows.
@@ -99,8 +115,7 @@ impl Rows {
     /// This times another matrix.
     pub fn product(&self, other: &Rows) -> Rows {
         let mut place = vec![usize::MAX; other.columns];
-        let rows = (0..self.order()).map(|i| {
-            let mut row: Vec<(usize, f64)> = Vec::new();
+        Rows::filled(self.order(), other.columns, |i, row| {
             for (k, a) in self.row(i) {
                 for (j, b) in other.row(k) {
                     if place[j] == usize::MAX {
@@ -111,9 +126,7 @@ impl Rows {
                 }
             }
             row.iter().for_each(|(j, _)| place[*j] = usize::MAX);
-            row
-        });
-        Rows::new(other.columns, rows.collect::<Vec<_>>())
+        })
     }
 }
 

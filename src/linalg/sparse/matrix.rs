@@ -5,9 +5,6 @@ use super::memory::Memory;
 use crate::linalg::slab;
 use std::sync::Arc;
 
-/// Factors of so many solutions' arithmetic are dear.
-const DEAR: f64 = 16.0;
-
 /// A symmetric matrix with two unknowns a site, 2i and 2i + 1, coupled along the bonds of a graph.
 #[derive(Debug, Default)]
 pub struct SparseMatrix {
@@ -47,11 +44,6 @@ impl SparseMatrix {
     /// The plan of its factorisation.
     pub fn plan(&self) -> &Arc<Symbolic> {
         &self.plan
-    }
-
-    /// Whether factors take so much more arithmetic than a solution by them that few factors and many solutions are quicker.
-    pub fn is_dear(&self) -> bool {
-        self.plan.solutions() > DEAR
     }
 
     /// Number of unknowns.
