@@ -193,7 +193,11 @@ fn rows(case: &Case, quick: bool) -> Vec<Row> {
     };
     let barrier = asked(&[1.0]).1.barrier.expect("a barrier").forward_mev;
     let (problem, outcome) = asked(&case.barriers.iter().map(|d| barrier / (K_B * d)).collect::<Vec<_>>());
-    eprintln!("{}: {barrier} meV, {:?}", case.name, outcome.rates.as_ref().map(|r| r.saddles[0].equivalents.clone()));
+    eprintln!(
+        "{}: {barrier} meV, {:?}",
+        case.name,
+        outcome.rates.as_ref().map(|r| r.told(&r.saddles[0]).equivalents.clone())
+    );
     let barriers = case.barriers.iter().enumerate();
     barriers.map(|(k, delta)| row(case, &problem, &outcome, k, barrier / delta, quick)).collect()
 }

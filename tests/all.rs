@@ -46,6 +46,7 @@ mod relax;
 mod result_folder;
 mod resume;
 mod run;
+mod soft_rotations;
 mod start;
 mod states;
 mod structure;

@@ -340,16 +340,24 @@ fn saddles(stored: &Stored, faults: &mut Faults) {
     }
 }
 
-/// What translations that are pinned by U take of a state's volume at a temperature (K): the mean of e^(−U (1 − cos φ)/2k_BT) of each.
+/// What soft modes that are pinned by U, with a top A, take of a state's volume at a temperature (K): of each the mean of
+/// e^(−(A sin²πx + ¼(U − A) sin²2πx)/k_BT).
 fn soft(modes: &Value, t: f64) -> f64 {
     const POINTS: usize = 4096;
-    let one = |pinning_mev: f64| {
-        let u = 0.5 * pinning_mev / (K_B_MEV * t);
-        let at = |k: usize| (-u * (1.0 - (2.0 * PI * k as f64 / POINTS as f64).cos())).exp();
+    let one = |curved_mev: f64, top_mev: f64| {
+        let [slow, fast] = [top_mev, 0.25 * (curved_mev - top_mev)].map(|mev| mev / (K_B_MEV * t));
+        let at = |k: usize| {
+            let x = PI * k as f64 / POINTS as f64;
+            (-slow * x.sin().powi(2) - fast * (2.0 * x).sin().powi(2)).exp()
+        };
         (0..POINTS).map(at).sum::<f64>() / POINTS as f64
     };
+    let of = |mode: &Value, key: &str| mode[key].as_array().into_iter().flatten().map(number).collect::<Vec<f64>>();
     let entries = modes.as_array().into_iter().flatten();
-    entries.flat_map(|mode| mode["pinning_meV"].as_array().into_iter().flatten()).map(|mev| one(number(mev))).product()
+    entries
+        .flat_map(|mode| of(mode, "pinning_meV").into_iter().zip(of(mode, "top_meV")))
+        .map(|(u, a)| one(u, a))
+        .product()
 }
 
 /// Rates are over proven saddles, and follow from their own prefactors.
@@ -369,6 +377,8 @@ fn rates(stored: &Stored, faults: &mut Faults) {
         let many = number(&entry["equivalent_saddles"]);
         let first = number(&entry["prefactor_temperature_K"]);
         let exponent = number(&entry["prefactor_temperature_exponent"]);
+        let changes: Vec<f64> = entry["soft_modes_change_at_K"].as_array().into_iter().flatten().map(number).collect();
+        let told = |t: f64| changes.iter().all(|at| (*at < t) == (*at < first));
         let held = |t: f64| soft(&entry["saddle_zero_modes"], t) / soft(&entry["minimum_zero_modes"], t);
         for row in entry["temperatures"].as_array().into_iter().flatten() {
             let (t, delta) = (number(&row["temperature_K"]), number(&row["barrier_over_kT"]));
@@ -384,7 +394,7 @@ fn rates(stored: &Stored, faults: &mut Faults) {
                     format!("{what}: a rate by {theory} without a prefactor")
                 });
                 faults.unless(rate.is_none() || delta >= 1.0, || format!("{what}: a rate at ΔE = {delta} k_BT"));
-                if let (Some(rate), Some(prefactor)) = (rate, prefactor) {
+                if let (Some(rate), Some(prefactor), true) = (rate, prefactor, told(t)) {
                     let wanted = many * prefactor * (t / first).powf(exponent) * held(t) / held(first) * (-delta).exp();
                     faults.near(&format!("{what}: rate by {theory}"), rate, wanted, 1e-9 * wanted + 1e-300);
                 }

@@ -9,8 +9,8 @@ use crate::landscape::Saddle;
 use crate::landscape::{Minimum, Pass};
 use crate::linalg::slab;
 use crate::rates::{
-    Equivalents, Orbits, RateSettings, Rates, Refusal, SaddleRate, ZeroKind, ZeroModes, equivalent_saddles, refused,
-    saddle_rates, transitions,
+    Equivalents, Orbits, RateSettings, Rates, Refusal, SaddleRate, Turn, ZeroKind, ZeroModes, equivalent_saddles,
+    refused, saddle_rates, transitions,
 };
 use crate::spins::Spins;
 use crate::stationary::{self, ALIKE, Refined, State};
@@ -51,28 +51,69 @@ pub fn of_path(known: &Known, settings: &RateSettings) -> Rates {
     Rates { settings: settings.clone(), saddles, transitions }
 }
 
-/// How many of its saddles and minima symmetry makes, both ends kept. A path over one saddle needs no count: the saddles between
-/// the same two minima are counted with it.
-fn orbits(known: &Known, group: Option<&Group>, rates: &[SaddleRate]) -> Orbits {
-    let alone = |by: &str| Equivalents { count: 1, by: by.into() };
-    let (links, h) = (known.links, known.h);
-    let (Some(group), Some(first), Some(last)) = (group, links.first(), links.last()) else {
-        return Orbits { saddles: Vec::new(), minima: Vec::new(), paths: alone("not sought") };
+/// How many of its saddles and minima symmetry makes, both ends kept, at all temperatures. A path over one saddle needs no count: the
+/// saddles between the same two minima are counted with it.
+fn orbits(known: &Known, group: Option<&Group>, rates: &[SaddleRate]) -> Vec<Orbits> {
+    let alone = |by: &str| {
+        let paths = Equivalents { count: 1, by: by.into() };
+        vec![Orbits { above_k: 0.0, saddles: Vec::new(), minima: Vec::new(), paths }]
     };
-    if links.len() == 1 || known.doubt().is_some() {
-        return Orbits { saddles: Vec::new(), minima: Vec::new(), paths: alone("counted with the saddle") };
+    let Some(group) = group.filter(|_| !known.links.is_empty()) else { return alone("not sought") };
+    if known.links.len() == 1 || known.doubt().is_some() {
+        return alone("counted with the saddle");
     }
-    let ends = [first.before.spins.as_slice(), last.after.spins.as_slice()];
-    let slides = |zeros: &[ZeroModes]| zeros.iter().any(|z| z.kind == ZeroKind::Translation);
-    let sliding = [&rates[0].minimum_zeros, &rates[rates.len() - 1].minimum_zeros].map(|zeros| slides(zeros));
-    let like = |m: &[f64], own: bool| equivalent_saddles(h.lattice(), group, m, ends, [own, sliding[0], sliding[1]]);
-    let inner = links.iter().zip(rates.iter().skip(1).step_by(2)).take(links.len() - 1);
-    let between: Vec<Equivalents> =
-        inner.map(|(l, back)| like(l.after.spins.as_slice(), slides(&back.minimum_zeros))).collect();
-    let tops = links.iter().zip(rates.iter().step_by(2));
-    let saddles = tops.map(|(l, on)| like(&l.saddle.refined.state.m, slides(&on.saddle_zeros)).count).collect();
-    let minima = std::iter::once(1).chain(between.iter().map(|e| e.count)).chain([1]).collect();
-    Orbits { saddles, minima, paths: between[0].clone() }
+    let mut above: Vec<f64> = rates.iter().flat_map(|r| r.regimes.iter().map(|regime| regime.above_k)).collect();
+    above.sort_by(f64::total_cmp);
+    above.dedup();
+    let mut counted: Vec<(Slides, Orbits)> = Vec::new();
+    for (k, above_k) in above.iter().enumerate() {
+        // the end of a range is still in it
+        let slides = Slides::at(rates, above.get(k + 1).copied().unwrap_or(f64::INFINITY));
+        if counted.last().is_none_or(|(last, _)| *last != slides) {
+            let orbits = slides.orbits(known, group, *above_k);
+            counted.push((slides, orbits));
+        }
+    }
+    counted.into_iter().map(|(_, orbits)| orbits).collect()
+}
+
+/// What of a path slides at a temperature.
+#[derive(PartialEq)]
+struct Slides {
+    /// Over the lattice, each minimum, both ends among them.
+    minima: Vec<bool>,
+    /// Each saddle.
+    saddles: Vec<bool>,
+    turn: Option<Turn>,
+}
+
+impl Slides {
+    /// From the rates over each saddle forward and backward, in path order.
+    fn at(rates: &[SaddleRate], kelvin: f64) -> Slides {
+        let slides = |zeros: &[ZeroModes]| zeros.iter().any(|z| z.kind == ZeroKind::Translation);
+        let before = rates.iter().take(1).chain(rates.iter().skip(1).step_by(2));
+        Slides {
+            minima: before.map(|r| slides(&r.at(kelvin).minimum_zeros)).collect(),
+            saddles: rates.iter().step_by(2).map(|r| slides(&r.at(kelvin).saddle_zeros)).collect(),
+            turn: rates.iter().find_map(|r| r.at(kelvin).turn),
+        }
+    }
+
+    fn orbits(&self, known: &Known, group: &Group, above_k: f64) -> Orbits {
+        let (links, h, last) = (known.links, known.h, known.links.len());
+        let along = self.turn.map(|turn| group.with_axis(turn.axis));
+        let ends = [links[0].before.spins.as_slice(), links[last - 1].after.spins.as_slice()];
+        let like = |m: &[f64], own: bool| {
+            let sliding = [own, self.minima[0], self.minima[last]];
+            equivalent_saddles(h.lattice(), along.as_ref().unwrap_or(group), m, ends, sliding)
+        };
+        let inner = links[..last - 1].iter().zip(&self.minima[1..]);
+        let between: Vec<Equivalents> = inner.map(|(l, own)| like(l.after.spins.as_slice(), *own)).collect();
+        let tops = links.iter().zip(&self.saddles);
+        let saddles = tops.map(|(l, own)| like(&l.saddle.refined.state.m, *own).count).collect();
+        let minima = std::iter::once(1).chain(between.iter().map(|e| e.count)).chain([1]).collect();
+        Orbits { above_k, saddles, minima, paths: between[0].clone() }
+    }
 }
 
 fn proven(known: &Known, group: &Group, link: &Pass, settings: &RateSettings) -> [SaddleRate; 2] {
@@ -168,7 +209,7 @@ pub fn is_said_of_rates(warning: &str) -> bool {
 /// What the whole run should say of its rates: each reason for a refusal once, and that some numbers are rough.
 pub fn warnings(rates: &Rates) -> Vec<String> {
     let mut said: Vec<String> = Vec::new();
-    for (theory, reason) in rates.saddles.iter().flat_map(|r| &r.refused) {
+    for (theory, reason) in rates.saddles.iter().flat_map(|r| &rates.told(r).refused) {
         let line = format!("{REFUSAL}{}: {reason}", theory.name());
         if !said.contains(&line) {
             said.push(line);

@@ -2,7 +2,9 @@
 //!
 //! A rate too small for a double is 0 and its lifetime null; `log10_lifetime_s` is there for all. Where the barrier is below k_BT
 //! all of them are null, and `reason` says so. `known_within_factor`: a rate or time may be larger or smaller by that. Of a
-//! translation `volume_rad` is by the derivative, which the rates are made of, and `hop_volume_rad` by the finite hop.
+//! translation `volume_rad` is by the derivative, which the rates are made of, and `hop_volume_rad` by the finite hop. What a
+//! prefactor is made of is told as it is at `prefactor_temperature_K`, and in `soft_modes_change_at_K` where the soft modes are others,
+//! and prefactors with them.
 
 use super::number::Number;
 use crate::rates::{
@@ -27,6 +29,8 @@ pub(super) struct RateEntry {
     entropy_factor: Option<Number>,
     minimum_zero_modes: Vec<ZeroEntry>,
     saddle_zero_modes: Vec<ZeroEntry>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    soft_modes_change_at_K: Vec<Number>,
     equivalent_saddles: usize,
     equivalent_by: String,
     damping: Number,
@@ -62,6 +66,8 @@ struct ZeroEntry {
     hop_volume_rad: Option<Number>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pinning_meV: Vec<Number>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    top_meV: Vec<Number>,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -104,8 +110,8 @@ pub(super) fn transitions(rates: &Rates) -> Vec<TransitionEntry> {
 }
 
 fn saddle(rates: &Rates, r: &SaddleRate) -> RateEntry {
-    let settings = &rates.settings;
-    let known = r.htst.or(r.langer);
+    let (settings, told) = (&rates.settings, rates.told(r));
+    let known = told.htst.or(told.langer);
     let first = settings.temperatures_k.first().copied();
     let prefactor = |p: Option<Prefactor>| p.zip(first).and_then(|(p, t)| held(p.hz_at(t)));
     let frequency = |p: Option<Prefactor>| p.map(|p| Number(p.frequency_per_s));
@@ -113,23 +119,24 @@ fn saddle(rates: &Rates, r: &SaddleRate) -> RateEntry {
         saddle: r.saddle,
         direction: r.way,
         barrier_meV: r.barrier_mev.map(Number),
-        htst_prefactor_Hz: prefactor(r.htst),
-        langer_prefactor_Hz: prefactor(r.langer),
+        htst_prefactor_Hz: prefactor(told.htst),
+        langer_prefactor_Hz: prefactor(told.langer),
         prefactor_temperature_K: first.filter(|_| known.is_some()).map(Number),
         prefactor_temperature_exponent: Number(known.map_or(0.0, |p| p.exponent)),
-        dynamical_factor_per_s: frequency(r.htst),
-        growth_rate_per_s: frequency(r.langer),
+        dynamical_factor_per_s: frequency(told.htst),
+        growth_rate_per_s: frequency(told.langer),
         crossover_temperature_K: r.crossover_k.map(Number),
-        entropy_factor: r.entropy_factor.map(Number),
-        minimum_zero_modes: zeros(&r.minimum_zeros),
-        saddle_zero_modes: zeros(&r.saddle_zeros),
-        equivalent_saddles: r.equivalents.count,
-        equivalent_by: r.equivalents.by.clone(),
+        entropy_factor: told.entropy_factor.map(Number),
+        minimum_zero_modes: zeros(&told.minimum_zeros),
+        saddle_zero_modes: zeros(&told.saddle_zeros),
+        soft_modes_change_at_K: r.regimes.iter().skip(1).map(|regime| Number(regime.above_k)).collect(),
+        equivalent_saddles: told.equivalents.count,
+        equivalent_by: told.equivalents.by.clone(),
         damping: Number(settings.damping),
         g_factor: Number(settings.g_factor),
         blocking_temperature_1_s_K: r.blocking_k[0].map(Number),
         blocking_temperature_10_years_K: r.blocking_k[1].map(Number),
-        refused: r.refused.iter().map(|(theory, reason)| (*theory, reason.to_string())).collect(),
+        refused: told.refused.iter().map(|(theory, reason)| (*theory, reason.to_string())).collect(),
         warnings: r.warnings.clone(),
         temperatures: r.rows.iter().map(temperature).collect(),
     }
@@ -155,7 +162,8 @@ fn zeros(modes: &[ZeroModes]) -> Vec<ZeroEntry> {
         modes: z.count,
         volume_rad: Number(z.volume),
         hop_volume_rad: z.hop_volume.map(Number),
-        pinning_meV: z.pinning_mev.iter().copied().map(Number).collect(),
+        pinning_meV: z.pinning.iter().map(|p| Number(p.curved_mev)).collect(),
+        top_meV: z.pinning.iter().map(|p| Number(p.top_mev)).collect(),
     };
     modes.iter().map(entry).collect()
 }

@@ -52,15 +52,16 @@ impl<'a> Bordered<'a> {
         n as f64 * libm::log(self.kappa) + self.factors.log_abs_determinant() + libm::log(last)
     }
 
-    /// By how much the energy falls from a point of gradient g (meV) to where it is at rest normal to the directions, by its Hessian:
-    /// ½ gᵀx of the solution x normal to them (meV).
-    pub fn fall_mev(&self, gradient: &[f64]) -> Option<f64> {
-        let mut solved = gradient.to_vec();
-        self.factors.solve(&mut solved, 1);
-        let along = self.directions.iter().map(|z| slab::dot(z, &solved));
-        let along: Vec<f64> = along.chain(self.pins.iter().map(|e| e.dot(&solved))).collect();
+    /// From a point of gradient g (meV) the way to where the energy is at rest normal to the directions, by its Hessian.
+    pub fn to_rest(&self, gradient: &[f64]) -> Option<Vec<f64>> {
+        let mut way = gradient.to_vec();
+        self.factors.solve(&mut way, 1);
+        let along = self.directions.iter().map(|z| slab::dot(z, &way));
+        let along: Vec<f64> = along.chain(self.pins.iter().map(|e| e.dot(&way))).collect();
         let shares = solve_dense(&self.schur, &along, along.len())?;
-        Some(0.5 * (slab::dot(gradient, &solved) + slab::dot(&along, &shares)))
+        slab::add_all(&mut way, &shares, &self.solved);
+        slab::scale(&mut way, -1.0);
+        Some(way)
     }
 
     /// y_k, and row k of K (meV); nothing where Z has a direction of no cost on which nothing depends.
@@ -125,15 +126,16 @@ mod tests {
             let pins: Vec<Pin> = directions.iter().map(|z| pin(&mut matrix, z, &mut used, 2.0)).collect();
             let factors = matrix.factor();
             let bordered = Bordered::new(&factors, directions.iter().collect(), &pins, 2.0);
-            // the fall from a force normal to the directions is that of the Hessian with them held stiffly
+            // the way to rest normal to the directions is that by the Hessian with them held stiffly
             let mut stiff = hessian.clone();
             let held = |i: usize, j: usize| 1e7 * directions.iter().map(|z| z[i] * z[j]).sum::<f64>();
             (0..n).for_each(|i| (0..=i).for_each(|j| stiff.add(i, j, held(i, j))));
             let gradient: Vec<f64> = (0..n).map(|i| f64::from(i as u32) - 2.5).collect();
             let mut x = gradient.clone();
             stiff.factor().solve(&mut x, 1);
-            let fall = bordered.fall_mev(&gradient).unwrap();
-            assert!((fall / (0.5 * slab::dot(&gradient, &x)) - 1.0).abs() < 1e-5, "{lowest}: {fall}");
+            let way = bordered.to_rest(&gradient).unwrap();
+            assert!(directions.iter().all(|z| slab::dot(z, &way).abs() < 1e-12), "{lowest}");
+            assert!(way.iter().zip(&x).all(|(w, x)| (w + x).abs() < 1e-5), "{lowest}: {way:?} {x:?}");
             for k in 0..2 {
                 let (y, stiffness) = bordered.valley(k).unwrap();
                 let mut force = vec![0.0; n];

@@ -41,21 +41,23 @@ pub mod test_rates;
 mod transition;
 mod unstable;
 mod validity;
+mod wells;
 mod zero_modes;
 
 pub use crossover::crossover_temperature;
 pub use determinant::log_determinant;
 pub use growth::growth_rate;
 pub use passage::{TEN_YEARS_S, blocking_temperature, first_passage, passages};
-pub use rate::{Crossing, LEAST_BARRIER, Prefactor, Row, SaddleRate, Way, refused, saddle_rates};
+pub use rate::{Crossing, LEAST_BARRIER, Prefactor, Regime, Row, SaddleRate, Way, refused, saddle_rates};
 pub use refusal::{Refusal, UnknownModes};
 pub use settings::{RateSettings, Theory};
-pub use sliding::Sliding;
+pub use sliding::{Pinning, Turn};
 pub use symmetry::{Equivalents, equivalent_saddles};
 pub use transition::{Orbits, TransitionRate, TransitionRow, transitions};
 pub use unstable::{Unstable, unstable_mode};
 pub use validity::{LOW_BARRIER, Validity, digits};
-pub use zero_modes::{ZeroKind, ZeroMode, ZeroModes, zero_modes};
+use zero_modes::zero_modes;
+pub use zero_modes::{ZeroKind, ZeroModes};
 
 /// Everything about the rates of a path.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,4 +68,11 @@ pub struct Rates {
     pub saddles: Vec<SaddleRate>,
     /// The whole path, forward and backward.
     pub transitions: Vec<TransitionRate>,
+}
+
+impl Rates {
+    /// What the rates over a saddle are made of at the first temperature, where results tell it.
+    pub fn told<'a>(&self, rate: &'a SaddleRate) -> &'a Regime {
+        rate.at(self.settings.first_k())
+    }
 }

@@ -47,6 +47,16 @@ impl RateSettings {
         self.moments_mub.iter().map(|n| 1e12 * self.g_factor / (HBAR * n)).collect()
     }
 
+    /// The first temperature (K); 0 where there is none.
+    pub fn first_k(&self) -> f64 {
+        self.temperatures_k.first().copied().unwrap_or(0.0)
+    }
+
+    /// The highest temperature (K).
+    pub fn hottest_k(&self) -> f64 {
+        self.temperatures_k.iter().copied().fold(0.0, f64::max)
+    }
+
     /// Whether a theory is asked for.
     pub fn wants(&self, theory: Theory) -> bool {
         self.theories.contains(&theory)

@@ -81,6 +81,22 @@ pub(super) fn states_on_the_way(lattice: &Lattice, group: &Group, m: &[f64], ste
     kept.len() * places(group, m, steps)
 }
 
+/// How many of the states that the group makes of one are one with it where it turns about the axis of `along`: 1 where that is no
+/// other than the group's own.
+pub(super) fn states_along_turn(group: &Group, along: &Group, m: &[f64]) -> usize {
+    if group.axes() == along.axes() {
+        return 1;
+    }
+    let turned = group.classes().iter().filter(|operation| along.takes(operation, m, m, SAME));
+    let mut kept: Vec<Vec<f64>> = Vec::new();
+    for operation in turned {
+        if !kept.iter().any(|state| group.takes(operation, m, state, SAME)) {
+            kept.push(operation.apply(m));
+        }
+    }
+    kept.len()
+}
+
 /// Whether a multiple of shifts takes state a to b: each spin to less than `off` beside it.
 fn slid(group: &Group, steps: &[usize], a: &[f64], b: &[f64], off: f64) -> bool {
     group.multiples(steps).any(|shift| group.takes(&shift, a, b, off))

@@ -8,8 +8,10 @@ use crate::units::K_B;
 /// How many of each stationary state symmetry makes of the path's own with both ends kept: from a minimum of a kind of which there
 /// are M, S/M of the S saddles of a kind lead on to the next kind, and likewise back. Taken together, the minima of a kind are one
 /// state of the network, and what starts at one end is found in any of them.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Orbits {
+    /// So it is above this temperature (K), until the next.
+    pub above_k: f64,
     /// Of each saddle, in path order.
     pub saddles: Vec<usize>,
     /// Of each minimum, both ends counted.
@@ -56,10 +58,10 @@ pub struct TransitionRate {
 }
 
 /// The rates of the whole path in both directions, from those of its saddles (forward and backward, in path order) and the
-/// numbers of their like. `doubt` is what stands against a certificate of the path.
+/// numbers of their like, by ascending temperature from 0 K on. `doubt` is what stands against a certificate of the path.
 pub fn transitions(
     saddles: &[SaddleRate],
-    orbits: &Orbits,
+    orbits: &[Orbits],
     settings: &RateSettings,
     doubt: Option<&str>,
 ) -> Vec<TransitionRate> {
@@ -71,7 +73,7 @@ pub fn transitions(
 
 fn transition(
     saddles: &[SaddleRate],
-    orbits: &Orbits,
+    orbits: &[Orbits],
     settings: &RateSettings,
     doubt: Option<&str>,
     way: Way,
@@ -91,8 +93,8 @@ fn transition(
     let parting = |t: f64| -> Vec<usize> { (0..count).filter(|i| !onward[*i].is_within_one(back[*i], t)).collect() };
     let ln_rates = |rates: &[&SaddleRate], side: usize, theory: Theory, t: f64| -> Option<Vec<f64>> {
         let all = parting(t).into_iter().map(|i| (i, rates[i]));
-        all.map(|(i, r)| Some(r.ln_rate_per_s(theory, t)? + orbits.ln_more(number(i), side, r.equivalents.count)))
-            .collect()
+        let more = |i: usize, r: &SaddleRate| at(orbits, t).ln_more(number(i), side, r.at(t).equivalents.count);
+        all.map(|(i, r)| Some(r.ln_rate_per_s(theory, t)? + more(i, r))).collect()
     };
     let both = |theory: Theory, t: f64| -> Option<[Vec<f64>; 2]> {
         let parted = doubt.is_none() && !parting(t).is_empty();
@@ -131,14 +133,21 @@ fn transition(
     let lifetime = |t: f64| row(t).passage.ln_lifetime_s();
     let blocking_k = [1.0, TEN_YEARS_S].map(|s| blocking_temperature(lifetime, barrier_mev, s));
     let rows: Vec<TransitionRow> = settings.temperatures_k.iter().map(|t| row(*t)).collect();
-    let reasons = || onward.iter().flat_map(|r| &r.refused).map(|(_, reason)| reason.clone()).next();
+    let reasons =
+        || onward.iter().flat_map(|r| &r.at(settings.first_k()).refused).map(|(_, reason)| reason.clone()).next();
     let possible = settings.temperatures_k.iter().any(|t| Theory::ALL.iter().any(|theory| both(*theory, *t).is_some()));
     let refused = match possible {
         true => None,
         false => doubt.map(|doubt| Refusal::Path(doubt.into())).or_else(reasons),
     };
-    let equivalents = orbits.paths.clone();
+    let equivalents = at(orbits, settings.first_k()).paths.clone();
     TransitionRate { way, saddles: count, equivalents, barrier_mev, rows, blocking_k, refused }
+}
+
+/// The numbers at a temperature (K).
+fn at(orbits: &[Orbits], temperature_k: f64) -> &Orbits {
+    let above = orbits.partition_point(|o| o.above_k < temperature_k);
+    &orbits[above.max(1) - 1]
 }
 
 /// The highest saddle above the first minimum (meV): up over each, down to the next.
@@ -165,12 +174,13 @@ mod tests {
 
     fn row(saddles: &[SaddleRate], way: usize, temperature_k: f64) -> TransitionRow {
         let orbits = Orbits {
+            above_k: 0.0,
             saddles: vec![1; saddles.len() / 2],
             minima: vec![1; saddles.len() / 2 + 1],
             paths: Equivalents { count: 1, by: String::new() },
         };
         let settings = settings(&[temperature_k]);
-        transitions(saddles, &orbits, &settings, None)[way].rows[0].clone()
+        transitions(saddles, &[orbits], &settings, None)[way].rows[0].clone()
     }
 
     #[test]

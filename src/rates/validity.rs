@@ -4,7 +4,7 @@
 //! squares, they are the range within which a rate is known, and say how many of its digits are worth showing. Words are made of a factor only where it matters.
 
 use super::determinant::PinnedHessian;
-use super::{Prefactor, RateSettings, Unstable};
+use super::{Prefactor, RateSettings, Regime, Unstable};
 use crate::energy::Hamiltonian;
 use crate::stationary::State;
 use crate::units::K_B;
@@ -126,27 +126,18 @@ fn mean_square(state: &State, pinned: &PinnedHessian, i: usize) -> f64 {
     entry(0) + entry(1)
 }
 
-/// What a user should know about the rates out of one minimum. `vague` is the rounding error of the saddle's descending curvature,
-/// relative to it.
-pub fn warnings(
-    settings: &RateSettings,
-    barrier_mev: f64,
-    [htst, langer]: [Option<Prefactor>; 2],
-    minimum: &Fluctuations,
-    saddle: &Fluctuations,
-    vague: f64,
-) -> Vec<String> {
-    if htst.is_none() && langer.is_none() {
-        return Vec::new();
-    }
-    let hottest = settings.temperatures_k.iter().copied().fold(0.0, f64::max);
+/// What a user should know about the rates out of one minimum, as they are at the highest temperature.
+pub fn warnings(settings: &RateSettings, barrier_mev: f64, at: &Regime) -> Vec<String> {
+    let (htst, langer) = (at.htst, at.langer);
+    let Some(Validity { minimum, saddle, vague, .. }) = &at.validity else { return Vec::new() };
+    let hottest = settings.hottest_k();
     let said = [
         low_barrier(barrier_mev, hottest),
         large_fluctuations("minimum", minimum, hottest),
         large_fluctuations("saddle", saddle, hottest),
         flat_top(saddle, hottest, htst, langer),
         weak_damping(settings, barrier_mev, langer),
-        vague_curvature(vague, langer),
+        vague_curvature(*vague, langer),
     ];
     said.into_iter().flatten().collect()
 }

@@ -3,12 +3,11 @@
 //! ```text
 //! rotation about one axis a            2π √(Σ |a × m_i|²)
 //! any rotation, spins along one line   4π √(λλ'),   else 8π² √(λλ'λ″)     λ: eigenvalues of Σ (1 − m_i m_iᵀ)
-//! translation                          see the module `sliding`
+//! translation, soft rotation           see the module `sliding`
 //! ```
-//! Rotations are exact zero modes.
 
 use super::UnknownModes;
-use super::sliding::Sliding;
+use super::sliding::{Pinning, Sliding};
 use crate::energy::Hamiltonian;
 use crate::field::Components;
 use crate::geometry::{Vector, vector};
@@ -38,41 +37,38 @@ pub struct ZeroModes {
     pub volume: f64,
     /// Of a translation: the volume by the hop from a place to the next like it.
     pub hop_volume: Option<f64>,
-    /// Of a translation: by how much the energy changes from place to place (meV), one number a mode.
-    pub pinning_mev: Vec<f64>,
+    /// Of soft ones: what a place costs, one each mode.
+    pub pinning: Vec<Pinning>,
 }
 
-/// Zero modes of one kind, with their directions.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ZeroMode {
-    /// Orthonormal directions, tangent coordinates (2N).
-    pub modes: Vec<Vec<f64>>,
-    /// What is said of them.
-    pub said: ZeroModes,
+impl ZeroModes {
+    /// Whether the state slides along them from place to place: no exact rotation.
+    pub fn slides(&self) -> bool {
+        !self.pinning.is_empty()
+    }
 }
 
-/// All zero modes of a stationary state: rotations, and how it slides. An error, in words, where
-/// more modes are flat to rounding than these, so that nobody knows their volume.
+/// What is said of all zero modes of a stationary state: rotations, and how it slides, over so many places of the lattice. An error, in
+/// words, where more modes are flat to rounding than these, so that nobody knows their volume.
 pub fn zero_modes(
     h: &Hamiltonian,
     state: &State,
     sliding: &Sliding,
+    places: usize,
     spectrum: &Spectrum,
-) -> Result<Vec<ZeroMode>, UnknownModes> {
+) -> Result<Vec<ZeroModes>, UnknownModes> {
     let mut found = Vec::new();
     if !state.zeros.is_empty() {
-        let said = ZeroModes {
+        found.push(ZeroModes {
             kind: ZeroKind::Rotation,
             count: state.zeros.len(),
             volume: rotation_volume(h, state),
             hop_volume: None,
-            pinning_mev: Vec::new(),
-        };
-        found.push(ZeroMode { modes: state.zeros.clone(), said });
+            pinning: Vec::new(),
+        });
     }
-    let flat = sliding.flat(spectrum.floor_mev);
-    found.extend(sliding.zero_modes());
-    match spectrum.flat.saturating_sub(flat) {
+    found.extend(sliding.said(places));
+    match spectrum.flat.saturating_sub(sliding.flat(spectrum.floor_mev)) {
         0 => Ok(found),
         modes => Err(UnknownModes::Flat { modes, floor_mev: spectrum.floor_mev }),
     }

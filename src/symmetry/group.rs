@@ -7,7 +7,7 @@ use crate::energy::Hamiltonian;
 use crate::geometry::Vector;
 
 /// The operations that leave an energy as it is.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Group {
     axes: Vec<Vector>,
     shifts: Vec<Shift>,
@@ -24,6 +24,11 @@ impl Group {
         let motions = search.motions(&shifts);
         let classes = motions.iter().flat_map(|m| turns.iter().map(move |turn| m.after(turn))).collect();
         Group { axes: search.into_axes(), shifts, classes }
+    }
+
+    /// The same operations, those aside that differ by a rotation about an axis along which states slide.
+    pub fn with_axis(&self, axis: Vector) -> Group {
+        Group { axes: vec![axis], ..self.clone() }
     }
 
     /// Unit vectors about which any rotation of all spins together is an operation too: none, one, or x, y and z. Such a rotation

@@ -3,7 +3,7 @@
 use super::{Survey, SurveyProblem};
 use crate::landscape::{Landscape, Pass};
 use crate::network::{Network, Parts};
-use crate::rates::{LEAST_BARRIER, RateSettings, SaddleRate, Theory, saddle_rates};
+use crate::rates::{LEAST_BARRIER, RateSettings, Regime, SaddleRate, Theory, saddle_rates};
 use crate::stationary::ALIKE;
 use crate::symmetry::Group;
 use crate::units::K_B;
@@ -54,15 +54,15 @@ impl Lifetimes {
         let saddles = passes.iter().enumerate().map(|(k, pass)| over(land, group, pass, k, settings)).collect();
         let groups = groups(survey, asked);
         let mut found = Lifetimes { settings: settings.clone(), groups, saddles, rows: Vec::new() };
-        let ascending = found.ascending(survey);
-        // most temperatures have the same states as the one before
-        let (mut state, mut transitions) = (Vec::new(), Vec::new());
+        // most temperatures have the same states and passes as the one before
+        let (mut known, mut transitions) = ((Vec::new(), Vec::new()), Vec::new());
         for t in &settings.temperatures_k {
             let places = found.places(survey, *t);
             let networks = Theory::ALL.map(|theory| found.network(survey, &places, theory, *t));
-            if state != places.state {
-                transitions = found.transitions(survey, &places, &ascending);
-                state = places.state;
+            let rated = found.rated(*t);
+            if known.0 != places.state || known.1 != rated {
+                transitions = found.transitions(survey, &places, &found.ascending(survey, &rated));
+                known = (places.state, rated);
             }
             let rows: Vec<Lifetime> =
                 transitions.iter().map(|transition| found.row(survey, transition, *t, &networks)).collect();
@@ -74,7 +74,7 @@ impl Lifetimes {
     /// What the user should know of the times.
     pub(super) fn warnings(&self) -> Vec<String> {
         let mut words = self.unrated();
-        let hottest = self.settings.temperatures_k.iter().copied().fold(0.0, f64::max);
+        let hottest = self.settings.hottest_k();
         let low = |r: &SaddleRate| r.barrier_mev.is_some_and(|e| e < LEAST_BARRIER * K_B * hottest);
         let parts = |[on, back]: &&[SaddleRate; 2]| !on.is_within_one(back, hottest);
         let count = self.saddles.iter().filter(parts).filter(|both| both.iter().any(low)).count();
@@ -89,9 +89,10 @@ impl Lifetimes {
     /// Which kinds of saddles have no part in the times, and why: each reason once.
     fn unrated(&self) -> Vec<String> {
         let asked = Theory::ALL.into_iter().filter(|theory| self.settings.wants(*theory));
+        let told = self.settings.first_k();
         let of = |theory: Theory| {
-            let without: Vec<&SaddleRate> =
-                self.saddles.iter().map(|both| &both[0]).filter(|r| !has_rate(r, theory)).collect();
+            let without: Vec<&Regime> =
+                self.saddles.iter().map(|both| both[0].at(told)).filter(|r| r.prefactor(theory).is_none()).collect();
             let reason = without.iter().flat_map(|r| &r.refused).find(|(by, _)| *by == theory)?.1.clone();
             Some(format!(
                 "{} of {} kinds of saddles have no rate by {} and no part in its times, which are upper bounds: {reason}",
@@ -135,18 +136,25 @@ impl Lifetimes {
                 network.add(places.state[b], places.state[a], back);
             }
         }
-        self.saddles.iter().any(|both| has_rate(&both[0], theory)).then_some(network)
+        self.saddles.iter().any(|both| both[0].at(temperature_k).prefactor(theory).is_some()).then_some(network)
+    }
+
+    /// Whether each kind of saddle has a rate at a temperature (K), by theory.
+    fn rated(&self, temperature_k: f64) -> Vec<[bool; 2]> {
+        let of =
+            |both: &[SaddleRate; 2]| Theory::ALL.map(|theory| both[0].at(temperature_k).prefactor(theory).is_some());
+        self.saddles.iter().map(of).collect()
     }
 
     /// The passes by ascending energy: all of them, and those that have a rate by each theory.
-    fn ascending(&self, survey: &Survey) -> [Vec<([usize; 2], f64)>; 3] {
+    fn ascending(&self, survey: &Survey, rated: &[[bool; 2]]) -> [Vec<([usize; 2], f64)>; 3] {
         let ascending = |is_in: &dyn Fn(usize) -> bool| {
             let all = survey.saddles.iter().zip(survey.passes()).filter(|(saddle, _)| is_in(saddle.kind));
             let mut passes: Vec<([usize; 2], f64)> = all.map(|(_, pass)| pass).collect();
             passes.sort_by(|p, q| p.1.total_cmp(&q.1));
             passes
         };
-        let [htst, langer] = Theory::ALL.map(|theory| ascending(&|kind| has_rate(&self.saddles[kind][0], theory)));
+        let [htst, langer] = [0, 1].map(|theory| ascending(&|kind| rated[kind][theory]));
         [ascending(&|_| true), htst, langer]
     }
 
@@ -196,7 +204,7 @@ impl Lifetimes {
         } else if climb_mev < LEAST_BARRIER * K_B * temperature_k {
             Some(format!("the climb is below {LEAST_BARRIER} k_BT"))
         } else if (0..2).all(|k| time(k).is_none()) {
-            Some(self.refusal())
+            Some(self.refusal(temperature_k))
         } else {
             None
         };
@@ -205,18 +213,11 @@ impl Lifetimes {
     }
 
     /// Why there is no time.
-    fn refusal(&self) -> String {
-        let reasons = self.saddles.iter().flatten().flat_map(|r| &r.refused);
+    fn refusal(&self, temperature_k: f64) -> String {
+        let reasons = self.saddles.iter().flatten().flat_map(|r| &r.at(temperature_k).refused);
         let words =
             reasons.map(|(theory, reason)| format!("no rate by {} over the lowest way: {reason}", theory.name()));
         words.into_iter().next().unwrap_or("no rates were asked for".into())
-    }
-}
-
-fn has_rate(rate: &SaddleRate, theory: Theory) -> bool {
-    match theory {
-        Theory::Htst => rate.htst.is_some(),
-        Theory::Langer => rate.langer.is_some(),
     }
 }
 

@@ -174,10 +174,11 @@ fn saddle(report: &LandscapeReport, id: usize) -> SaddleEntry {
 fn rate(r: &SaddleRate, temperature_k: f64) -> RateEntry {
     let hz = |p: Option<crate::rates::Prefactor>| p.map(|p| Number(p.hz_at(temperature_k)));
     let words = |(theory, reason): &(Theory, crate::rates::Refusal)| format!("{}: {reason}", theory.name());
+    let at = r.at(temperature_k);
     RateEntry {
-        htst_prefactor_Hz: hz(r.htst),
-        langer_prefactor_Hz: hz(r.langer),
-        refused: r.refused.iter().map(words).collect(),
+        htst_prefactor_Hz: hz(at.htst),
+        langer_prefactor_Hz: hz(at.langer),
+        refused: at.refused.iter().map(words).collect(),
     }
 }
 

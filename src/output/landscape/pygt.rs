@@ -12,7 +12,7 @@
 use super::LandscapeReport;
 use crate::drive::survey::Survey;
 use crate::error::{Error, Result};
-use crate::rates::SaddleRate;
+use crate::rates::{SaddleRate, Theory};
 use std::f64::consts::PI;
 use std::fmt::Write;
 
@@ -40,9 +40,9 @@ pub(super) fn saddles(report: &LandscapeReport) -> Result<Vec<u8>> {
 fn steps(s: &Survey) -> Vec<Option<[f64; 2]>> {
     let Some(lifetimes) = &s.lifetimes else { return vec![None; s.saddle_kinds.len()] };
     let kelvin = lifetimes.settings.temperatures_k[0];
-    let all_have_langer = lifetimes.saddles.iter().flatten().all(|r| r.langer.is_some());
+    let all_have_langer = lifetimes.saddles.iter().flatten().all(|r| r.at(kelvin).langer.is_some());
     let step = |r: &SaddleRate| {
-        let prefactor = if all_have_langer { r.langer } else { r.htst }?;
+        let prefactor = r.at(kelvin).prefactor(if all_have_langer { Theory::Langer } else { Theory::Htst })?;
         Some(2.0 * (libm::log(2.0 * PI) + prefactor.ln_hz_at(kelvin)))
     };
     lifetimes.saddles.iter().map(|[on, back]| Some([step(on)?, step(back)?])).collect()

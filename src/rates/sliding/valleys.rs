@@ -2,10 +2,18 @@
 
 use super::super::Unstable;
 use super::super::bordered::Bordered;
-use super::moves::towards;
+use super::pinning::Pinning;
+use super::ways::towards;
 use crate::energy::Evaluator;
 use crate::linalg::{Factors, Matrix, combination, eigen_symmetric, orthonormal, remove, slab};
-use crate::stationary::{Pin, State, pin};
+use crate::sphere::move_points;
+use crate::stationary::{Pin, Point, State, pin};
+
+/// What turns the spins by less (rad) moves nothing.
+const LEAST: f64 = 1e-6;
+/// Most steps to where a state rests half-way, and the part of its height that it may fall short of it by.
+const STEPS: usize = 6;
+const SETTLED: f64 = 1e-2;
 
 /// The way that a state takes when it is moved.
 #[derive(Debug)]
@@ -41,23 +49,60 @@ impl<'a> Held<'a> {
         let whole = slab::norm(&along);
         remove(&mut along, &self.against);
         let size = slab::norm(&along);
-        (size * size > 0.5 * whole * whole && size > 1e-6).then_some(along)
+        (size * size > 0.5 * whole * whole && size > LEAST).then_some(along)
     }
 
-    /// How much higher (meV) the state is half-way along a hop (3N), at rest by a step of Newton but for the hop and what it is held
-    /// against.
-    pub fn top_between_mev(&self, h: Evaluator, hop: &[f64]) -> Option<f64> {
-        let half: Vec<f64> = hop.iter().map(|x| 0.5 * x).collect();
-        let State { point: between, hessian } = State::at(h, self.state.moved(&half));
-        let back = towards(&between.m, &self.state.m);
-        let held =
-            self.against[self.state.zeros.len()..].iter().map(|t| between.basis.coordinates(&self.state.field(t)));
-        let own = std::iter::once(between.basis.coordinates(&back)).chain(held);
-        let directions = orthonormal(between.zeros.iter().cloned().chain(own).collect(), 0.0);
-        let (factors, pins) = self.pinned(hessian, directions.iter());
-        let bordered = Bordered::new(&factors, directions.iter().collect(), &pins, self.kappa);
-        let fall = bordered.fall_mev(&between.basis.coordinates(&between.gradient))?;
-        Some(h.difference_mev(&between.m, &self.state.m) - fall)
+    /// How much higher (meV) the state is half-way to the next place: from these spins (3N) at rest, by steps of Newton, but for the
+    /// direction `along` of the valley there (3N) and the descent, which `carried` brings there (3N). Nothing where it comes back.
+    pub fn top_mev(
+        &self,
+        h: Evaluator,
+        start: Vec<f64>,
+        along: impl Fn(&Point) -> Vec<f64>,
+        carried: impl Fn(Vec<f64>) -> Vec<f64>,
+    ) -> Option<f64> {
+        let descents = &self.against[self.state.zeros.len()..];
+        let descents: Vec<Vec<f64>> = descents.iter().map(|t| carried(self.state.field(t))).collect();
+        let mut between = State::at(h, start);
+        let mut left: Option<[f64; 2]> = None;
+        for _ in 0..STEPS {
+            let State { point, hessian } = between;
+            let own = std::iter::once(along(&point)).chain(descents.iter().cloned());
+            let own = own.map(|field| point.basis.coordinates(&field));
+            let directions = orthonormal(point.zeros.iter().cloned().chain(own).collect(), 0.0);
+            let (factors, pins) = self.pinned(hessian, directions.iter());
+            let bordered = Bordered::new(&factors, directions.iter().collect(), &pins, self.kappa);
+            let way = bordered.to_rest(&point.slope)?;
+            let mut m = point.m.clone();
+            move_points(&mut m, &point.field(&way), point.m.len(), 1.0);
+            if slab::norm(&towards(&m, &self.state.m)) < slab::norm(&towards(&m, &point.m)) {
+                return left.map(|[top_mev, _]| top_mev);
+            }
+            let rises_mev = 0.5 * slab::dot(&point.slope, &way);
+            let top_mev = h.difference_mev(&point.m, &self.state.m) + rises_mev;
+            if left.is_some_and(|[_, before]| rises_mev.abs() > 0.5 * before) {
+                break;
+            }
+            left = Some([top_mev, rises_mev.abs()]);
+            if rises_mev.abs() <= SETTLED * top_mev.abs() {
+                break;
+            }
+            between = State::at(h, m);
+        }
+        left.map(|[top_mev, _]| top_mev)
+    }
+
+    /// What a place costs along a move ∂m/∂x (2N), all else following, with its top half-way to the next (meV).
+    pub fn pinning(&self, derivative: &[f64], top_mev: f64) -> Pinning {
+        let valley = self.valleys(&[unit(derivative)]).into_iter().next();
+        let [stiffness_mev, hop] = valley.map_or([0.0; 2], |w| [w.stiffness_mev, slab::dot(derivative, &w.along)]);
+        Pinning::new(stiffness_mev, hop, top_mev)
+    }
+
+    /// zᵀH⁻¹z (1/meV) of unit directions z in a space that these directions span, all else following.
+    pub fn softness(&self, directions: Vec<Vec<f64>>) -> impl Fn(&[f64]) -> f64 {
+        let valleys = self.valleys(&orthonormal(directions, LEAST));
+        move |z| valleys.iter().map(|w| slab::dot(z, &w.along).powi(2) / w.stiffness_mev.max(f64::MIN_POSITIVE)).sum()
     }
 
     /// The factors of a Hessian with a pin for each of some directions.
@@ -98,4 +143,10 @@ impl<'a> Held<'a> {
         };
         values.into_iter().zip(&vectors).map(valley).collect()
     }
+}
+
+/// A vector divided by its length.
+pub(super) fn unit(v: &[f64]) -> Vec<f64> {
+    let size = slab::norm(v);
+    v.iter().map(|x| x / size).collect()
 }

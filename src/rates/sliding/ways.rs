@@ -1,0 +1,203 @@
+//! The ways in which a state may slide: shifts of its lattice, and a turn about an axis.
+
+use super::pinning::Pinning;
+use super::valleys::{Held, unit};
+use crate::energy::{Evaluator, Hamiltonian};
+use crate::field::{Components, ComponentsMut};
+use crate::geometry::matrix::{UNIT, determinant, times};
+use crate::geometry::{Direction, Vector, log, vector};
+use crate::lattice::Lattice;
+use crate::linalg::slab;
+use crate::sphere::rotate_sites;
+use crate::stationary::Point;
+use crate::symmetry::{Group, Operation};
+use std::f64::consts::PI;
+
+/// Two axes or turns that differ by less are the same.
+const SAME: f64 = 1e-9;
+
+/// What takes a state from a place to the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Generator {
+    /// The shift of this number of the group.
+    Shift(usize),
+    /// A turn of all free spins.
+    Turn(Turn),
+}
+
+/// A turn of all free spins about a unit axis by the part 1/fold of a circle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Turn {
+    /// About this axis.
+    pub axis: Vector,
+    /// After so many turns every spin is where it was.
+    pub fold: usize,
+}
+
+/// One way, from a place to the next.
+#[derive(Debug)]
+pub(super) struct Way {
+    pub generator: Generator,
+    /// ∂m/∂x, tangent coordinates (2N).
+    pub derivative: Vec<f64>,
+    /// Log_m of the state in the next place; of a turn the derivative.
+    pub hop: Vec<f64>,
+    /// What a place costs, the other ways following.
+    pub pinning: Pinning,
+}
+
+/// The ways along these directions of the lattice, and the softest turn that costs less than `most_mev` by its curvature.
+pub(super) fn all(h: Evaluator, held: &Held, group: &Group, directions: &[usize], most_mev: f64) -> Vec<Way> {
+    let mut ways: Vec<Way> = directions.iter().filter_map(|d| shift(h, held, group, *d)).collect();
+    ways.extend(turn(h, held, group, most_mev));
+    ways
+}
+
+fn shift(h: Evaluator, held: &Held, group: &Group, direction: usize) -> Option<Way> {
+    let (number, shift) = shift_along(group, direction)?;
+    let m = &held.state.m;
+    let mut derivative = held.tangent(&derivative(h.lattice(), m, direction))?;
+    let hop = towards(m, &shift.apply(m));
+    if !goes_on(shift, m, &hop) {
+        return None;
+    }
+    let half: Vec<f64> = hop.iter().map(|x| 0.5 * x).collect();
+    let top_mev = held.top_mev(h, held.state.moved(&half), |at| towards(&at.m, m), |field| field)?;
+    let cells = shift.motion.shifts_by().map_or(1, |by| by[direction]);
+    slab::scale(&mut derivative, cells as f64);
+    let pinning = held.pinning(&derivative, top_mev);
+    Some(Way { generator: Generator::Shift(number), derivative, hop: held.tangent(&hop)?, pinning })
+}
+
+/// The softest turn about an axis that a term singles out, where the energy has no axis of its own.
+fn turn(h: Evaluator, held: &Held, group: &Group, most_mev: f64) -> Option<Way> {
+    if !group.axes().is_empty() {
+        return None;
+    }
+    let rotation = |axis: Vector| held.tangent(&turned(&h, &held.state.m, axis));
+    let softness = held.softness(UNIT.into_iter().filter_map(rotation).collect());
+    let mut found: Vec<(Turn, Vec<f64>, Pinning)> = Vec::new();
+    for axis in h.own_axes() {
+        let Some(mut derivative) = rotation(axis) else { continue };
+        let turn = Turn { axis, fold: fold(group, axis) };
+        slab::scale(&mut derivative, 2.0 * PI / turn.fold as f64);
+        let pinning = Pinning::new(1.0 / softness(&unit(&derivative)), slab::norm(&derivative), 0.0);
+        if pinning.curved_mev < most_mev {
+            found.push((turn, derivative, pinning));
+        }
+    }
+    found.sort_by(|a, b| a.2.curved_mev.total_cmp(&b.2.curved_mev));
+    found.into_iter().find_map(|(turn, derivative, pinning)| {
+        let half = |v: Vec<f64>| turn.half(&h, v);
+        let along = |at: &Point| turned(&h, &at.m, turn.axis);
+        let top_mev = held.top_mev(h, half(held.state.m.clone()), along, half)?;
+        let pinning = Pinning { top_mev: pinning.top_mev.max(top_mev), ..pinning };
+        Some(Way { generator: Generator::Turn(turn), hop: derivative.clone(), derivative, pinning })
+    })
+}
+
+impl Way {
+    /// k_BT (meV) below which it is left out, whatever the others: all of them together may hold the state less. A turn is one only where
+    /// the state goes round: about many an axis its first part is a translation, and soft.
+    pub fn opens_mev(&self) -> f64 {
+        match self.generator {
+            Generator::Shift(_) => self.pinning.loosens_mev().min(self.pinning.top_mev),
+            Generator::Turn(_) => self.pinning.top_mev,
+        }
+    }
+}
+
+impl Turn {
+    /// Half-way to the next place, spins or a field (3N).
+    pub fn half(&self, h: &Hamiltonian, mut v: Vec<f64>) -> Vec<f64> {
+        if let Ok(axis) = Direction::new(self.axis) {
+            rotate_sites(&mut v, moving(h), axis, PI / self.fold as f64);
+        }
+        v
+    }
+}
+
+fn moving(h: &Hamiltonian) -> impl Iterator<Item = usize> {
+    (0..h.sites()).filter(|i| !h.is_frozen(*i) && !h.lattice().vacant[*i])
+}
+
+/// axis × m of the spins that can move (3N).
+fn turned(h: &Hamiltonian, m: &[f64], axis: Vector) -> Vec<f64> {
+    let (m, mut field) = (Components::new(m), vec![0.0; m.len()]);
+    moving(h).for_each(|i| ComponentsMut::new(&mut field).set(i, vector::cross(axis, m.get(i))));
+    field
+}
+
+/// How many turns of the group about an axis there are that move no site, the identity among them.
+fn fold(group: &Group, axis: Vector) -> usize {
+    let keeps = |o: &&Operation| {
+        let is = vector::norm(vector::sub(times(&o.spin, axis), axis)) < SAME;
+        o.motion.is_none() && is && determinant(&o.spin) > 0.0
+    };
+    group.classes().iter().filter(keeps).count().max(1)
+}
+
+/// The group's shift along a direction that moves sites and nothing else, with its number.
+pub(super) fn shift_along(group: &Group, direction: usize) -> Option<(usize, &Operation)> {
+    let goes = |o: &Operation| o.motion.shifts_by().filter(|_| o.moves_sites_alone())?.iter().position(|by| *by != 0);
+    group.shifts().iter().map(|s| &s.operation).enumerate().find(|(_, o)| goes(o) == Some(direction))
+}
+
+/// The geodesic from a state to another (3N), spin by spin.
+pub(super) fn towards(from: &[f64], to: &[f64]) -> Vec<f64> {
+    let (a, b, mut field) = (Components::new(from), Components::new(to), vec![0.0; from.len()]);
+    (0..a.sites()).for_each(|i| ComponentsMut::new(&mut field).set(i, log(a.get(i), b.get(i))));
+    field
+}
+
+/// Whether a state goes on by this hop to the next place in the direction in which it came from the one before.
+fn goes_on(shift: &Operation, m: &[f64], hop: &[f64]) -> bool {
+    let (a, ahead) = (Components::new(m), Components::new(hop));
+    let back = |i: usize| vector::dot(ahead.get(shift.source(i)), log(a.get(shift.source(i)), a.get(i)));
+    (0..a.sites()).map(back).sum::<f64>() < 0.0
+}
+
+/// dm/dx (3N numbers a site) along a direction, to sixth order in the distance of two sites, to second order near an edge; 0 at it.
+pub(super) fn derivative(lattice: &Lattice, m: &[f64], direction: usize) -> Vec<f64> {
+    const SIXTH: [f64; 3] = [45.0, -9.0, 1.0];
+    let m = Components::new(m);
+    let mut d = vec![0.0; 3 * m.sites()];
+    for i in 0..m.sites() {
+        let beside = |k: isize| {
+            let [ahead, behind] = [k, -k].map(|by| lattice.step_from(i, direction, by));
+            Some(vector::sub(m.get(ahead?), m.get(behind?)))
+        };
+        let sum = match (beside(1), beside(2), beside(3)) {
+            (Some(one), Some(two), Some(three)) => [one, two, three]
+                .iter()
+                .zip(SIXTH)
+                .fold([0.0; 3], |sum, (v, w)| vector::add(sum, vector::scale(w / 60.0, *v))),
+            (Some(one), ..) => vector::scale(0.5, one),
+            _ => continue,
+        };
+        ComponentsMut::new(&mut d).set(i, sum);
+    }
+    d
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lattice::Chain;
+
+    #[test]
+    fn the_derivative_of_a_spiral_is_its_wave_number() {
+        let n = 60;
+        let k = 2.0 * PI / n as f64;
+        let m: Vec<f64> = (0..3 * n)
+            .map(|c| match c / n {
+                0 => libm::cos(k * (c % n) as f64),
+                1 => libm::sin(k * (c % n) as f64),
+                _ => 0.0,
+            })
+            .collect();
+        assert!(
+            (slab::norm(&derivative(&Chain::ring(n).resolve().unwrap(), &m, 0)) - k * (n as f64).sqrt()).abs() < 1e-8
+        );
+    }
+}

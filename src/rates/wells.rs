@@ -1,0 +1,196 @@
+//! The states of a crossing with all that their partition functions take, over the range of temperatures where nothing of it changes:
+//! along which valleys each state slides, and which states are then places of one.
+
+use super::determinant::PinnedHessian;
+use super::refusal::no_minimum;
+use super::sliding::{Generator, Pinning, Slide, Sliding, Turn};
+use super::symmetry::{free_shifts, places, states_along_turn, states_on_the_way};
+use super::{Crossing, Equivalents, Refusal, Unstable, ZeroModes, equivalent_saddles, zero_modes};
+use crate::energy::Evaluator;
+use crate::stationary::{Spectrum, State};
+use crate::symmetry::Group;
+
+const NAMES: [&str; 3] = ["the saddle", "the minimum before it", "the minimum after it"];
+
+/// A saddle with its descending mode, and the minima beside it.
+pub(super) struct Beside<'a> {
+    h: Evaluator<'a>,
+    group: &'a Group,
+    pub unstable: Unstable,
+    /// The saddle, the minimum before it and that after it.
+    pub states: [State; 3],
+    spectra: [&'a Spectrum; 3],
+}
+
+/// How all three slide at a temperature.
+#[derive(Clone, Debug, PartialEq)]
+struct Choice {
+    sliding: [Sliding; 3],
+    /// Of each shift the first multiple that is free.
+    steps: Vec<usize>,
+    /// The turn along which some of them slide.
+    turn: Option<Turn>,
+}
+
+/// The three states above a k_BT, until the next.
+pub(super) struct Wells {
+    pub above_mev: f64,
+    pub found: Result<Found, Refusal>,
+}
+
+/// What the states have.
+pub(super) struct Found {
+    /// The saddle, the minimum before it and that after it.
+    pub wells: [Well; 3],
+    pub equivalents: Equivalents,
+    pub turn: Option<Turn>,
+}
+
+/// A stationary state, ready for its partition function.
+pub(super) struct Well {
+    /// Without its zero modes, its valleys and a descending mode.
+    pub pinned: PinnedHessian,
+    /// ln|det'H|, the descending mode's |λ₁| included.
+    pub log_determinant: f64,
+    pub zeros: Vec<ZeroModes>,
+    /// Zero modes and valleys.
+    pub count: usize,
+    /// ln of the volume of the states like it.
+    pub ln_volume: f64,
+    /// What its places cost along its soft modes.
+    pub pinning: Vec<Pinning>,
+    /// ln of the states alike that are its places.
+    pub ln_places: f64,
+}
+
+impl<'a> Beside<'a> {
+    pub fn new(h: Evaluator<'a>, crossing: &Crossing<'a>, unstable: Unstable) -> Result<Beside<'a>, Refusal> {
+        let minima = crossing.minima.map(|m| State::at(h, m.as_slice().to_vec()));
+        for (side, name) in ["before", "after"].into_iter().enumerate() {
+            let torque = minima[side].max_torque_mev();
+            no_minimum(crossing.minima_spectra[side], torque, name).map_or(Ok(()), Err)?;
+        }
+        let [before, after] = minima;
+        let [b, a] = crossing.minima_spectra;
+        let states = [crossing.saddle.clone(), before, after];
+        Ok(Beside { h, group: crossing.group, unstable, states, spectra: [crossing.spectrum, b, a] })
+    }
+
+    /// The states at all temperatures, by ascending k_BT from 0 on; `most_mev`: the higher of the two barriers.
+    pub fn wells(&self, most_mev: f64) -> Vec<Wells> {
+        let of = |k: usize| Slide::of(self.h, &self.states[k], self.descending(k), self.group, most_mev);
+        let mut slides = [of(0), of(1), of(2)];
+        let mut levels: Vec<f64> = Vec::new();
+        // what is chosen somewhere may change elsewhere than what was known before
+        let choices = loop {
+            let choices: Vec<_> = (0..=levels.len()).map(|k| self.choice(&mut slides, &levels, k)).collect();
+            let known = levels.len();
+            levels.extend(self.levels_mev(&slides));
+            levels.sort_by(f64::total_cmp);
+            levels.dedup();
+            if levels.len() == known {
+                break choices;
+            }
+        };
+        let from = std::iter::once(0.0).chain(levels);
+        let mut different: Vec<(f64, Result<Choice, Refusal>)> = Vec::new();
+        for (above_mev, choice) in from.zip(choices) {
+            if different.last().is_none_or(|(_, last)| *last != choice) {
+                different.push((above_mev, choice));
+            }
+        }
+        let wells = |(above_mev, choice): (f64, Result<Choice, Refusal>)| Wells {
+            above_mev,
+            found: choice.and_then(|choice| self.found(&choice)),
+        };
+        different.into_iter().map(wells).collect()
+    }
+
+    fn descending(&self, k: usize) -> Option<&Unstable> {
+        (k == 0).then_some(&self.unstable)
+    }
+
+    /// Each positive k_BT (meV) at which something may change.
+    fn levels_mev(&self, slides: &[Slide; 3]) -> Vec<f64> {
+        let turns = slides.iter().filter_map(Slide::turn);
+        let turned = turns.flat_map(|turn| slides.iter().map(move |s| s.turned_mev(&turn)));
+        slides.iter().flat_map(Slide::levels_mev).chain(turned).filter(|mev| *mev > 0.0).collect()
+    }
+
+    /// Between two of some levels.
+    fn choice(&self, slides: &mut [Slide; 3], levels: &[f64], k: usize) -> Result<Choice, Refusal> {
+        // a state slides above a level, not at it
+        let last = levels.last().map_or(1.0, |last| 2.0 * last);
+        let thermal_mev = levels.get(k).copied().unwrap_or(last);
+        let (mut free, mut turns) = (vec![true; self.group.shifts().len()], true);
+        loop {
+            let is_free = |generator: &Generator| match generator {
+                Generator::Shift(k) => free[*k],
+                Generator::Turn(_) => turns,
+            };
+            let mut at =
+                |k: usize| slides[k].at(thermal_mev, &is_free).map_err(|unknown| Refusal::Volume(NAMES[k], unknown));
+            let sliding = [at(0)?, at(1)?, at(2)?];
+            let minima = [&self.states[1].m[..], &self.states[2].m[..]];
+            let steps = free_shifts(self.group, minima, [sliding[1].shifts(), sliding[2].shifts()]);
+            let turn = sliding.iter().find_map(Sliding::turn);
+            // a shift that does not keep both leads to a saddle between other minima, and so does a turn
+            let shifts = sliding.iter().any(Sliding::shifts);
+            let keep: Vec<bool> =
+                steps.iter().zip(&free).map(|(steps, free)| *free && (*steps == 1 || !shifts)).collect();
+            let kept = |turn: &Turn| {
+                (1..3).all(|k| match sliding[k].turn() {
+                    Some(own) => own == *turn,
+                    None => slides[k].turned_mev(turn) < thermal_mev,
+                })
+            };
+            let turning = turns && turn.as_ref().is_none_or(kept);
+            if keep == free && turning == turns {
+                return Ok(Choice { sliding, steps, turn });
+            }
+            (free, turns) = (keep, turning);
+        }
+    }
+
+    fn found(&self, choice: &Choice) -> Result<Found, Refusal> {
+        let Choice { sliding, steps, turn } = choice;
+        let along = turn.map(|turn| self.group.with_axis(turn.axis));
+        let along = along.as_ref().unwrap_or(self.group);
+        let shifts = sliding.each_ref().map(Sliding::shifts);
+        let [saddle, before, after] = self.states.each_ref().map(|state| &state.m[..]);
+        let equivalents = equivalent_saddles(self.h.lattice(), along, saddle, [before, after], shifts);
+        let free = Some(&steps[..]).filter(|_| shifts.contains(&true));
+        let well = |k: usize| self.well(k, &sliding[k], free, along);
+        Ok(Found { wells: [well(0)?, well(1)?, well(2)?], equivalents, turn: *turn })
+    }
+
+    /// Of state k, where so many times each shift is free, if anything slides over the lattice.
+    fn well(&self, k: usize, sliding: &Sliding, free: Option<&[usize]>, along: &Group) -> Result<Well, Refusal> {
+        let (h, state, unstable) = (self.h, &self.states[k], self.descending(k));
+        let number = |steps: &[usize]| places(self.group, &state.m, steps);
+        let turned = states_along_turn(self.group, along, &state.m);
+        let (own, kept, alike) = match free {
+            Some(steps) if sliding.shifts() => {
+                (number(steps), 1, states_on_the_way(h.lattice(), self.group, &state.m, steps))
+            }
+            Some(steps) => (1, number(steps), number(steps)),
+            None => (1, 1, 1),
+        };
+        let kept = if sliding.turn().is_some() { kept } else { kept * turned };
+        let zeros = zero_modes(&h, state, sliding, own, self.spectra[k])
+            .map_err(|unknown| Refusal::Volume(NAMES[k], unknown))?;
+        let left_out: Vec<Vec<f64>> = state.zeros.iter().chain(&sliding.modes).cloned().collect();
+        let pinned = PinnedHessian::new(&state.hessian, &left_out, unstable, h.stiffness_mev() / 3.0);
+        let descent = unstable.map_or(0.0, |u| libm::log(-u.eigenvalue_mev));
+        let ln_volume = zeros.iter().map(|z| libm::log(z.volume)).sum::<f64>() + libm::log(kept as f64);
+        Ok(Well {
+            log_determinant: pinned.log_determinant() + descent,
+            pinned,
+            zeros,
+            count: left_out.len(),
+            ln_volume,
+            pinning: sliding.pinning().collect(),
+            ln_places: libm::log((alike * turned) as f64),
+        })
+    }
+}
