@@ -23,7 +23,7 @@ pub const LEAST_BARRIER: f64 = 1.0;
 const MOST_DENSE: usize = 1000;
 
 /// Three translations and a turn.
-pub(super) const MOST_VALLEYS: usize = 4;
+const MOST_VALLEYS: usize = 4;
 
 /// A saddle between two minima.
 #[derive(Clone, Copy, Debug)]
@@ -211,8 +211,7 @@ pub struct SaddleRate {
 impl SaddleRate {
     /// What the rates at a temperature (K) are made of.
     pub fn at(&self, temperature_k: f64) -> &Regime {
-        let above = self.regimes.partition_point(|regime| regime.above_k < temperature_k);
-        &self.regimes[above.max(1) - 1]
+        ruling(&self.regimes, |regime| regime.above_k, temperature_k)
     }
 
     /// ln of the rate in 1/s by a theory at a temperature (K), over all equivalent saddles; what the formula gives, however low the
@@ -275,6 +274,12 @@ impl SaddleRate {
         }
         here.refused.first().map(|(_, reason)| reason.to_string())
     }
+}
+
+/// What holds at a temperature (K), of what begins to hold above others, by ascending ones; at least one of it.
+pub(super) fn ruling<T>(all: &[T], above_k: impl Fn(&T) -> f64, temperature_k: f64) -> &T {
+    let begun = all.partition_point(|one| above_k(one) < temperature_k);
+    &all[begun.max(1) - 1]
 }
 
 /// A factor from its logarithm, if it is one.

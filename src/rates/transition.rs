@@ -1,7 +1,7 @@
 //! The rate of the whole path, over all its saddles.
 
 use super::passage::{TEN_YEARS_S, blocking_temperature, first_passage, passages};
-use super::rate::factor;
+use super::rate::{factor, ruling};
 use super::{Equivalents, RateSettings, Refusal, Row, SaddleRate, Theory, Way};
 use crate::units::K_B;
 
@@ -146,8 +146,7 @@ fn transition(
 
 /// The numbers at a temperature (K).
 fn at(orbits: &[Orbits], temperature_k: f64) -> &Orbits {
-    let above = orbits.partition_point(|o| o.above_k < temperature_k);
-    &orbits[above.max(1) - 1]
+    ruling(orbits, |o| o.above_k, temperature_k)
 }
 
 /// The highest saddle above the first minimum (meV): up over each, down to the next.

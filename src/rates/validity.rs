@@ -211,7 +211,7 @@ fn kelvin(t: f64) -> String {
 fn weak_damping(settings: &RateSettings, barrier_mev: f64, langer: Option<Prefactor>) -> Option<String> {
     langer?;
     let coldest = settings.temperatures_k.iter().copied().fold(f64::INFINITY, f64::min);
-    let hottest = settings.temperatures_k.iter().copied().fold(0.0, f64::max);
+    let hottest = settings.hottest_k();
     let at = |t: f64| settings.damping * barrier_mev / (K_B * t);
     (at(hottest) < WEAK).then(|| {
         let from = (settings.damping * barrier_mev / (WEAK * K_B)).max(coldest);

@@ -1,5 +1,6 @@
 //! One operation: spins moved to other sites and turned or reflected, all alike.
 
+use super::frames::are_alike;
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::matrix::{UNIT, apart, determinant, opposite, product, times, transposed};
 use crate::geometry::{Direction, Matrix, Vector, vector};
@@ -30,6 +31,11 @@ impl Operation {
     /// Whether every spin that moves is the same at another site.
     pub fn moves_sites_alone(&self) -> bool {
         apart(&self.spin, &UNIT) < SAME
+    }
+
+    /// Whether every spin is turned about this axis, or not at all.
+    pub fn turns_about(&self, axis: Vector) -> bool {
+        are_alike(&self.spin, &UNIT, &[axis])
     }
 
     /// p(i).

@@ -8,7 +8,7 @@
 use std::f64::consts::PI;
 
 /// What a place costs.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pinning {
     /// U (meV), from the curvature.
     pub curved_mev: f64,

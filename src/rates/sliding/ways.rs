@@ -4,17 +4,14 @@ use super::pinning::Pinning;
 use super::valleys::{Held, unit};
 use crate::energy::{Evaluator, Hamiltonian};
 use crate::field::{Components, ComponentsMut};
-use crate::geometry::matrix::{UNIT, determinant, times};
+use crate::geometry::matrix::UNIT;
 use crate::geometry::{Direction, Vector, log, vector};
 use crate::lattice::Lattice;
 use crate::linalg::slab;
-use crate::sphere::rotate_sites;
+use crate::sphere::{rotate_sites, write_logs};
 use crate::stationary::Point;
 use crate::symmetry::{Group, Operation};
 use std::f64::consts::PI;
-
-/// Two axes or turns that differ by less are the same.
-const SAME: f64 = 1e-9;
 
 /// What takes a state from a place to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,13 +68,14 @@ fn shift(h: Evaluator, held: &Held, group: &Group, direction: usize) -> Option<W
 
 /// The softest turn about an axis that a term singles out, where the energy has no axis of its own.
 fn turn(h: Evaluator, held: &Held, group: &Group, most_mev: f64) -> Option<Way> {
-    if !group.axes().is_empty() {
+    let axes = h.own_axes();
+    if !group.axes().is_empty() || axes.is_empty() {
         return None;
     }
     let rotation = |axis: Vector| held.tangent(&turned(&h, &held.state.m, axis));
     let softness = held.softness(UNIT.into_iter().filter_map(rotation).collect());
     let mut found: Vec<(Turn, Vec<f64>, Pinning)> = Vec::new();
-    for axis in h.own_axes() {
+    for axis in axes {
         let Some(mut derivative) = rotation(axis) else { continue };
         let turn = Turn { axis, fold: fold(group, axis) };
         slab::scale(&mut derivative, 2.0 * PI / turn.fold as f64);
@@ -130,11 +128,7 @@ fn turned(h: &Hamiltonian, m: &[f64], axis: Vector) -> Vec<f64> {
 
 /// How many turns of the group about an axis there are that move no site, the identity among them.
 fn fold(group: &Group, axis: Vector) -> usize {
-    let keeps = |o: &&Operation| {
-        let is = vector::norm(vector::sub(times(&o.spin, axis), axis)) < SAME;
-        o.motion.is_none() && is && determinant(&o.spin) > 0.0
-    };
-    group.classes().iter().filter(keeps).count().max(1)
+    group.classes().iter().filter(|o| o.motion.is_none() && o.turns_about(axis)).count().max(1)
 }
 
 /// The group's shift along a direction that moves sites and nothing else, with its number.
@@ -146,7 +140,7 @@ pub(super) fn shift_along(group: &Group, direction: usize) -> Option<(usize, &Op
 /// The geodesic from a state to another (3N), spin by spin.
 pub(super) fn towards(from: &[f64], to: &[f64]) -> Vec<f64> {
     let (a, b, mut field) = (Components::new(from), Components::new(to), vec![0.0; from.len()]);
-    (0..a.sites()).for_each(|i| ComponentsMut::new(&mut field).set(i, log(a.get(i), b.get(i))));
+    write_logs(a, b, &mut field);
     field
 }
 
