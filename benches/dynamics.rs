@@ -5,7 +5,8 @@
 //! in which it collapses, which slides over a periodic film: k_BT is 0.06 to 0.03 of the nearest exchange. Rates by forward flux
 //! (`spinneb::dynamics`), at the lowest barrier also by waiting for escapes. Times are in units of μ/γ per meV. The table and a figure
 //! go to `results/gallery/dynamics/`. The whole campaign takes 18 minutes of one processor. With the name of a problem after
-//! `--` that one is done anew, with the word `quick` little is simulated and nothing written.
+//! `--` that one is done anew, with the word `quick` little is simulated and nothing written, with the word `langer` nothing is
+//! simulated: Langer's rates are computed anew, and the table's are told over these.
 
 #[allow(dead_code, unused_imports)]
 #[path = "../examples/04_rates_of_one_spin.rs"]
@@ -21,6 +22,8 @@ use std::fmt::Write;
 use std::path::Path;
 
 const FOLDER: &str = "results/gallery/dynamics";
+/// How far the rings of a figure are beside their discs, those of the next case further (Δ).
+const BESIDE: f64 = 0.12;
 /// A problem, and how its escapes are looked at.
 struct Case {
     name: &'static str,
@@ -118,18 +121,22 @@ struct Row {
 
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
-    let (quick, names): (Vec<&String>, Vec<&String>) = words.iter().partition(|word| *word == "quick");
-    let (quick, all) = (!quick.is_empty(), names.is_empty());
-    let asked = |case: &&Case| all || names.iter().any(|name| case.name.starts_with(name.as_str()));
+    let is_said = |word: &str| words.iter().any(|own| own == word);
+    let names: Vec<&String> = words.iter().filter(|word| !["quick", "langer"].contains(&word.as_str())).collect();
+    let asked = |case: &&Case| names.is_empty() || names.iter().any(|name| case.name.starts_with(name.as_str()));
+    let known = std::fs::read_to_string(format!("{FOLDER}/table.md")).unwrap_or_default();
+    let known: Vec<Row> = known.lines().filter_map(Row::read).collect();
     let mut found: Vec<Row> = Vec::new();
     for case in cases().filter(asked) {
-        found.extend(rows(case, quick));
+        found.extend(match is_said("langer") {
+            true => over_langer(case, &known),
+            false => rows(case, is_said("quick")),
+        });
     }
-    if !quick {
+    if !is_said("quick") {
         // of cases that were not asked for what is known stays
-        let known = std::fs::read_to_string(format!("{FOLDER}/table.md")).unwrap_or_default();
-        let other = known.lines().filter_map(Row::read).filter(|row| found.iter().all(|own| own.name != row.name));
-        found.extend(other.collect::<Vec<_>>());
+        let other: Vec<Row> = known.into_iter().filter(|row| found.iter().all(|own| own.name != row.name)).collect();
+        found.extend(other);
         found.sort_by_key(|row| cases().position(|case| case.name == row.name));
         write(&found);
     }
@@ -181,7 +188,8 @@ impl Row {
     }
 }
 
-fn rows(case: &Case, quick: bool) -> Vec<Row> {
+/// The problem of a case, and what a run makes of it: its barrier (meV), and rates at all Δ.
+fn solved(case: &Case) -> (f64, Problem, Outcome) {
     let asked = |kelvin: &[f64]| -> (Problem, Outcome) {
         let kelvin: Vec<String> = kelvin.iter().map(|t| format!("\"{t} K\"")).collect();
         let rates = format!(r#", "rates": {{"temperatures": [{}], "damping": {}}}}}"#, kelvin.join(", "), case.damping);
@@ -193,6 +201,11 @@ fn rows(case: &Case, quick: bool) -> Vec<Row> {
     };
     let barrier = asked(&[1.0]).1.barrier.expect("a barrier").forward_mev;
     let (problem, outcome) = asked(&case.barriers.iter().map(|d| barrier / (K_B * d)).collect::<Vec<_>>());
+    (barrier, problem, outcome)
+}
+
+fn rows(case: &Case, quick: bool) -> Vec<Row> {
+    let (barrier, problem, outcome) = solved(case);
     eprintln!(
         "{}: {barrier} meV, {:?}",
         case.name,
@@ -200,6 +213,43 @@ fn rows(case: &Case, quick: bool) -> Vec<Row> {
     );
     let barriers = case.barriers.iter().enumerate();
     barriers.map(|(k, delta)| row(case, &problem, &outcome, k, barrier / delta, quick)).collect()
+}
+
+/// What is known of a case, over Langer's rates of now.
+fn over_langer(case: &Case, known: &[Row]) -> Vec<Row> {
+    let (_, problem, outcome) = solved(case);
+    let now = |k: usize, delta: f64| -> Option<Row> {
+        let row = known.iter().find(|row| row.name == case.name && row.delta == delta)?;
+        let langer = langer(&outcome, k);
+        let part = row.langer / langer;
+        // of the digits that a table keeps
+        let part = if (part - 1.0).abs() < 1e-4 { 1.0 } else { part };
+        let exact = exact(case, &problem, delta).map(|exact| exact / langer);
+        let times = |rate: [f64; 2]| rate.map(|x| part * x);
+        Some(Row {
+            name: row.name.clone(),
+            langer,
+            flux: times(row.flux),
+            waited: row.waited.map(times),
+            exact,
+            ..*row
+        })
+    };
+    case.barriers.iter().enumerate().filter_map(|(k, delta)| now(k, *delta)).collect()
+}
+
+/// Langer's rate at the k-th Δ (γ/μ per meV).
+fn langer(outcome: &Outcome, k: usize) -> f64 {
+    let rates = outcome.rates.as_ref().expect("rates");
+    let passage = &rates.transitions[0].rows[k].passage;
+    libm::exp(passage.ln_langer_per_s.expect("a rate")) / (1e12 * 2.0 / HBAR)
+}
+
+/// The rate of one spin by its Fokker–Planck equation (γ/μ per meV).
+fn exact(case: &Case, problem: &Problem, delta: f64) -> Option<f64> {
+    let is_one = problem.hamiltonian.sites() == 1;
+    let decay = is_one.then(|| one_spin::slowest_decay(delta, case.damping, one_spin::harmonics(delta))).flatten()?;
+    Some(0.5 * decay)
 }
 
 fn row(case: &Case, problem: &Problem, outcome: &Outcome, k: usize, thermal: f64, quick: bool) -> Row {
@@ -224,13 +274,7 @@ fn row(case: &Case, problem: &Problem, outcome: &Outcome, k: usize, thermal: f64
     let escapes = if quick { case.escapes.min(20) } else { case.escapes };
     let waited = (k == 0 && escapes > 0)
         .then(|| escape_rate(&bath, start.as_slice(), &order, [interfaces[0], last], case.settle, escapes, 7000));
-    let rates = outcome.rates.as_ref().expect("rates");
-    let passage = &rates.transitions[0].rows[k].passage;
-    let langer = libm::exp(passage.ln_langer_per_s.expect("a rate")) / (1e12 * 2.0 / HBAR);
-    let exact = (h.sites() == 1)
-        .then(|| one_spin::slowest_decay(delta, case.damping, one_spin::harmonics(delta)))
-        .flatten()
-        .map(|decay| 0.5 * decay);
+    let langer = langer(outcome, k);
     let over = |rate: FluxRate| [rate.per_s / langer, rate.error_per_s / langer];
     let row = Row {
         name: case.name.into(),
@@ -238,7 +282,7 @@ fn row(case: &Case, problem: &Problem, outcome: &Outcome, k: usize, thermal: f64
         langer,
         flux: over(found),
         waited: waited.map(over),
-        exact: exact.map(|exact| exact / langer),
+        exact: exact(case, problem, delta).map(|exact| exact / langer),
         seconds: begun.elapsed().as_secs_f64(),
     };
     eprintln!("{}", row.line());
@@ -275,7 +319,8 @@ fn table(rows: &[Row]) -> String {
 }
 
 fn figure(rows: &[Row]) -> LinePlot {
-    let mut plot = LinePlot::new("ΔE/k_BT", "rate / Langer").x_range(3.0, 13.0).y_range(0.4, 1.6).legend_above();
+    let mut plot =
+        LinePlot::new("ΔE/k_{B}T", "rate / Langer’s rate").x_range(3.0, 13.0).y_range(0.4, 1.6).legend_above();
     let bound =
         |sign: f64| (0..=100).map(|k| 3.0 + 0.1 * f64::from(k)).map(|x| (x, 1.0 + sign * 2.0 / x)).collect::<Vec<_>>();
     plot = plot.with(Series::line(vec![(3.0, 1.0), (13.0, 1.0)]).colour(BLACK));
@@ -285,7 +330,8 @@ fn figure(rows: &[Row]) -> LinePlot {
     }
     let exact: Vec<(f64, f64)> = rows.iter().filter_map(|r| Some((r.delta, r.exact?))).collect();
     plot = plot.with(Series::line(exact).colour(BLUE).label("one spin, Fokker–Planck"));
-    for case in CASES.iter().filter(|case| rows.iter().any(|r| r.name == case.name)) {
+    let by_waiting = Series::markers(Vec::new(), Marker::Ring).colour(BLACK).label("by waiting");
+    for (k, case) in CASES.iter().enumerate().filter(|(_, case)| rows.iter().any(|r| r.name == case.name)) {
         let own = || rows.iter().filter(|r| r.name == case.name);
         let points: Vec<(f64, f64)> = own().map(|r| (r.delta, r.flux[0])).collect();
         plot = plot.with(Series::markers(points, Marker::Disc).colour(case.colour).label(case.name));
@@ -293,8 +339,13 @@ fn figure(rows: &[Row]) -> LinePlot {
             let [y, e] = r.flux;
             plot = plot.with(Series::line(vec![(r.delta, y - e), (r.delta, y + e)]).colour(case.colour));
         }
-        let waited: Vec<(f64, f64)> = own().filter_map(|r| Some((r.delta, r.waited?[0]))).collect();
-        plot = plot.with(Series::markers(waited, Marker::Ring).colour(case.colour));
+        // beside the discs, which they would hide
+        let waited = || own().filter_map(|r| Some((r.delta + BESIDE * (k + 1) as f64, r.waited?)));
+        plot =
+            plot.with(Series::markers(waited().map(|(x, [y, _])| (x, y)).collect(), Marker::Ring).colour(case.colour));
+        for (x, [y, e]) in waited() {
+            plot = plot.with(Series::line(vec![(x, y - e), (x, y + e)]).colour(case.colour));
+        }
     }
-    plot
+    plot.with(by_waiting)
 }

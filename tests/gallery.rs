@@ -4,7 +4,9 @@ use crate::common::shipped::{names, shipped};
 use serde_json::Value;
 use spinneb::config::load_landscape;
 use spinneb::drive::Silent;
-use spinneb::drive::survey::survey;
+use spinneb::drive::survey::{Survey, survey};
+use spinneb::spins::Spins;
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -94,7 +96,44 @@ fn committed_landscapes_have_the_kinds_of_states_that_a_survey_finds() {
             let same = listed.len() == own.len() && listed.iter().zip(&own).all(alike);
             assert!(same, "{}: {of}: {listed:?} {own:?}; {ANEW}", loaded.name);
         }
+        if loaded.name == "skyrmion" {
+            holds_collapse_escape_and_duplication(&found, [18, 10]);
+        }
     }
+}
+
+/// How many spins each connected piece has that points down, and whether it lies at an edge.
+fn pieces(spins: &Spins, [nx, ny]: [usize; 2]) -> Vec<(usize, bool)> {
+    let vectors = spins.vectors();
+    let mut left: BTreeSet<usize> = (0..nx * ny).filter(|i| vectors[*i][2] < 0.3).collect();
+    let mut found = Vec::new();
+    while let Some(first) = left.pop_first() {
+        let (mut front, mut size, mut at_edge) = (vec![first], 0, false);
+        while let Some(i) = front.pop() {
+            let (x, y) = (i % nx, i / nx);
+            (size, at_edge) = (size + 1, at_edge || x == 0 || y == 0 || x + 1 == nx || y + 1 == ny);
+            let near = |j: &usize| (j % nx).abs_diff(x) <= 1 && (j / nx).abs_diff(y) <= 1;
+            let beside: Vec<usize> = left.iter().copied().filter(near).collect();
+            left.retain(|j| !near(j));
+            front.extend(beside);
+        }
+        found.push((size, at_edge));
+    }
+    found
+}
+
+/// From one skyrmion: over a saddle of a few spins inside the film, over one at an edge, and to two over one long piece.
+fn holds_collapse_escape_and_duplication(found: &Survey, cells: [usize; 2]) {
+    let groups = &found.lifetimes.as_ref().unwrap().groups;
+    let is_in = |name: &str, k: usize| groups.iter().any(|(own, minima)| own == name && minima.contains(&k));
+    let between = |a: &str, b: &str| -> Vec<Vec<(usize, bool)>> {
+        let joins = |[p, q]: [usize; 2]| is_in(a, p) && is_in(b, q) || is_in(a, q) && is_in(b, p);
+        found.saddles.iter().filter(|s| joins(s.minima)).map(|s| pieces(&s.spins, cells)).collect()
+    };
+    let (out, twice) = (between("one", "none"), between("one", "two"));
+    assert!(out.iter().any(|all| matches!(all[..], [(1..=4, false)])), "collapse: {out:?}");
+    assert!(out.iter().any(|all| matches!(all[..], [(10.., true)])), "escape: {out:?}");
+    assert!(twice.iter().any(|all| matches!(all[..], [(16.., false)])), "duplication: {twice:?}");
 }
 
 #[test]

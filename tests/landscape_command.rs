@@ -1,9 +1,12 @@
 //! `spinneb landscape`: all minima and saddles of small problems, their graph, and how long states live.
 
 use serde_json::Value;
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::Instant;
 
 const LANDSCAPE: &str = r#""landscape": {"temperatures": ["1 K", "2 K"],
     "groups": {"up": {"axis": [0, 0, 1], "from": 0.5}, "down": {"axis": [0, 0, 1], "to": -0.5}}}"#;
@@ -168,6 +171,95 @@ fn threads_do_not_matter_and_a_finished_result_stays() {
     let (code, _, said) = spinneb(folder.path(), &arguments);
     assert!(code == Some(2) && said.contains("minima.csv"), "{code:?} {said}");
     assert_eq!(fs::read_to_string(folder.path().join("other/minima.csv")).unwrap(), "mine");
+}
+
+#[test]
+fn killed_searches_go_on_to_the_same_bytes() {
+    let config = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/landscapes/pinned_walls.json");
+    let folder = tempfile::tempdir().unwrap();
+    let read = |name: &str| -> BTreeMap<_, _> {
+        let files = fs::read_dir(folder.path().join(name)).unwrap().map(|file| file.unwrap().path());
+        files.map(|file| (file.file_name().unwrap().to_os_string(), fs::read(file).unwrap())).collect()
+    };
+    let started = |out: &str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_spinneb"));
+        command.current_dir(folder.path()).arg("landscape").arg(&config).args(["--out", out, "--quiet", "--resume"]);
+        command.args(["--checkpoint-every", "1 ms"]).stdout(Stdio::null()).spawn().unwrap()
+    };
+    let begun = Instant::now();
+    assert!(started("whole").wait().unwrap().success());
+    let (whole, takes) = (read("whole"), begun.elapsed());
+    let mut killed = 0;
+    // each killed a little later than the one before
+    for k in 1.. {
+        let mut child = started("killed");
+        sleep(takes * k / 16);
+        match child.try_wait().unwrap() {
+            Some(status) => {
+                assert!(status.success());
+                break;
+            }
+            None => child.kill().and_then(|()| child.wait()).map(|_| killed += 1).unwrap(),
+        }
+    }
+    assert!(killed > 2, "{killed} kills in {takes:?}");
+    let killed = read("killed");
+    assert_eq!(killed.keys().collect::<Vec<_>>(), whole.keys().collect::<Vec<_>>());
+    whole.iter().for_each(|(name, bytes)| assert!(*bytes == killed[name], "{name:?}"));
+}
+
+/// A square film in which a skyrmion and a stripe rest; no passes lead from the stripe below the window.
+fn film(sites: usize) -> String {
+    let groups = r#"{"none": {"charge": 0}, "one": {"charge": -1}, "seven": {"charge": -7}}"#;
+    format!(
+        r#"{{"material": {{"name": "toy", "moment": "2 mu_B", "energy": [{{"exchange": {{"J": ["10 meV"]}}}},
+            {{"dmi": {{"D": "3.6 meV", "kind": "interfacial"}}}}, {{"anisotropy": {{"K": "1.5 meV", "axis": [0, 0, 1]}}}}]}},
+            "lattice": {{"square": {{"cells": [{sites}, {sites}], "periodic": true}}}},
+            "energy": [{{"zeeman": {{"B": ["0 T", "0 T", "3 T"]}}}}], "landscape": {{"effort": "quick", "energy_window": "100 meV",
+            "temperatures": ["10 K", "30 K"], "states": [{{"skyrmion": {{"radius": 3}}}}], "groups": {groups}}}}}"#
+    )
+}
+
+#[test]
+fn where_translations_make_too_many_states_one_stands_for_all_its_places() {
+    let (document, folder) = landscape(&film(16), &[]);
+    let minima = kinds(&document, "minima");
+    assert_eq!(document["symmetry_order"], 2048);
+    assert_eq!((minima.len(), minima[0], minima[1].1), (3, (0.0, 1), 256), "{document}");
+    assert_eq!(
+        (&document["minima"][1]["places"], &document["minima"][1]["states"]),
+        (&256.into(), &serde_json::json!([1, 1]))
+    );
+    let places = |file: &str| -> Vec<String> {
+        let text = fs::read_to_string(folder.path().join("found").join(file)).unwrap();
+        text.lines().map(|line| line.rsplit(',').next().unwrap().to_string()).collect()
+    };
+    assert_eq!(places("minima.csv"), ["places", "1", "256", "16", "16"]);
+    assert_eq!(places("saddles.csv")[0], "places");
+    // what PyGT makes of its files: out of the film without a skyrmion to any of the places
+    let table = |file: &str| -> Vec<Vec<f64>> {
+        let text = fs::read_to_string(folder.path().join("found").join(file)).unwrap();
+        text.lines().map(|line| line.split(' ').map(|word| word.parse().unwrap()).collect()).collect()
+    };
+    let (lowest, beta) = (&table("min.data")[0], 1.0 / (8.617333262e-2 * 10.0));
+    let over = |s: &&Vec<f64>| s[3..5].contains(&1.0) && s[3] != s[4];
+    let rate =
+        |s: &Vec<f64>| ((lowest[1] - s[1]) / 2.0 - beta * (s[0] - lowest[0])).exp() / (2.0 * std::f64::consts::PI);
+    let rate: f64 = table("ts.data").iter().filter(over).map(rate).sum();
+    let row = document["lifetimes"].as_array().unwrap().iter().find(|l| l["from"] == "none" && l["to"].is_null());
+    assert!((number(&row.unwrap()["langer_time_s"]) * rate - 1.0).abs() < 1e-9, "{row:?} {rate}");
+}
+
+#[test]
+fn what_no_passes_join_has_no_part_in_times_and_empty_groups_are_named() {
+    let (document, _folder) = landscape(&film(12), &[]);
+    let warned =
+        |words: &str| document["warnings"].as_array().unwrap().iter().any(|w| w.as_str().unwrap().contains(words));
+    assert!(warned("join 24 minima with the lowest of their group"), "{}", document["warnings"]);
+    assert!(warned("no minimum that was found is of the group \"seven\""), "{}", document["warnings"]);
+    for row in document["lifetimes"].as_array().unwrap() {
+        assert!(row["reason"].is_null() && number(&row["langer_time_s"]) > 0.0, "{row}");
+    }
 }
 
 #[test]

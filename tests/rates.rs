@@ -5,7 +5,7 @@ use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::Deserialize;
 use spinneb::config::load_text;
-use spinneb::drive::survey::survey;
+use spinneb::drive::survey::{IMAGES, survey};
 use spinneb::drive::{Outcome, Problem, Silent};
 use spinneb::energy::{Anisotropy, Exchange, Hamiltonian};
 use spinneb::geometry::{Direction, tangent_basis, vector};
@@ -1100,18 +1100,27 @@ fn a_network_of_all_places_of_a_skyrmion_says_what_its_path_says() {
         let loaded = load_text("skyrmion.json".as_ref(), text).unwrap();
         let outcome = solve(&loaded.problem().unwrap());
         let escape = &outcome.rates.as_ref().unwrap().transitions[0].rows[0].escape;
-        let found = survey(&loaded.survey().unwrap(), &mut Silent).unwrap();
-        assert!(found.is_whole());
-        assert_eq!(found.minima.len(), 1 + places);
-        let rows = &found.lifetimes.as_ref().unwrap().rows;
-        let row = |from: &str, to: Option<&str>| rows.iter().find(|r| r.from == from && r.to.as_deref() == to).unwrap();
-        for to in [None, Some("minimum 0")] {
-            let times = row("minimum 1", to).ln_time_s.map(Option::unwrap);
-            for (time, rate) in times.into_iter().zip([escape.ln_htst_per_s, escape.ln_langer_per_s]) {
-                assert!((time + rate.unwrap()).abs() < 1e-9, "{tesla} T: {time} {escape:?}");
+        // every place by itself, and all that translations make of one as one
+        for (images, minima) in [(IMAGES, 1 + places), (1, 1 + places / 144)] {
+            let mut asked = loaded.survey().unwrap();
+            asked.images = images;
+            let found = survey(&asked, &mut Silent).unwrap();
+            assert!(found.is_whole() && found.has_places() == (images == 1));
+            assert_eq!(found.minima.len(), minima);
+            assert_eq!(found.minimum_kinds.iter().map(|kind| kind.multiplicity).sum::<usize>(), 1 + places);
+            let rows = &found.lifetimes.as_ref().unwrap().rows;
+            let row =
+                |from: &str, to: Option<&str>| rows.iter().find(|r| r.from == from && r.to.as_deref() == to).unwrap();
+            for to in [None, Some("minimum 0")] {
+                let times = row("minimum 1", to).ln_time_s.map(Option::unwrap);
+                for (time, rate) in times.into_iter().zip([escape.ln_htst_per_s, escape.ln_langer_per_s]) {
+                    assert!((time + rate.unwrap()).abs() < 1e-9, "{tesla} T: {time} {escape:?}");
+                }
+            }
+            if minima > 2 {
+                let hop = row("minimum 1", Some("minimum 2"));
+                assert!(hop.ln_time_s == [None, None] && hop.reason.as_ref().unwrap().contains("one state"), "{hop:?}");
             }
         }
-        let hop = row("minimum 1", Some("minimum 2"));
-        assert!(hop.ln_time_s == [None, None] && hop.reason.as_ref().unwrap().contains("one state"), "{hop:?}");
     }
 }

@@ -103,13 +103,15 @@ def compared(spinneb, number):
 
 
 def table(rows):
-    """A line for each family."""
+    """A line for each family that was looked at."""
     head = ["family", "chains", "minima + saddles wanted"]
     for effort in EFFORTS:
         head += [f"{effort}: chains with all", "missing", "seconds"]
     lines = [head, ["---"] * len(head)]
     for family in [*FAMILIES, "all"]:
         own = [r for r in rows if family in ("all", r["family"])]
+        if not own:
+            continue
         cells = [family.replace("_", " "), len(own), " + ".join(str(sum(r["wanted"][k] for r in own)) for k in (0, 1))]
         for effort in EFFORTS:
             lost = [sum(r[effort]["missing"]) for r in own]

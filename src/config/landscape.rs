@@ -2,7 +2,7 @@
 
 use super::rates::{RatesConfig, Temperatures};
 use super::{Config, Loaded};
-use crate::drive::survey::{Label, SurveyProblem};
+use crate::drive::survey::{IMAGES, Label, SurveyProblem};
 use crate::error::{Error, Result};
 use crate::geometry::Direction;
 use crate::landscape::Effort;
@@ -109,6 +109,6 @@ impl Loaded {
         let rates = self.config.landscape_rates(&own);
         let (problem, seeds, rates) = self.seeded_problem(&own.states, rates.as_ref())?;
         let window_mev = own.energy_window.map_or(f64::INFINITY, |e| e.0);
-        Ok(SurveyProblem { problem, seeds, window_mev, effort: own.effort, groups, rates, shares: 1 })
+        Ok(SurveyProblem { problem, seeds, window_mev, effort: own.effort, groups, rates, shares: 1, images: IMAGES })
     }
 }

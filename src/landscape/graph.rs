@@ -2,9 +2,11 @@
 //!
 //! Nodes are minima, each state one of its own: up and down are two. Edges are passes: certified saddles with the minima that their
 //! two descents reach. The images of both under the symmetry of lattice and energy are nodes and edges too, without a search; so one
-//! saddle may have several edges. A pass with the same minimum on both sides is an edge that no route takes.
+//! saddle may have several edges. A pass with the same minimum on both sides is an edge that no route takes. Where a survey would have
+//! too many images, a node stands for all places to which translations shift it.
 
 use super::pairs::Pairs;
+use super::places::Places;
 use super::{Minimum, Pass, Saddle, is_same_state, turned, turns};
 use crate::energy::Evaluator;
 use crate::network::Parts;
@@ -16,10 +18,12 @@ use crate::symmetry::{Group, Operation};
 
 /// A climb that comes so near to a saddle (rad, any spin) ends there.
 const BESIDE: f64 = 0.05;
-/// Images by symmetry of every minimum and pass, at most, and of how many spins; and minima, from which on no more images are added.
+/// Images by symmetry of every minimum and pass, at most, and of how many spins; and minima, from which on no more images are added:
+/// so many in a search for a route, and so many in a survey.
 const IMAGES: usize = 64;
-const MINIMA: usize = 1000;
 const IMAGE_SPINS: usize = 2_000_000;
+const MINIMA: usize = 1000;
+const SURVEYED: usize = 10_000;
 
 /// A pass, or an image of one.
 #[derive(Clone, Debug)]
@@ -75,6 +79,8 @@ pub struct Landscape<'a> {
     reference_mev: f64,
     /// None until they are wanted.
     operations: Option<Vec<Operation>>,
+    most_minima: usize,
+    places: Places,
     minima: Vec<Minimum>,
     heights_mev: Vec<f64>,
     /// The minimum that stands for each: itself, or another one along a flat valley.
@@ -96,6 +102,8 @@ impl<'a> Landscape<'a> {
             reference: reference.to_vec(),
             reference_mev: h.hamiltonian().energy_mev(reference) - h.reference_mev(),
             operations: None,
+            most_minima: MINIMA,
+            places: Places::default(),
             minima: Vec::new(),
             heights_mev: Vec::new(),
             stands_for: Vec::new(),
@@ -111,20 +119,39 @@ impl<'a> Landscape<'a> {
     pub fn unfold(&mut self) {
         if self.operations.is_none() {
             let group = Group::of(&self.h, &self.reference, &[]);
-            self.unfold_by(&group, IMAGES);
+            self.unfold_by(group.operations().take(IMAGES.min(self.most_images())).collect());
         }
     }
 
-    /// The same by so many operations of a group at most.
-    pub fn unfold_by(&mut self, group: &Group, most: usize) {
-        let images = most.min(IMAGE_SPINS / self.h.sites());
-        self.operations = Some(group.operations().take(images).collect());
+    /// The same by all operations of a group if these are no more than so many, else but for translations.
+    pub fn unfold_all(&mut self, group: &Group, most: usize) {
+        let most_images = self.most_images();
+        let until = match group.order() > most.min(most_images) {
+            true => group.until_translations(),
+            false => group.orders(),
+        };
+        self.places = Places::of(group, &until);
+        self.most_minima = SURVEYED;
+        self.unfold_by(group.classes_within(&until).skip(1).take(most_images).collect());
+    }
+
+    fn most_images(&self) -> usize {
+        IMAGE_SPINS / self.h.sites()
+    }
+
+    fn unfold_by(&mut self, operations: Vec<Operation>) {
+        self.operations = Some(operations);
         for k in 0..self.minima.len() {
             self.unfold_minimum(k);
         }
         for k in 0..self.passes.len() {
             self.unfold_pass(k);
         }
+    }
+
+    /// Translations of which no state of its own is made.
+    pub fn places(&self) -> &Places {
+        &self.places
     }
 
     /// The energy.
@@ -212,9 +239,16 @@ impl<'a> Landscape<'a> {
     fn known(&self, minimum: &Minimum) -> Option<usize> {
         let height = self.height_mev(minimum.spins.as_slice());
         let near = ALIKE * self.h.stiffness_mev();
-        let alike =
-            |k: &usize| (self.heights_mev[*k] - height).abs() < near && self.minima[*k].is_identical(self.h, minimum);
+        let alike = |k: &usize| {
+            (self.heights_mev[*k] - height).abs() < near
+                && self.is_one(self.minima[*k].spins.as_slice(), minimum.spins.as_slice())
+        };
         (0..self.minima.len()).find(alike)
+    }
+
+    /// Whether two states are the same, or two places of one.
+    fn is_one(&self, a: &[f64], b: &[f64]) -> bool {
+        is_same_state(self.h, a, b) || self.places.join(self.h, a, b)
     }
 
     /// Lets two minima be one, and their images by symmetry: they are joined by this flat valley.
@@ -322,7 +356,7 @@ impl<'a> Landscape<'a> {
 
     /// Of the next minimum or pass.
     fn images_to_come(&self) -> usize {
-        if self.minima.len() < MINIMA { self.operations_known().len() } else { 0 }
+        if self.minima.len() < self.most_minima { self.operations_known().len() } else { 0 }
     }
 
     fn operations_known(&self) -> &[Operation] {
@@ -346,7 +380,7 @@ impl<'a> Landscape<'a> {
     /// The edges over a saddle.
     fn edges_over(&self, m: &[f64], height_mev: f64) -> impl Iterator<Item = &Edge> {
         let near = ALIKE * self.h.stiffness_mev();
-        let over = move |e: &&Edge| (e.height_mev - height_mev).abs() < near && is_same_state(self.h, &e.saddle, m);
+        let over = move |e: &&Edge| (e.height_mev - height_mev).abs() < near && self.is_one(&e.saddle, m);
         self.edges.iter().filter(over)
     }
 

@@ -13,7 +13,7 @@ pub use parts::Parts;
 pub use tree::{Branch, Tree};
 
 use crate::linalg::log_sum;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// States and the rates between them.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -44,6 +44,16 @@ impl Network {
     /// ln of the rate (1/s) from one state to another, over all ways.
     pub fn ln_rate(&self, from: usize, to: usize) -> Option<f64> {
         self.ln_rates[from].get(&to).copied()
+    }
+
+    /// The states that ways lead to from one, itself counted.
+    pub fn joined_with(&self, state: usize) -> BTreeSet<usize> {
+        let mut joined = BTreeSet::from([state]);
+        let mut front = vec![state];
+        while let Some(i) = front.pop() {
+            front.extend(self.ln_rates[i].keys().copied().filter(|j| joined.insert(*j)));
+        }
+        joined
     }
 
     /// ln of the weights of some states in equilibrium, their sum 1, from p_i k_ij = p_j k_ji along the ways that join them. Nothing

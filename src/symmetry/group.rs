@@ -84,7 +84,15 @@ impl Group {
         })
     }
 
-    fn orders(&self) -> Vec<usize> {
+    /// After how many times each shift leaves all spins as they are and moves them at most to other sites: a translation. Its order
+    /// where none is one.
+    pub fn until_translations(&self) -> Vec<usize> {
+        let is_plain = |s: &Shift, k: usize| s.order.is_multiple_of(k) && s.times(k).moves_sites_alone();
+        self.shifts.iter().map(|s| (1..s.order).find(|k| is_plain(s, *k)).unwrap_or(s.order)).collect()
+    }
+
+    /// After how many times each shift takes every site to where it was.
+    pub fn orders(&self) -> Vec<usize> {
         self.shifts.iter().map(|s| s.order).collect()
     }
 }

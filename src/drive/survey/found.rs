@@ -3,10 +3,10 @@
 use super::lifetimes::Lifetimes;
 use super::{Effort, SurveyProblem, Unseen};
 use crate::error::Result;
-use crate::landscape::{Landscape, Searched, is_same_state};
+use crate::landscape::{Landscape, Searched, Seen, is_same_state};
 use crate::spins::Spins;
 use crate::stationary::Spectrum;
-use crate::symmetry::Group;
+use crate::symmetry::{Group, Operation};
 use rayon::prelude::*;
 
 /// States that symmetry makes of one.
@@ -18,6 +18,8 @@ pub struct Kind {
     pub multiplicity: usize,
     /// How many of them are listed.
     pub listed: usize,
+    /// For how many each of these stands: its places by translations, where these make too many states.
+    pub places: usize,
     /// Energy above the lowest minimum (meV).
     pub above_lowest_mev: f64,
     /// Energy (meV).
@@ -26,6 +28,18 @@ pub struct Kind {
     pub spectrum: Spectrum,
     /// Largest component of the Riemannian gradient (meV).
     pub max_torque_mev: f64,
+}
+
+impl Kind {
+    /// Whether all of them are listed, or stood for.
+    pub fn is_whole(&self) -> bool {
+        self.listed * self.places == self.multiplicity
+    }
+
+    /// ln of how many saddles of this kind lead from each place of a state of another one, for each saddle beside it that is listed.
+    pub fn ln_ways(&self, from: &Kind) -> f64 {
+        libm::log(self.places as f64) - libm::log(from.places as f64)
+    }
 }
 
 /// A minimum.
@@ -110,7 +124,7 @@ impl Survey {
         if let Some(settings) = &asked.rates {
             let passes: Vec<_> = passes.into_iter().map(|k| &land.passes()[k]).collect();
             let lifetimes = Lifetimes::of(&survey, asked, settings, land, group, &passes);
-            survey.warnings.extend(lifetimes.warnings());
+            survey.warnings.extend(lifetimes.warnings(&survey, &asked.groups));
             survey.lifetimes = Some(lifetimes);
         }
         Ok(survey)
@@ -131,9 +145,14 @@ impl Survey {
         self.saddles.iter().map(|saddle| (saddle.minima, self.saddle_kinds[saddle.kind].above_lowest_mev))
     }
 
-    /// Whether every state that symmetry makes of the kinds is listed.
+    /// Whether states stand for all their places by translations.
+    pub fn has_places(&self) -> bool {
+        self.minimum_kinds.iter().chain(&self.saddle_kinds).any(|kind| kind.places > 1)
+    }
+
+    /// Whether every state that symmetry makes of the kinds is listed, or stood for.
     pub fn is_whole(&self) -> bool {
-        self.minimum_kinds.iter().chain(&self.saddle_kinds).all(|kind| kind.listed == kind.multiplicity)
+        self.minimum_kinds.iter().chain(&self.saddle_kinds).all(Kind::is_whole)
     }
 
     /// Whether the search came to its stop: nothing new for as long as was asked for.
@@ -143,7 +162,7 @@ impl Survey {
 
     fn judge(&mut self, window_mev: f64) {
         if !self.is_whole() {
-            let count = |kinds: &[Kind]| kinds.iter().filter(|kind| kind.listed != kind.multiplicity).count();
+            let count = |kinds: &[Kind]| kinds.iter().filter(|kind| !kind.is_whole()).count();
             self.warnings.push(format!(
                 "symmetry makes more states than are listed of {} kinds of minima and {} of saddles: tables and graphs are of those \
                  that are",
@@ -205,6 +224,7 @@ impl View<'_> {
                     first: id,
                     multiplicity: self.multiplicity(minimum.spins.as_slice()),
                     listed: 0,
+                    places: land.places().count(land.evaluator(), minimum.spins.as_slice()),
                     above_lowest_mev: heights[k] - self.lowest,
                     energy_mev: minimum.energy_mev,
                     spectrum: minimum.spectrum.clone(),
@@ -239,6 +259,7 @@ impl View<'_> {
                     first: saddles.len(),
                     multiplicity: self.multiplicity(&state.m),
                     listed: 0,
+                    places: land.places().count(land.evaluator(), &state.m),
                     above_lowest_mev: own[edge.pass] - self.lowest,
                     energy_mev: land.evaluator().energy_mev(&state.m),
                     spectrum: pass.spectrum.clone(),
@@ -256,7 +277,9 @@ impl View<'_> {
     /// How many states the group makes of one.
     fn multiplicity(&self, m: &[f64]) -> usize {
         let (h, group) = (self.land.evaluator(), self.group);
-        let keeps = 1 + group.operations().filter(|operation| is_same_state(h, &operation.apply(m), m)).count();
+        let seen = Seen::of(h, m);
+        let is_kept = |by: &Operation| seen.may_be(by, m) && is_same_state(h, &by.apply(m), m);
+        let keeps = 1 + group.operations().filter(is_kept).count();
         group.order() / keeps
     }
 }

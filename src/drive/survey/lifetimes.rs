@@ -1,6 +1,6 @@
 //! How long the states of a survey live: rates over every saddle, and the times of the network that they make.
 
-use super::{Survey, SurveyProblem};
+use super::{Label, Survey, SurveyProblem};
 use crate::landscape::{Landscape, Pass};
 use crate::network::{Network, Parts};
 use crate::rates::{LEAST_BARRIER, RateSettings, Regime, SaddleRate, Theory, saddle_rates};
@@ -72,8 +72,12 @@ impl Lifetimes {
     }
 
     /// What the user should know of the times.
-    pub(super) fn warnings(&self) -> Vec<String> {
+    pub(super) fn warnings(&self, survey: &Survey, asked: &[(String, Label)]) -> Vec<String> {
         let mut words = self.unrated();
+        words.extend(self.apart(survey));
+        let is_empty = |name: &String| self.groups.iter().all(|(own, _)| own != name);
+        let empty = asked.iter().filter(|(name, _)| is_empty(name));
+        words.extend(empty.map(|(name, _)| format!("no minimum that was found is of the group \"{name}\"")));
         let hottest = self.settings.hottest_k();
         let low = |r: &SaddleRate| r.barrier_mev.is_some_and(|e| e < LEAST_BARRIER * K_B * hottest);
         let parts = |[on, back]: &&[SaddleRate; 2]| !on.is_within_one(back, hottest);
@@ -84,6 +88,17 @@ impl Lifetimes {
         );
         words.extend((count > 0).then_some(low));
         words
+    }
+
+    /// How many minima have no part in the times of their groups, because no passes join them with the lowest.
+    fn apart(&self, survey: &Survey) -> Option<String> {
+        let mut parts = Parts::of(survey.minima.len());
+        survey.saddles.iter().for_each(|saddle| parts.join(saddle.minima[0], saddle.minima[1]));
+        let mut apart = |states: &[usize]| states.iter().filter(|k| parts.root(**k) != parts.root(states[0])).count();
+        let count: usize = self.groups.iter().map(|(_, states)| apart(states)).sum();
+        (count > 0).then(|| {
+            format!("no passes that were found join {count} minima with the lowest of their group, of whose times they are no part")
+        })
     }
 
     /// Which kinds of saddles have no part in the times, and why: each reason once.
@@ -129,7 +144,8 @@ impl Lifetimes {
             let [on, back] = &self.saddles[saddle.kind];
             // those that are equivalent are saddles of their own here, and places share a state's time, each kind of them all of it
             let ln = |r: &SaddleRate, from: usize| {
-                Some(r.ln_rate_of_one_per_s(theory, temperature_k)? - places.ln_alike[from])
+                let ln_ways = survey.saddle_kinds[saddle.kind].ln_ways(survey.minimum_kind(from));
+                Some(r.ln_rate_of_one_per_s(theory, temperature_k)? + ln_ways - places.ln_alike[from])
             };
             if let (Some(on), Some(back)) = (ln(on, a), ln(back, b)) {
                 network.add(places.state[a], places.state[b], on);
@@ -178,8 +194,9 @@ impl Lifetimes {
                 let climb_mev = climb(survey, all, states, &goal);
                 let lowest = |passes: &Vec<_>| climb(survey, passes, states, &goal) <= climb_mev * (1.0 + ALIKE);
                 let rated = [htst, langer].map(lowest);
+                let leads = climb(survey, all, &states[..1], &goal) < f64::INFINITY;
                 let [states, goal] = [states, &goal].map(|group| places.states_of(group));
-                found.push(Transition { from: from.clone(), to, states, goal, climb_mev, rated });
+                found.push(Transition { from: from.clone(), to, states, goal, climb_mev, leads, rated });
             }
         }
         found
@@ -192,13 +209,21 @@ impl Lifetimes {
         temperature_k: f64,
         networks: &[Option<Network>; 2],
     ) -> Lifetime {
-        let Transition { from, to, states, goal, climb_mev, rated } = transition;
+        let Transition { from, to, states, goal, climb_mev, leads, rated } = transition;
         let climb_mev = *climb_mev;
-        let time = |k: usize| networks[k].as_ref().filter(|_| rated[k])?.ln_passage_s(states, goal);
+        let time = |k: usize| {
+            let network = networks[k].as_ref().filter(|_| rated[k])?;
+            // what no passes join with the lowest of the group is no part of its equilibrium
+            let joined = network.joined_with(states[0]);
+            let states: Vec<usize> = states.iter().copied().filter(|k| joined.contains(k)).collect();
+            network.ln_passage_s(&states, goal)
+        };
         let reason = if !survey.is_whole() {
             Some("not all states that symmetry makes are listed".to_string())
         } else if climb_mev == f64::INFINITY {
             Some("no passes lead there".to_string())
+        } else if !leads {
+            Some("no passes lead there from the lowest of the group".to_string())
         } else if states.iter().any(|k| goal.contains(k)) {
             Some("some of both are places of one state".to_string())
         } else if climb_mev < LEAST_BARRIER * K_B * temperature_k {
@@ -268,6 +293,8 @@ struct Transition {
     goal: Vec<usize>,
     /// The highest saddle of the lowest way, above the lowest minimum of the group (meV).
     climb_mev: f64,
+    /// Whether any passes lead there from the lowest minimum of the group.
+    leads: bool,
     /// Whether saddles with a rate by HTST, and by Langer, lead there as low.
     rated: [bool; 2],
 }
@@ -296,20 +323,31 @@ fn over(land: &Landscape, group: &Group, pass: &Pass, number: usize, settings: &
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::drive::survey::{Effort, FoundMinimum, FoundSaddle, Unseen};
+    use crate::drive::survey::{Effort, FoundMinimum, FoundSaddle, Kind, Unseen};
     use crate::geometry::Direction;
     use crate::landscape::Searched;
     use crate::rates::test_rates::{HOP_MEV, both, settings};
     use crate::spins::Spins;
+    use crate::stationary::Spectrum;
 
     /// A uniform state, 0, and a skyrmion's four places: two of one kind, 1 and 2, from which it collapses, and two of another between
     /// them, 3 and 4.
     fn survey() -> Survey {
         let spins = || Spins::uniform(1, Direction::Z);
         let saddle = |kind: usize, minima: [usize; 2]| FoundSaddle { kind, minima, spins: spins() };
+        let kind = |multiplicity: usize| Kind {
+            first: 0,
+            multiplicity,
+            listed: multiplicity,
+            places: 1,
+            above_lowest_mev: 0.0,
+            energy_mev: 0.0,
+            spectrum: Spectrum { negative: 0, flat: 0, zero: 0, floor_mev: 0.0, norm_mev: 1.0, lowest_mev: Vec::new() },
+            max_torque_mev: 0.0,
+        };
         Survey {
-            minimum_kinds: Vec::new(),
-            saddle_kinds: Vec::new(),
+            minimum_kinds: [1, 2, 2].map(kind).into(),
+            saddle_kinds: [4, 2].map(kind).into(),
             minima: [0, 1, 1, 2, 2].map(|kind| FoundMinimum { kind, spins: spins() }).into(),
             saddles: [(0, [1, 3]), (0, [2, 3]), (0, [2, 4]), (0, [1, 4]), (1, [1, 0]), (1, [2, 0])]
                 .map(|(kind, minima)| saddle(kind, minima))

@@ -51,7 +51,12 @@ pub struct SurveyProblem {
     pub rates: Option<RateSettings>,
     /// Into how many shares the search is split, for as many processes; 1 is not split.
     pub shares: usize,
+    /// A larger group is unfolded but for its translations: a state stands for all its places then.
+    pub images: usize,
 }
+
+/// The largest group, as a rule, of which every image is a state by itself.
+pub const IMAGES: usize = 2000;
 
 /// What the states of a group have in common.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -114,7 +119,7 @@ fn searched<T: Send>(
         let mut run = Run::prepare(&asked.problem, observer)?;
         let alike = asked.rates.as_ref().map_or(&[][..], |rates| &rates.moments_mub);
         let group = Group::of(&asked.problem.hamiltonian, run.ends[0].spins.as_slice(), alike);
-        run.land.unfold_by(&group, group.order());
+        run.land.unfold_all(&group, asked.images);
         let planted = run.plant(asked)?;
         let searched = run.explore(asked)?;
         tell(run, &group, planted, searched)
@@ -123,8 +128,9 @@ fn searched<T: Send>(
 
 impl SurveyProblem {
     fn fingerprint(&self) -> crate::record::Fingerprint {
-        let SurveyProblem { problem, seeds, window_mev, effort, groups, rates, shares } = self;
-        let print = problem.fingerprint().text(&format!("{window_mev:?} {effort:?} {groups:?} {rates:?} {shares}"));
+        let SurveyProblem { problem, seeds, window_mev, effort, groups, rates, shares, images } = self;
+        let print =
+            problem.fingerprint().text(&format!("{window_mev:?} {effort:?} {groups:?} {rates:?} {shares} {images}"));
         seeds.iter().fold(print, |print, seed| print.row(seed.as_slice()))
     }
 

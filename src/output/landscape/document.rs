@@ -51,7 +51,7 @@ struct RandomStarts {
     chance_of_another_kind: Option<Number>,
 }
 
-/// What minima and saddles share. `states`: their numbers in the tables.
+/// What minima and saddles share. `states`: their numbers in the tables, `places`: for how many each of them stands.
 #[derive(Serialize)]
 #[allow(non_snake_case)]
 struct Entry {
@@ -60,6 +60,8 @@ struct Entry {
     above_lowest_meV: Number,
     multiplicity: usize,
     states: [usize; 2],
+    #[serde(skip_serializing_if = "is_one")]
+    places: usize,
     max_torque_meV: Number,
     negative_modes: usize,
     zero_modes: usize,
@@ -102,8 +104,8 @@ struct LifetimeEntry<'a> {
     reason: Option<&'a str>,
 }
 
-fn is_one(shares: &usize) -> bool {
-    *shares == 1
+fn is_one(count: &usize) -> bool {
+    *count == 1
 }
 
 pub fn render(report: &LandscapeReport) -> Result<Vec<u8>> {
@@ -151,6 +153,7 @@ fn entry(id: usize, kind: &Kind) -> Entry {
         above_lowest_meV: Number(kind.above_lowest_mev),
         multiplicity: kind.multiplicity,
         states: [kind.first, kind.first + kind.listed - 1],
+        places: kind.places,
         max_torque_meV: Number(kind.max_torque_mev),
         negative_modes: kind.spectrum.negative,
         zero_modes: kind.spectrum.zero_and_flat(),

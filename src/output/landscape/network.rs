@@ -14,8 +14,9 @@ use std::collections::BTreeMap;
 const HEIGHT_MM: f64 = 64.0;
 /// No more of the lowest minima are drawn.
 const MOST_MINIMA: usize = 500;
-/// By how much arcs between the same two minima are apart in their middle, in steps.
+/// By how much arcs between the same two minima are apart in their middle, and how wide all of them are at most, in steps.
 const ARCS: f64 = 0.16;
+const BUNDLE: f64 = 0.8;
 /// Points along an arc.
 const POINTS: usize = 16;
 /// With no more minima than these each has its number.
@@ -47,8 +48,9 @@ impl Network {
             between.entry([a.min(b), a.max(b)]).or_default().push(k);
         }
         let arcs = between.iter().flat_map(|([a, b], all)| {
-            let (p, q, count) = (minima[*a], minima[*b], all.len());
-            all.iter().enumerate().map(move |(k, saddle)| (*saddle, bend(p, q, k as f64 - 0.5 * (count - 1) as f64)))
+            let (p, q, gaps) = (minima[*a], minima[*b], (all.len() - 1) as f64);
+            let gap = ARCS.min(BUNDLE / gaps.max(1.0));
+            all.iter().enumerate().map(move |(k, saddle)| (*saddle, bend(p, q, gap * (k as f64 - 0.5 * gaps))))
         });
         let mut saddles: Vec<(usize, [f64; 2])> = arcs.collect();
         // the lowest lie on top
@@ -64,12 +66,12 @@ impl Network {
     }
 }
 
-/// The control point of the arc that is so many arcs beside the straight line.
+/// The control point of the arc that is so many steps beside the straight line in its middle.
 fn bend(p: [f64; 2], q: [f64; 2], beside: f64) -> [f64; 2] {
     let along = [q[0] - p[0], q[1] - p[1]];
     let size = libm::hypot(along[0], along[1]).max(1e-9);
     // the middle of the arc is half as far from the line
-    let off = 2.0 * ARCS * beside;
+    let off = 2.0 * beside;
     [0.5 * (p[0] + q[0]) - off * along[1] / size, 0.5 * (p[1] + q[1]) + off * along[0] / size]
 }
 

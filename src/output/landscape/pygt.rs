@@ -7,10 +7,10 @@
 //! k(a over s) = 1/2π e^((S_a − S_s)/2) e^(−β(E_s − E_a))      β in 1/meV, k in 1/s
 //! ```
 //! so S_a − S_s = 2 ln(2π A) with the prefactor A in Hz: Langer's, where all saddles have it, else that of HTST, at the first of the
-//! temperatures. Each part of the network that no pass joins with another has an S of its own to count from.
+//! temperatures; of states that stand for n_a and n_s places, S_a − S_s = 2 ln(2π A n_s/n_a). Each part of the network that no pass joins with another has an S of its own to count from.
 
 use super::LandscapeReport;
-use crate::drive::survey::Survey;
+use crate::drive::survey::{Kind, Survey};
 use crate::error::{Error, Result};
 use crate::rates::{SaddleRate, Theory};
 use std::f64::consts::PI;
@@ -41,11 +41,17 @@ fn steps(s: &Survey) -> Vec<Option<[f64; 2]>> {
     let Some(lifetimes) = &s.lifetimes else { return vec![None; s.saddle_kinds.len()] };
     let kelvin = lifetimes.settings.temperatures_k[0];
     let all_have_langer = lifetimes.saddles.iter().flatten().all(|r| r.at(kelvin).langer.is_some());
-    let step = |r: &SaddleRate| {
+    let step = |r: &SaddleRate, ln_ways: f64| {
         let prefactor = r.at(kelvin).prefactor(if all_have_langer { Theory::Langer } else { Theory::Htst })?;
-        Some(2.0 * (libm::log(2.0 * PI) + prefactor.ln_hz_at(kelvin)))
+        // of a state that slides the prefactor is that of all its places
+        let ln_hz = prefactor.ln_hz_at(kelvin) + r.at(kelvin).ln_places;
+        Some(2.0 * (libm::log(2.0 * PI) + ln_hz + ln_ways))
     };
-    lifetimes.saddles.iter().map(|[on, back]| Some([step(on)?, step(back)?])).collect()
+    let steps = |(kind, [on, back]): (&Kind, &[SaddleRate; 2])| {
+        let [a, b] = s.saddles[kind.first].minima.map(|from| kind.ln_ways(s.minimum_kind(from)));
+        Some([step(on, a)?, step(back, b)?])
+    };
+    s.saddle_kinds.iter().zip(&lifetimes.saddles).map(steps).collect()
 }
 
 /// S of each minimum: along saddles from the first of each part of the network, whose S is 0.

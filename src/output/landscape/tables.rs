@@ -9,7 +9,8 @@ use crate::geometry::Vector;
 use crate::output::csv::{CHARGE, Cell, Table};
 use crate::spins::Spins;
 
-/// A row a minimum: number, kind (its `id` in `landscape.json`), energy, mean spin, and the charge of films and crystals.
+/// A row a minimum: number, kind (its `id` in `landscape.json`), energy, mean spin, and the charge of films and crystals; where one
+/// stands for all its places by translations, their number.
 pub(super) fn minima(report: &LandscapeReport) -> Result<Vec<u8>> {
     let s = report.survey;
     let kind = |k: usize| s.minimum_kind(k);
@@ -26,6 +27,9 @@ pub(super) fn minima(report: &LandscapeReport) -> Result<Vec<u8>> {
     let triangles = report.lattice.triangles();
     if !triangles.corners.is_empty() {
         table.real(CHARGE, s.minima.iter().map(|m| triangles.charge(Components::new(m.spins.as_slice()))));
+    }
+    if s.has_places() {
+        table.whole("places", all().map(|k| kind(k).places));
     }
     table.render()
 }
@@ -45,6 +49,9 @@ pub(super) fn saddles(report: &LandscapeReport) -> Result<Vec<u8>> {
     table.real("above_lowest_meV", all().map(above));
     table.real("barrier_from_a_meV", all().map(|k| above(k) - of_minimum(k, 0)));
     table.real("barrier_from_b_meV", all().map(|k| above(k) - of_minimum(k, 1)));
+    if s.has_places() {
+        table.whole("places", all().map(|k| s.saddle_kind(k).places));
+    }
     table.render()
 }
 

@@ -1,0 +1,67 @@
+//! One state for all its places: where symmetry makes too many states to list each, those that a shift of the sites makes of one
+//! are that one.
+//!
+//! A shift that moves the spins and leaves them as they are, a translation, keeps energy, mean spin and charge; of a network of
+//! states it makes itself. So the states that translations make of one form a network of their own, with the same times: a state at
+//! n_a places with saddles at n_s leads over n_s/n_a of them.
+
+use super::is_same_state;
+use crate::energy::Evaluator;
+use crate::field::Components;
+use crate::geometry::vector;
+use crate::sphere::SAME;
+use crate::symmetry::{Group, Operation};
+
+/// Translations of which no state is told.
+#[derive(Clone, Debug, Default)]
+pub struct Places(Vec<Operation>);
+
+impl Places {
+    /// Of a group: those that multiples of each of its shifts make.
+    pub fn of(group: &Group, multiples: &[usize]) -> Places {
+        Places(group.multiples(multiples).skip(1).collect())
+    }
+
+    /// Whether one of them makes `b` of `a`, perhaps with a rotation about the symmetry axes.
+    pub fn join(&self, h: Evaluator, a: &[f64], b: &[f64]) -> bool {
+        let seen = Seen::of(h, b);
+        self.0.iter().any(|by| seen.may_be(by, a) && is_same_state(h, &by.apply(a), b))
+    }
+
+    /// At how many places a state may be.
+    pub fn count(&self, h: Evaluator, m: &[f64]) -> usize {
+        let seen = Seen::of(h, m);
+        let keeps = self.0.iter().filter(|by| seen.may_be(by, m) && is_same_state(h, &by.apply(m), m)).count();
+        (1 + self.0.len()) / (1 + keeps)
+    }
+}
+
+/// A state, looked at first where it is least like the rest.
+pub struct Seen<'a> {
+    h: Evaluator<'a>,
+    m: Components<'a>,
+    first: usize,
+}
+
+impl<'a> Seen<'a> {
+    /// This state (3N).
+    pub fn of(h: Evaluator<'a>, m: &'a [f64]) -> Seen<'a> {
+        let m = Components::new(m);
+        let sum = (0..m.sites()).fold([0.0; 3], |sum, i| vector::add(sum, m.get(i)));
+        let odd = |i: &usize| vector::dot(m.get(*i), sum);
+        let first = (0..m.sites()).min_by(|i, j| odd(i).total_cmp(&odd(j))).unwrap_or(0);
+        Seen { h, m, first }
+    }
+
+    /// Whether an operation may make it of another state: what no rotation about the symmetry axes changes is compared.
+    pub fn may_be(&self, by: &Operation, of: &[f64]) -> bool {
+        let (from, sites) = (Components::new(of), self.m.sites());
+        let off = |i: usize| vector::sub(by.at(from, i), self.m.get(i));
+        let is_off = |i: usize| match self.h.symmetry_axes() {
+            [] => vector::norm(off(i)) > SAME,
+            [axis] => vector::dot(*axis, off(i)).abs() > SAME,
+            _ => false,
+        };
+        !(0..sites).map(|k| (self.first + k) % sites).any(is_off)
+    }
+}
