@@ -7,7 +7,8 @@
 //! k(a over s) = 1/2π e^((S_a − S_s)/2) e^(−β(E_s − E_a))      β in 1/meV, k in 1/s
 //! ```
 //! so S_a − S_s = 2 ln(2π A) with the prefactor A in Hz: Langer's, where all saddles have it, else that of HTST, at the first of the
-//! temperatures; of states that stand for n_a and n_s places, S_a − S_s = 2 ln(2π A n_s/n_a). Each part of the network that no pass joins with another has an S of its own to count from.
+//! temperatures; of states that stand for n_a and n_s places, S_a − S_s = 2 ln(2π A n_s/n_a). Each part of the network that no pass
+//! joins with another has an S of its own to count from.
 
 use super::LandscapeReport;
 use crate::drive::survey::{Kind, Survey};
