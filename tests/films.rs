@@ -336,3 +336,49 @@ fn the_natural_paths_of_a_spot_shrink_it_and_let_it_drift_over_open_edges_and_a_
     assert!(found[0] == "geodesic" && found.iter().all(|name| name == "geodesic" || name == "sweep"), "{found:?}");
     assert!(found.iter().filter(|name| *name == "sweep").count() >= 2, "{found:?}");
 }
+
+/// The energies along the natural paths, of the exchanged ones from their last image on.
+fn profiles(h: &Hamiltonian, a: &Spins, b: &Spins, exchanged: bool) -> Vec<Vec<f64>> {
+    let context = GuessContext { states: StateContext::new(h.lattice(), 1.5), default_axis: Direction::X };
+    let [a, b] = if exchanged { [b, a] } else { [a, b] };
+    let energies = |(guess, _): (GuessSpec, Option<NoiseSpec>)| -> Vec<f64> {
+        let p = guess.member().path(a, b, 15, &context).unwrap();
+        let image = |k: usize| h.energy_mev(p.image(if exchanged { 14 - k } else { k }));
+        (0..15).map(image).collect()
+    };
+    natural(h, a, b, &context).into_iter().map(energies).collect()
+}
+
+#[test]
+fn the_natural_paths_from_one_end_to_the_other_are_those_back() {
+    let film = lattice([9, 7, 1], false, 90.0, 1);
+    let [up, down] = up_and_down(film.sites);
+    let grains = |i: usize| 0.3 + 0.06 * f64::sin(1.7 * i as f64);
+    for (field, d) in [(0.05, 0.0), (-0.05, 0.0), (0.05, 0.15), (-0.05, 0.15)] {
+        let h = energy(&film, d, grains, field);
+        let [there, back] = [false, true].map(|exchanged| profiles(&h, &up, &down, exchanged));
+        assert_eq!(there.len(), back.len(), "{field} {d}");
+        // images are equally far apart to a thousandth
+        let alike = |x: &[f64], y: &[f64]| x.iter().zip(y).all(|(x, y)| (x - y).abs() < 0.1);
+        for (ours, others) in [(&there, &back), (&back, &there)] {
+            assert!(ours.iter().all(|x| others.iter().any(|y| alike(x, y))), "{field} {d}: {ours:?} {others:?}");
+        }
+    }
+}
+
+#[test]
+fn a_droplet_of_the_initial_state_ends_where_one_of_the_final_state_begins() {
+    let film = lattice([12, 10, 1], false, 90.0, 1);
+    let [up, down] = up_and_down(film.sites);
+    let made = |of: &str, x: f64, a: &Spins, b: &Spins| {
+        let guess = format!(r#"{{"droplet": {{"center": [2, 3], "radius": 1, "of": "{of}", "axis": [{x}, 0, 0]}}}}"#);
+        path(&guess, a, b, 11, &film)
+    };
+    let (shrinks, grows) = (made("initial", 1.0, &up, &down), made("final", -1.0, &down, &up));
+    for k in 0..11 {
+        let mut pairs = shrinks.image(k).iter().zip(grows.image(10 - k));
+        assert!(pairs.all(|(x, y)| (x - y).abs() < 0.02), "image {k}");
+    }
+    let apart = |p: &Path, image: usize| (0..120).filter(|i| p.spins(image).get(*i)[2] > 0.0).count();
+    assert!((1..60).contains(&apart(&shrinks, 8)) && apart(&made("final", 1.0, &up, &down), 2) > 60);
+}

@@ -5,7 +5,7 @@ use super::outcome::{HistoryRow, RejectedPath};
 use crate::band::Band;
 use crate::geometry::Direction;
 use crate::landscape::Saddle;
-use crate::path::guess::{Drift, GuessSpec};
+use crate::path::guess::{Drift, GuessSpec, Inside};
 use crate::stationary::LOWER;
 use crate::units::Angle;
 
@@ -51,10 +51,10 @@ impl<'a> FirstPath<'a> {
         self.found.as_ref().filter(|f| f.is_stationary(c))
     }
 
-    /// The refined saddle above the first image (meV), or the highest image.
+    /// The refined saddle above the first image (meV), or the interpolated top.
     pub fn barrier_mev(&self, c: f64) -> f64 {
         let refined = self.stationary(c).map(|f| f.refined.state.energy_mev - self.band.energies_mev()[0]);
-        refined.unwrap_or(self.top_mev())
+        refined.unwrap_or(self.peak_mev())
     }
 
     /// 0: a saddle of index one; 1: nothing refined; 2: a saddle of higher index.
@@ -82,11 +82,8 @@ pub fn rejection(c: &FirstPath, best: &FirstPath, scale: f64) -> RejectedPath {
             format!("followed from end to end, it passes no lower than \"{}\"", best.name)
         }
         Some(_) => format!("its saddle is not below that of \"{}\"", best.name),
-        None => format!(
-            "its highest image lies above the path \"{}\" after {} evaluations",
-            best.name,
-            c.band.evaluations()
-        ),
+        None if c.peak_mev() < best.barrier_mev(scale) => "no saddle was found at its top".to_string(),
+        None => format!("its top lies above the path \"{}\" after {} evaluations", best.name, c.band.evaluations()),
     };
     RejectedPath { guess: c.name.clone(), barrier_mev, negative_modes, reason }
 }
@@ -105,8 +102,12 @@ pub fn describe(guess: &GuessSpec, axis: bool) -> String {
         GuessSpec::Sweep(s) => at(about(format!("sweep from {}", s.from), &s.axis), &s.helicity),
         GuessSpec::Shrink(s) => at(about(guess.name().to_string(), &s.axis), &s.helicity),
         GuessSpec::Droplet(d) => {
-            let from = d.center.as_ref().map_or(String::new(), |center| format!(" from {center}"));
-            at(about(format!("droplet{from}"), &d.axis), &d.helicity)
+            let (of, which) = match d.of {
+                Inside::Final => ("", "from"),
+                Inside::Initial => (" of the initial state", "to"),
+            };
+            let place = d.center.as_ref().map_or(String::new(), |center| format!(" {which} {center}"));
+            at(about(format!("droplet{of}{place}"), &d.axis), &d.helicity)
         }
         GuessSpec::Drift(Drift { direction: Some(direction) }) => format!("drift towards {direction}"),
         GuessSpec::Geodesic(g) => about(guess.name().to_string(), &g.axis),

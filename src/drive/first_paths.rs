@@ -53,7 +53,8 @@ impl<'a> Run<'a, '_> {
         let mut kinds: Vec<String> = vec!["geodesic".into()];
         for c in &mut tried {
             let lowest = c.peak_mev();
-            let worth = finished < 2 && !(finished == 1 && lowest > 1.2 * lowest_barrier);
+            // a top that stands below every saddle may be a lower one
+            let worth = finished == 0 || (finished == 1 && lowest < 1.2 * lowest_barrier) || lowest < lowest_barrier;
             // a collapse and an escape over an edge are two answers, and both are told
             let other = !is_row && !kinds.iter().any(|k| k == c.kind()) && lowest < OF_OTHER_KINDS * lowest_barrier;
             if self.problem.seeks_saddles() && (worth || other) {
@@ -77,11 +78,13 @@ impl<'a> Run<'a, '_> {
         Ok(tried)
     }
 
-    /// Relaxes a path until its top is a refined saddle of index one, leaving saddles of higher index sideways.
+    /// Relaxes a path, where it needs to be, until its top is a refined saddle of index one, leaving saddles of higher index sideways.
     pub(super) fn conclude(&mut self, c: &mut FirstPath<'a>) -> Result<()> {
         let scale = self.scales.stiffness_mev;
+        // on a film the saddle is found by its lowest mode, and from farther away than by a valley
+        let mut relaxes = self.problem.hamiltonian.lattice().is_row();
         for round in 0..ESCAPES {
-            if !c.stop.is_converged() {
+            if relaxes && !c.stop.is_converged() {
                 self.relax(c, Goal::Loose, c.band.evaluations() + 24)?;
             }
             if !self.problem.seeks_saddles() {
@@ -95,6 +98,9 @@ impl<'a> Run<'a, '_> {
             let Some(found) = c.found.as_ref() else { break };
             if found.is_saddle(scale) || round + 1 == ESCAPES {
                 break;
+            }
+            if !std::mem::replace(&mut relaxes, true) && !c.stop.is_converged() && !found.is_stationary(scale) {
+                continue;
             }
             let mut best: Option<Band<'a>> = None;
             for path in escapes(&c.band, found, scale) {

@@ -18,6 +18,8 @@ use crate::stationary::LOWER;
 const RESOLVED: f64 = 1.0;
 /// Most images of an automatic path.
 const MOST_IMAGES: usize = 2001;
+/// More images are of use where they bring neighbours nearer, to this part of how far they were.
+const FINER: f64 = 0.8;
 /// Evaluations of a band before its minima are looked at.
 const FIRST: usize = 60;
 /// Maxima within this part of the path's height of the highest are refined.
@@ -115,7 +117,6 @@ impl<'a> Run<'a, '_> {
 
     /// Puts the path together from stretch to stretch of its route, in the place of the band; says whether it took the place.
     pub(super) fn lead_over(&mut self, c: &mut FirstPath<'a>, proof: &Proof) -> Result<bool> {
-        let h = self.problem.evaluator();
         if !proof.doubts.is_empty() || !self.problem.relax_ends {
             return Ok(false);
         }
@@ -126,16 +127,30 @@ impl<'a> Run<'a, '_> {
             Images::Count(n) => Some(n),
         };
         let assembled = assemble(&self.land, &proof.links, ends, images, 0.9 * RESOLVED, &self.tools())?;
-        let Some(Assembled { path, stops }) = assembled else { return Ok(false) };
-        let mut band = Band::continued(h, path, c.band.evaluations());
-        for k in stops {
-            let m = band.path().image(k).to_vec();
-            band.hold(k, &m);
+        let Some(mut way) = assembled else { return Ok(false) };
+        let good = self.follow(c, &way, &proof.links)?;
+        while good && self.is_coarse(c) && c.band.images() < MOST_IMAGES {
+            let before = c.band.path().longest_step(RESOLVED);
+            let Some(finer) = way.finer(c.band.path(), RESOLVED) else { break };
+            way = finer;
+            if !self.follow(c, &way, &proof.links)? || c.band.path().longest_step(RESOLVED) > FINER * before {
+                break;
+            }
+        }
+        Ok(good)
+    }
+
+    /// Takes a path that was put together in the place of the band, relaxed, unless a band that was converged would be lost or it rises
+    /// over its saddles; says whether it took the place.
+    fn follow(&mut self, c: &mut FirstPath<'a>, way: &Assembled, links: &[Pass]) -> Result<bool> {
+        let mut band = Band::continued(self.problem.evaluator(), way.path.clone(), c.band.evaluations());
+        for &k in &way.stops {
+            band.hold(k, way.path.image(k));
         }
         let before = std::mem::replace(&mut c.band, band);
         let stop = c.stop;
         self.relax(c, Goal::Tight, c.band.evaluations() + FIRST)?;
-        let fits = c.top_mev() <= over(c, &proof.links);
+        let fits = c.top_mev() <= over(c, links);
         if fits && !c.stop.is_converged() {
             self.relax(c, Goal::Tight, usize::MAX)?;
         }
@@ -256,7 +271,7 @@ impl<'a> Run<'a, '_> {
             let now = c.band.images();
             let before = std::mem::replace(&mut apart, c.band.path().largest_rotation());
             // a step over a minimum stays as long as it is, however many images there are
-            if apart > 0.8 * before && self.problem.images == Images::Auto && now >= FEWEST_IMAGES {
+            if apart > FINER * before && self.problem.images == Images::Auto && now >= FEWEST_IMAGES {
                 return Ok(());
             }
             let next = match self.problem.images {

@@ -29,6 +29,26 @@ pub struct Assembled {
     pub stops: Vec<usize>,
 }
 
+impl Assembled {
+    /// A relaxed path over the same stops, where neighbouring images of a stretch are farther apart than that (rad, any spin) with
+    /// another between each two of it; None where none are. Over a flat valley the geodesic is shorter than the way: a wall is somewhere
+    /// else at once, and has to go there.
+    pub fn finer(&self, path: &Path, apart: f64) -> Option<Assembled> {
+        let ends: Vec<usize> =
+            std::iter::once(0).chain(self.stops.iter().copied()).chain([path.images() - 1]).collect();
+        let (mut row, mut stops): (Vec<Spins>, Vec<usize>) = (vec![path.spins(0)], Vec::new());
+        for stretch in ends.windows(2) {
+            let own: Vec<Spins> = (stretch[0]..=stretch[1]).map(|k| path.spins(k)).collect();
+            let own = Path::new(&own);
+            let own = if own.largest_rotation() > apart { own.doubled() } else { own };
+            row.extend((1..own.images()).map(|k| own.spins(k)));
+            stops.push(row.len() - 1);
+        }
+        stops.pop();
+        (row.len() > path.images()).then(|| Assembled { path: Path::new(&row), stops })
+    }
+}
+
 /// The path from `a` to `b` over passes, with so many images, or as many as bring neighbours within `apart` (rad, any spin). None
 /// where there are no passes or fewer images than stretches.
 pub fn assemble(

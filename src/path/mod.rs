@@ -81,6 +81,12 @@ impl Path {
         self.steps(largest_angle).into_iter().fold(0.0, f64::max)
     }
 
+    /// The longest of the steps between neighbouring images in which any spin turns by more than that (rad); 0 if none does.
+    pub fn longest_step(&self, turns: f64) -> f64 {
+        let steps = self.steps(|a, b| if largest_angle(a, b) > turns { distance(a, b) } else { 0.0 });
+        steps.into_iter().fold(0.0, f64::max)
+    }
+
     /// The largest rotations of any spin from image to image, all together (rad).
     pub fn rotation(&self) -> f64 {
         self.steps(largest_angle).into_iter().sum()

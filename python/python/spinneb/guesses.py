@@ -113,20 +113,24 @@ def droplet(
     axis: Direction | None = None,
     center: Sequence[Extent] | None = None,
     helicity: str | None = None,
+    of: Literal["initial"] | Literal["final"] | None = None,
     radius: Extent | None = None,
     width: Extent | None = None,
 ) -> Guess:
-    """A droplet of the final state grows from a point, such as a corner.
+    """A droplet of the final state grows from a point, such as a corner, or one of the initial state shrinks
+    to it.
 
     Parameters
     ----------
     axis
         Axis about which opposite spins turn.
     center
-        Where it begins; at the hollow nearest to the middle of what differs if absent.
+        Where it begins, or ends; at the hollow nearest to the middle of what differs if absent.
     helicity
         In place of an axis: opposite spins turn by way of the direction at this angle to the way of the
         front.
+    of
+        Which state it is of: the final one grows from the point, the initial one shrinks to it.
     radius
         What turns together, in spacings; 0 if absent.
     width
@@ -134,7 +138,7 @@ def droplet(
 
     In a config: ``{"droplet": {"center": [0, 0], "radius": 1}}``
     """
-    return Guess("droplet", {"axis": as_direction(axis), "center": center, "helicity": helicity, "radius": radius, "width": width})
+    return Guess("droplet", {"axis": as_direction(axis), "center": center, "helicity": helicity, "of": of, "radius": radius, "width": width})
 
 
 def rotation(

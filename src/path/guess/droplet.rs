@@ -1,4 +1,4 @@
-//! A round front from a point outwards: a droplet of the final state that grows.
+//! A round front from a point outwards: a droplet of the final state that grows; or to a point: one of the initial state that shrinks.
 //!
 //! Its spins within a radius turn together; from there on they turn as the front reaches them.
 
@@ -19,9 +19,12 @@ use serde::Deserialize;
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Droplet {
-    /// Where it begins; at the hollow nearest to the middle of what differs if absent.
+    /// Where it begins, or ends; at the hollow nearest to the middle of what differs if absent.
     #[serde(default)]
     pub center: Option<Place>,
+    /// Which state it is of: the final one grows from the point, the initial one shrinks to it.
+    #[serde(default)]
+    pub of: Inside,
     /// What turns together, in spacings; 0 if absent.
     #[serde(default)]
     pub radius: Option<Extent>,
@@ -36,9 +39,21 @@ pub struct Droplet {
     pub helicity: Option<Angle>,
 }
 
+/// The state that a droplet is of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Inside {
+    /// It shrinks.
+    Initial,
+    /// It grows.
+    #[default]
+    Final,
+}
+
 impl Described for Droplet {
     const NAME: &'static str = "droplet";
-    const SUMMARY: &'static str = "a droplet of the final state grows from a point, such as a corner";
+    const SUMMARY: &'static str =
+        "a droplet of the final state grows from a point, such as a corner, or one of the initial state shrinks to it";
     const EXAMPLE: &'static str = r#"{"droplet": {"center": [0, 0], "radius": 1}}"#;
 }
 
@@ -55,8 +70,9 @@ impl FirstGuess for Droplet {
         if radius < 0.0 {
             return Err(Error::invalid("radius", format!("found {radius}, but a radius is 0 or more")));
         }
-        let mut front = Front::round(difference.from(center, lattice), false, lattice.sites);
-        front.places.iter_mut().for_each(|r| *r = r.max(radius));
+        let shrinks = self.of == Inside::Initial;
+        let mut front = Front::round(difference.from(center, lattice), shrinks, lattice.sites);
+        front.places.iter_mut().for_each(|r| *r = if shrinks { r.min(-radius) } else { r.max(radius) });
         front.with(self.width, self.axis, self.helicity).path(&Ways::between(a, b), images, context)
     }
 }

@@ -22,7 +22,7 @@ mod waypoints;
 
 pub use clock::{NEARLY_OPPOSITE, Way, Ways, common_axis, ways};
 pub use drift::Drift;
-pub use droplet::Droplet;
+pub use droplet::{Droplet, Inside};
 pub use file::PathFile;
 pub use geodesic::Geodesic;
 pub use natural::natural;

@@ -6,6 +6,8 @@
 //! | in a band across the lattice | geodesic; a front from either side of it |
 //! | everywhere | geodesic; a front from every edge (face); a droplet from every corner; where directions are periodic a front along each, and where all are a droplet from the middle |
 //!
+//! The droplet is of the state of lower energy, whichever end that is: from one end to the other or back, the paths are the same.
+//!
 //! Opposite spins turn in the sense whose image halfway has the least energy, of ±x, ±y, ±z, the axes that terms of the energy single
 //! out, and fronts also outwards, inwards and both ways round of their way; and in the opposite sense too where that has another
 //! energy. Of paths whose energies are the same all along, images of each other by a symmetry, the first stays.
@@ -13,7 +15,7 @@
 use super::difference::Difference;
 use super::drift::exits;
 use super::outline::Outline;
-use super::{Drift, Droplet, Edge, Geodesic, GuessContext, GuessSpec, NoiseSpec, Shrink, Sweep, Ways};
+use super::{Drift, Droplet, Edge, Geodesic, GuessContext, GuessSpec, Inside, NoiseSpec, Shrink, Sweep, Ways};
 use crate::energy::Hamiltonian;
 use crate::geometry::{Direction, Vector, vector};
 use crate::lattice::Lattice;
@@ -60,7 +62,7 @@ impl Sense {
 enum Route {
     Geodesic,
     Front(Direction),
-    Droplet(Option<Vector>),
+    Droplet(Option<Vector>, Inside),
     Shrink,
     Drift(Direction),
 }
@@ -71,9 +73,9 @@ impl Route {
         match self {
             Route::Geodesic => GuessSpec::Geodesic(Geodesic { axis }),
             Route::Front(side) => GuessSpec::Sweep(Sweep { axis, helicity, ..Edge::From(*side).into() }),
-            Route::Droplet(at) => {
+            Route::Droplet(at, of) => {
                 let center = at.map(|at| lattice.place_of(at));
-                GuessSpec::Droplet(Droplet { center, axis, helicity, ..Droplet::default() })
+                GuessSpec::Droplet(Droplet { center, of: *of, axis, helicity, ..Droplet::default() })
             }
             Route::Shrink => GuessSpec::Shrink(Shrink { axis, helicity, ..Shrink::default() }),
             Route::Drift(direction) => GuessSpec::Drift(Drift { direction: Some(*direction) }),
@@ -103,7 +105,7 @@ pub fn natural(h: &Hamiltonian, a: &Spins, b: &Spins, context: &GuessContext) ->
     let choice = Ways::between(a, b).have_a_choice();
     let path = |guess: &GuessSpec, images: usize| guess.member().path(a, b, images, context).ok();
     let mut found: Vec<(GuessSpec, Vec<f64>)> = Vec::new();
-    for route in routes(a, b, lattice) {
+    for route in routes(a, b, h) {
         let halfway = |sense: Sense| {
             let middle = path(&route.guess(sense, lattice), 3);
             middle.map_or(f64::INFINITY, |path| h.energy_mev(path.image(1)))
@@ -126,7 +128,8 @@ pub fn natural(h: &Hamiltonian, a: &Spins, b: &Spins, context: &GuessContext) ->
 }
 
 /// The ways that fit how two states differ.
-fn routes(a: &Spins, b: &Spins, lattice: &Lattice) -> Vec<Route> {
+fn routes(a: &Spins, b: &Spins, h: &Hamiltonian) -> Vec<Route> {
+    let lattice = h.lattice();
     let difference = Difference::between(a, b, lattice);
     let direction = |v: &Vector| Direction::new(*v).ok();
     let mut routes = vec![Route::Geodesic];
@@ -140,12 +143,14 @@ fn routes(a: &Spins, b: &Spins, lattice: &Lattice) -> Vec<Route> {
         return routes;
     }
     let (outline, cells) = (Outline::of(lattice), lattice.cell_vectors());
+    let climbs = h.difference_mev(b.as_slice(), a.as_slice()) > DIFFERENT * h.stiffness_mev();
+    let droplet = |at: Option<Vector>| Route::Droplet(at, if climbs { Inside::Initial } else { Inside::Final });
     routes.extend(outline.edges.iter().filter_map(direction).map(Route::Front));
-    routes.extend(outline.corners.iter().map(|i| Route::Droplet(Some(lattice.place(*i)))));
+    routes.extend(outline.corners.iter().map(|i| droplet(Some(lattice.place(*i)))));
     let periodic = (0..3).filter(|d| lattice.grid.periodic[*d] && lattice.grid.size[*d] > 1);
     routes.extend(periodic.filter_map(|d| direction(&vector::scale(-1.0, cells[d]))).map(Route::Front));
     if outline.edges.is_empty() {
-        routes.push(Route::Droplet(None));
+        routes.push(droplet(None));
     }
     routes
 }
