@@ -1,12 +1,22 @@
 //! LDLᵀ of lattices of nearest neighbours: time, memory and arithmetic by number of sites.
 //!
-//! `cargo bench --bench sparse`. Squares and cubes, open and periodic, of rotated 2 × 2 bonds.
+//! `cargo bench --bench sparse`. Squares and cubes, open and periodic, of rotated 2 × 2 bonds. With `--features faer` beside faer and a
+//! port of QDLDL; with the word `inertia` after `--` the three count the negative eigenvalues of 1000 random shifted Hessians.
+
+#[cfg(feature = "faer")]
+mod inertia;
+#[cfg(feature = "faer")]
+mod others;
 
 use cpu_time::ThreadTime;
 use spinneb::linalg::{Graph, SparseLdl, SparseMatrix, Symbolic};
 use std::sync::Arc;
 
 fn main() {
+    #[cfg(feature = "faer")]
+    if std::env::args().any(|word| word == "inertia") {
+        return inertia::compare(1000);
+    }
     println!(
         "{:>12} {:>8} {:>9} {:>10} {:>10} {:>10} {:>9} {:>9} {:>9} {:>9}",
         "lattice", "sites", "periodic", "plan (s)", "first (s)", "again (s)", "solve (s)", "MiB", "Gflop", "Gflop/s"
@@ -61,6 +71,27 @@ fn measure(length: usize, dimensions: u32, periodic: bool) {
         format!("{length}^{dimensions}"),
         gflop / again
     );
+    #[cfg(feature = "faer")]
+    beside(&matrix, &b, &x, [planned, again, solved], factors.negatives());
+}
+
+/// What others take for the same, and how many times ours that is.
+#[cfg(feature = "faer")]
+fn beside(matrix: &SparseMatrix, b: &[f64], x: &[f64], ours: [f64; 3], negatives: usize) {
+    for (name, by) in [("faer", others::faer as fn(&SparseMatrix, &[f64]) -> others::Taken), ("QDLDL", others::qdldl)] {
+        // minutes beyond
+        if name == "QDLDL" && matrix.plan().flops() > 5e10 {
+            continue;
+        }
+        let taken = by(matrix, b);
+        let off = taken.x.iter().zip(x).fold(0.0f64, |m, (p, q)| m.max((p - q).abs()));
+        assert!(off < 1e-6 && taken.negatives == negatives, "{name}: {off:e}, {} {negatives}", taken.negatives);
+        let [plan, factor, solve] = [taken.plan_s / ours[0], taken.factor_s / ours[1], taken.solve_s / ours[2]];
+        println!(
+            "{name:>12} {:>8} {:>9} {:>10.3} {:>10} {:>10.3} {:>9.4}   {plan:.2}, {factor:.2} and {solve:.2} times ours",
+            "", "", taken.plan_s, "", taken.factor_s, taken.solve_s
+        );
+    }
 }
 
 /// Indefinite: some of its eigenvalues are negative.
