@@ -2,12 +2,12 @@
 //!
 //! `cargo bench --bench films` runs walls that cross open films, K = 0.1 (16/L)² J (the same wall on a finer lattice), and collapses
 //! of one skyrmion in ever larger periodic films (J = 1, D = 0.6, K = 0.1, B = 0.2 meV); `cargo bench --bench films -- wall 256 512`
-//! or `-- skyrmion 256` those of the sizes that are given. Iterations are band evaluations of the reported path, gradients those of
-//! one image, all that is done counted; CPU time is that of all threads.
+//! or `-- skyrmion 256` those of the sizes that are given. Iterations are band evaluations of the reported path, products those with the
+//! Hessian of an image in it, gradients those of one image, all that is done counted; CPU time is that of all threads.
 
 use cpu_time::ProcessTime;
 use spinneb::config::load_text;
-use spinneb::drive::{Problem, Silent, run};
+use spinneb::drive::{HistoryRow, Outcome, Problem, Silent, run};
 use spinneb::landscape::Effort;
 use std::path::Path;
 
@@ -31,10 +31,11 @@ fn main() {
     let wanted = |kind: &str| words.iter().all(|word| word.parse::<usize>().is_ok() || word == kind);
     for (kind, problem, by_default) in SERIES.into_iter().filter(|(kind, ..)| wanted(kind)) {
         println!(
-            "{:>9} {:>9} {:>10} {:>9} {:>20} {:>9} {:>8} {:>8} {:>7} {:>8}",
+            "{:>9} {:>9} {:>10} {:>8} {:>9} {:>20} {:>9} {:>8} {:>8} {:>7} {:>8}",
             kind,
             "sites",
             "iterations",
+            "products",
             "gradients",
             "barrier_meV",
             "certified",
@@ -55,9 +56,10 @@ fn tell(cells: usize, problem: &Problem) {
     let found = run(problem, &mut Silent).expect("a valid problem");
     let cpu = clock.elapsed().as_secs_f64();
     println!(
-        "{:>9} {sites:>9} {:>10} {:>9} {:>20.14} {:>9} {cpu:>8.2} {:>8.2} {:>7.0} {:>8}",
+        "{:>9} {sites:>9} {:>10} {:>8.1} {:>9} {:>20.14} {:>9} {cpu:>8.2} {:>8.2} {:>7.0} {:>8}",
         format!("{cells}²"),
         found.work.iterations,
+        products(&found),
         found.work.force_evaluations,
         found.barrier.map_or(f64::NAN, |barrier| barrier.forward_mev),
         if found.certified { "yes" } else { "no" },
@@ -66,6 +68,12 @@ fn tell(cells: usize, problem: &Problem) {
         peak_gb().map_or("unknown".into(), |gb| format!("{gb:.2}")),
     );
     found.warnings.iter().for_each(|warning| println!("{:>9} {warning}", ""));
+}
+
+/// Products with a Hessian an image, in the band of the reported path.
+fn products(found: &Outcome) -> f64 {
+    let moving = |row: &HistoryRow| row.hessian_products as f64 / (row.images - 2) as f64;
+    found.history.iter().map(moving).sum()
 }
 
 fn problem(cells: usize, periodic: bool, energy: &str, initial: &str, end: &str) -> Problem {

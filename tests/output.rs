@@ -171,6 +171,7 @@ fn tiny() -> Outcome {
         largest_predicted_rotation_rad: 1e-7,
         highest_image_mev: 0.5,
         length_rad: 2.0,
+        hessian_products: 7,
     }];
     o
 }

@@ -39,7 +39,8 @@ pub fn compare(count: u64) {
 /// Of random spins on a random lattice with exchange, Dzyaloshinskii–Moriya interaction and an easy axis, less a random shift.
 fn hessian(r: &mut impl Rng) -> SparseMatrix {
     let (kind, directions) = LATTICES[r.random_range(0..LATTICES.len())];
-    let cells: Vec<usize> = (0..directions).map(|_| r.random_range(if directions == 2 { 3..10 } else { 3..5 })).collect();
+    let cells: Vec<usize> =
+        (0..directions).map(|_| r.random_range(if directions == 2 { 3..10 } else { 3..5 })).collect();
     let [j, d, k]: [f64; 3] = [(-1.0, 1.0), (-0.5, 0.5), (-0.3, 0.3)].map(|(a, b)| r.random_range(a..b));
     let periodic = r.random_bool(0.5);
     let text = format!(

@@ -63,6 +63,7 @@ impl Iterated {
     /// Writes the move `y` (3N, rad) of image k, pushed across the path, shifted along it, and dragged by σ times the move of its
     /// uphill neighbour, if that moves.
     pub fn relax(&mut self, band: &Band, k: usize, uphill: Option<&[f64]>, y: &mut [f64]) -> Move {
+        self.equations.products = 0;
         self.set_right_side(band, k, uphill);
         for _ in 1..SHIFT_TRIES {
             let (h, m, g) = (band.hamiltonian(), band.path().image(k), band.gradient(k));
@@ -75,7 +76,7 @@ impl Iterated {
         let x = &self.equations.x;
         y.copy_from_slice(x);
         slab::add_scaled(y, band.local_shift(k), band.tangent(k));
-        Move { rotation: longest(x), shift: self.shift, factorisations: 0 }
+        Move { rotation: longest(x), shift: self.shift, factorisations: 0, products: self.equations.products }
     }
 
     /// F⊥ + σ y_u − A d τ.

@@ -48,6 +48,8 @@ pub struct Move {
     pub shift: f64,
     /// Factorisations used.
     pub factorisations: usize,
+    /// Products with the Hessian in their place.
+    pub products: usize,
 }
 
 impl Linearised {
@@ -201,7 +203,7 @@ impl Linearised {
             rotation = if here > rotation || here.is_nan() { here } else { rotation };
             self.basis.row_field(row.clone(), x, y.reborrow().into_range(row));
         }
-        Move { rotation, shift: self.shift, factorisations: self.tries }
+        Move { rotation, shift: self.shift, factorisations: self.tries, products: 0 }
     }
 
     /// Sets x to b; returns (A⁻¹C)ᵀb.

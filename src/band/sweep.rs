@@ -159,8 +159,10 @@ impl Task<'_> {
 pub struct SweepStep {
     /// Largest rotation of any spin across the path (rad).
     pub rotation: f64,
-    /// Banded factorisations used.
+    /// Factorisations used.
     pub factorisations: usize,
+    /// Products with a Hessian in their place.
+    pub products: usize,
 }
 
 impl Sweep {
@@ -208,12 +210,13 @@ impl Sweep {
     }
 
     fn settle(&mut self, done: &[(usize, Move)]) -> SweepStep {
-        let mut step = SweepStep { rotation: 0.0, factorisations: 0 };
+        let mut step = SweepStep { rotation: 0.0, factorisations: 0, products: 0 };
         for (k, image) in done {
             self.shifts[*k] = image.shift;
             step.rotation =
                 if (step.rotation + image.rotation).is_nan() { f64::NAN } else { image.rotation.max(step.rotation) };
             step.factorisations += image.factorisations;
+            step.products += image.products;
         }
         step
     }

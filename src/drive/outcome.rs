@@ -196,6 +196,8 @@ pub struct HistoryRow {
     pub highest_image_mev: f64,
     /// Path length (rad).
     pub length_rad: f64,
+    /// Products with the Hessians of all images, where nothing was factorised.
+    pub hessian_products: usize,
 }
 
 /// What the search for lower passes came to.

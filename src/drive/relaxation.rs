@@ -198,15 +198,18 @@ impl Relaxation<'_> {
         let enough = LOOSE * self.scales.stiffness_mev;
         if goal == Goal::Loose && (force < enough || self.top_stands(band, now, enough)) {
             let rotation = force.min(enough) / self.scales.stiffness_mev;
-            self.record(band, rotation);
+            self.record(band, rotation, 0);
             return Some(Stop::Converged { rotation, tolerance: LOOSE });
         }
         let climbing = self.climbing(band, goal);
-        let rotation = match self.settings.optimiser.member().follows() {
-            Follows::Sweep => now.sweep.step(band, self.axes, direction).rotation,
-            follows => self.along_forces(band, follows, &climbing, direction),
+        let (rotation, products) = match self.settings.optimiser.member().follows() {
+            Follows::Sweep => {
+                let step = now.sweep.step(band, self.axes, direction);
+                (step.rotation, step.products)
+            }
+            follows => (self.along_forces(band, follows, &climbing, direction), 0),
         };
-        self.record(band, rotation);
+        self.record(band, rotation, products);
         if !rotation.is_finite() || !force.is_finite() {
             return Some(Stop::NotFinite);
         }
@@ -280,7 +283,7 @@ impl Relaxation<'_> {
         prominent_maxima(band.energies_mev(), PROMINENT * height(band))
     }
 
-    fn record(&mut self, band: &Band, rotation: f64) {
+    fn record(&mut self, band: &Band, rotation: f64, hessian_products: usize) {
         let e = band.energies_mev();
         let row = HistoryRow {
             iteration: self.history.len() + 1,
@@ -289,6 +292,7 @@ impl Relaxation<'_> {
             largest_predicted_rotation_rad: rotation,
             highest_image_mev: e[band.highest()] - e[0],
             length_rad: band.spacings().iter().sum(),
+            hessian_products,
         };
         self.history.push(row);
         self.observer.iteration(&row);

@@ -41,7 +41,7 @@ impl Stored for Stop {
 
 impl Stored for HistoryRow {
     fn restored(self, _: Evaluator) -> Option<Self> {
-        are_counts(&[self.iteration, self.images]).then_some(self)
+        are_counts(&[self.iteration, self.images, self.hessian_products]).then_some(self)
     }
 }
 

@@ -39,6 +39,8 @@ pub struct Complement {
     pub right: Vec<f64>,
     /// The solution, tangent.
     pub x: Vec<f64>,
+    /// Products with H so far.
+    pub products: usize,
     residual: Vec<f64>,
     /// P M⁻¹ P of the residual.
     towards: Vec<f64>,
@@ -71,6 +73,7 @@ impl Complement {
                 return if rounding { Ok(()) } else { Err(stand_in.c) };
             }
             h.hessian_product(m, g, &self.direction, &mut self.image);
+            self.products += 1;
             slab::add_scaled(&mut self.image, shift, &self.direction);
             remove(&mut self.image, &self.border);
             let curvature = slab::dot(&self.direction, &self.image);

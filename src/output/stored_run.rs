@@ -193,6 +193,7 @@ pub(super) fn history(table: &Columns) -> Result<Vec<HistoryRow>> {
         largest_predicted_rotation_rad: rotation[k],
         highest_image_mev: highest[k],
         length_rad: length[k],
+        hessian_products: 0,
     };
     Ok((0..table.rows()).map(row).collect())
 }
