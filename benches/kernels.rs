@@ -6,6 +6,7 @@
 use cpu_time::ProcessTime;
 use rayon::prelude::*;
 use spinneb::band::{Band, Sweep};
+use spinneb::config::load_text;
 use spinneb::energy::{Anisotropy, Exchange, Hamiltonian};
 use spinneb::geometry::Direction;
 use spinneb::lattice::Chain;
@@ -41,6 +42,7 @@ fn main() {
         );
     }
     let two = pool(2);
+    lattices(&one, &two);
     println!("wall time of one thread over that of two:");
     for sites in [1_000, 100_000] {
         let (h, path) = problem(sites);
@@ -53,6 +55,53 @@ fn main() {
         );
     }
 }
+
+/// Gradients on films and cubes with exchange, a Dzyaloshinskii–Moriya interaction and an easy axis.
+fn lattices(one: &rayon::ThreadPool, two: &rayon::ThreadPool) {
+    println!("lattices, and wall time of one thread over that of two:");
+    for (kind, cells) in [
+        ("square", &[100, 100][..]),
+        ("square", &[316, 316]),
+        ("triangular", &[100, 100]),
+        ("triangular", &[316, 316]),
+        ("cubic", &[22, 22, 22]),
+        ("cubic", &[46, 46, 46]),
+    ] {
+        let h = on(kind, cells);
+        let image = |k: usize| {
+            let vector = |i: usize| {
+                let [x, y, z] = h.lattice().place(i);
+                let (s, c) = libm::sincos(0.05 * (x + 0.7 * y + 0.3 * z) + 0.1 * k as f64);
+                [s, 0.1 * c, c]
+            };
+            Spins::from_vectors(&(0..h.sites()).map(vector).collect::<Vec<_>>()).expect("unit vectors")
+        };
+        let path = Path::new(&(0..IMAGES).map(image).collect::<Vec<_>>());
+        let [g1, g2] = [one, two].map(|pool| pool.install(|| gradient(&h, &path)));
+        println!(
+            "{kind:>10} {:>8} gradient {:>7.1} {:>6.1} GB/s {:>6.2}",
+            h.sites(),
+            g1.per_cpu(),
+            g1.per_cpu() * BYTES_OF_A_LATTICE * 1e-3,
+            g2.per_wall() / g1.per_wall()
+        );
+    }
+}
+
+fn on(kind: &str, cells: &[usize]) -> Hamiltonian {
+    let dmi = if cells.len() == 2 { "interfacial" } else { "bulk" };
+    let text = format!(
+        r#"{{"material": {{"name": "lattice", "moment": "1 mu_B", "energy": [{{"exchange": {{"J": ["1 meV"]}}}},
+            {{"dmi": {{"D": "0.2 meV", "kind": "{dmi}"}}}}, {{"anisotropy": {{"K": "0.1 meV", "axis": [0, 0, 1]}}}}]}},
+            "lattice": {{"{kind}": {{"cells": {cells:?}}}}},
+            "initial": {{"uniform": {{"direction": [0, 0, 1]}}}}, "final": {{"uniform": {{"direction": [0, 0, -1]}}}}}}"#
+    );
+    let problem = load_text("lattice.json".as_ref(), text).and_then(|loaded| loaded.problem());
+    problem.expect("a problem").hamiltonian
+}
+
+/// Numbers that must pass for one spin of a lattice: m read, g written, K read.
+const BYTES_OF_A_LATTICE: f64 = 8.0 * (3.0 + 3.0 + 1.0);
 
 /// Numbers that must pass for one spin of one image: m read, g written, the coefficients read (J, K, K₂), 8 bytes each.
 const BYTES: f64 = 8.0 * (3.0 + 3.0 + 3.0);
