@@ -123,46 +123,141 @@ impl Dense {
 
     /// Substitution, of what [`eliminate`](Self::eliminate) has made; c interleaved right-hand sides.
     pub(super) fn substitute(&self, x: &mut [f64], c: usize) {
-        let n = self.order;
-        let l = |r: usize, s: usize| self.entries[r * n + s];
-        for r in 0..n {
-            for s in 0..r {
-                for q in 0..c {
-                    x[r * c + q] -= l(r, s) * x[s * c + q];
-                }
+        let mut first = 0;
+        while first < c {
+            match c - first {
+                1 => substitute::<1>(&self.entries, self.order, x, c, first),
+                2 => substitute::<2>(&self.entries, self.order, x, c, first),
+                3 => substitute::<3>(&self.entries, self.order, x, c, first),
+                _ => substitute::<4>(&self.entries, self.order, x, c, first),
             }
-        }
-        for r in 0..n {
-            for q in 0..c {
-                x[r * c + q] /= l(r, r);
-            }
-        }
-        for s in (0..n).rev() {
-            for r in 0..s {
-                for q in 0..c {
-                    x[r * c + q] -= l(s, r) * x[s * c + q];
-                }
-            }
+            first += 4;
         }
     }
 }
 
-/// Elimination of a matrix of n rows, row by row, lower half.
-#[multiversion(targets("x86_64+avx2"))]
+/// Columns that are eliminated before the rest of the matrix is passed over once for all of them.
+const PANEL: usize = 8;
+/// Rows of which a substitution takes the products side by side.
+const ROWS: usize = 4;
+
+/// Elimination of a matrix of n rows, lower half: each entry has its products subtracted in the order of the columns, a panel of them
+/// at a time.
 fn eliminate(entries: &mut [f64], n: usize, floor: f64) {
-    let mut column = vec![0.0; n];
-    for j in 0..n {
-        let d = guarded(entries[j * n + j], floor);
-        entries[j * n + j] = d;
-        for r in j + 1..n {
-            column[r] = entries[r * n + j];
-        }
-        for r in j + 1..n {
-            let l = column[r] / d;
-            for (x, c) in entries[r * n + j + 1..=r * n + r].iter_mut().zip(&column[j + 1..]) {
-                *x -= l * c;
+    let mut columns = vec![0.0; PANEL * n];
+    for first in (0..n).step_by(PANEL) {
+        let end = (first + PANEL).min(n);
+        for (j, column) in (first..end).zip(columns.chunks_exact_mut(n)) {
+            let d = guarded(entries[j * n + j], floor);
+            entries[j * n + j] = d;
+            for r in j + 1..n {
+                column[r] = entries[r * n + j];
             }
-            entries[r * n + j] = l;
+            for r in j + 1..n {
+                let l = column[r] / d;
+                let within = entries[r * n + j + 1..r * n + end.min(r + 1)].iter_mut().zip(&column[j + 1..]);
+                within.for_each(|(x, c)| *x -= l * c);
+                entries[r * n + j] = l;
+            }
+        }
+        if end < n {
+            let columns: [&[f64]; PANEL] = std::array::from_fn(|k| &columns[k * n..(k + 1) * n]);
+            subtract(entries, n, first, &columns);
+        }
+    }
+}
+
+/// Subtracts the products of a whole panel of columns from what is behind it.
+#[multiversion(targets("x86_64+avx2"))]
+fn subtract(entries: &mut [f64], n: usize, first: usize, columns: &[&[f64]; PANEL]) {
+    let end = first + PANEL;
+    for r in end..n {
+        let (left, rest) = entries[r * n + first..=r * n + r].split_at_mut(PANEL);
+        let l: [f64; PANEL] = std::array::from_fn(|k| left[k]);
+        let [c0, c1, c2, c3, c4, c5, c6, c7] = columns.map(|column| &column[end..=r]);
+        for (k, x) in rest.iter_mut().enumerate() {
+            let low = *x - l[0] * c0[k] - l[1] * c1[k] - l[2] * c2[k] - l[3] * c3[k];
+            *x = low - l[4] * c4[k] - l[5] * c5[k] - l[6] * c6[k] - l[7] * c7[k];
+        }
+    }
+}
+
+/// Substitution of Q of c interleaved right-hand sides, from one of them on: each number has its products subtracted in the order of
+/// the rows.
+fn substitute<const Q: usize>(entries: &[f64], n: usize, x: &mut [f64], c: usize, first: usize) {
+    let row = |r: usize| &entries[r * n..(r + 1) * n];
+    let own = |x: &[f64], r: usize| -> [f64; Q] { std::array::from_fn(|q| x[r * c + first + q]) };
+    for top in (0..n).step_by(ROWS) {
+        let end = (top + ROWS).min(n);
+        let rows: [&[f64]; ROWS] = std::array::from_fn(|k| &row((top + k).min(n - 1))[..end]);
+        let mut sums: [[f64; Q]; ROWS] = std::array::from_fn(|k| own(x, (top + k).min(n - 1)));
+        for s in 0..top {
+            let known = own(x, s);
+            for (sum, row) in sums.iter_mut().zip(&rows) {
+                sum.iter_mut().zip(&known).for_each(|(sum, known)| *sum -= row[s] * known);
+            }
+        }
+        for r in top..end {
+            let done = sums[r - top];
+            x[r * c + first..r * c + first + Q].copy_from_slice(&done);
+            for (sum, row) in sums.iter_mut().zip(&rows).skip(r - top + 1) {
+                sum.iter_mut().zip(&done).for_each(|(sum, done)| *sum -= row[r] * done);
+            }
+        }
+    }
+    for r in 0..n {
+        x[r * c + first..r * c + first + Q].iter_mut().for_each(|x| *x /= entries[r * n + r]);
+    }
+    for s in (0..n).rev() {
+        let done = own(x, s);
+        for (x, l) in x.chunks_exact_mut(c).zip(&row(s)[..s]) {
+            x[first..first + Q].iter_mut().zip(&done).for_each(|(x, done)| *x -= l * done);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One column after the other.
+    fn plainly(entries: &mut [f64], n: usize, x: &mut [f64], c: usize) {
+        for j in 0..n {
+            let column: Vec<f64> = (0..n).map(|r| entries[r * n + j]).collect();
+            for r in j + 1..n {
+                let l = column[r] / column[j];
+                (j + 1..=r).for_each(|k| entries[r * n + k] -= l * column[k]);
+                entries[r * n + j] = l;
+            }
+        }
+        for q in 0..c {
+            for r in 0..n {
+                (0..r).for_each(|s| x[r * c + q] -= entries[r * n + s] * x[s * c + q]);
+            }
+            (0..n).for_each(|r| x[r * c + q] /= entries[r * n + r]);
+            for s in (0..n).rev() {
+                (0..s).for_each(|r| x[r * c + q] -= entries[s * n + r] * x[s * c + q]);
+            }
+        }
+    }
+
+    #[test]
+    fn panels_and_rows_side_by_side_give_the_bits_of_one_column_after_the_other() {
+        for (n, c) in [(1, 1), (3, 2), (7, 5), (8, 1), (9, 3), (16, 4), (37, 6), (50, 1)] {
+            let mut matrix = Dense::zeros(n);
+            for i in 0..n {
+                (0..i).for_each(|j| matrix.add(i, j, libm::sin((3 * i + 7 * j) as f64)));
+                matrix.add(i, i, if i % 3 == 0 { -4.0 } else { 5.0 });
+            }
+            let mut x: Vec<f64> = (0..n * c).map(|i| libm::cos(i as f64)).collect();
+            let (mut entries, mut expected) = (matrix.entries.clone(), x.clone());
+            plainly(&mut entries, n, &mut expected, c);
+            matrix.eliminate(1e-12);
+            matrix.substitute(&mut x, c);
+            for r in 0..n {
+                assert_eq!(matrix.entries[r * n..=r * n + r], entries[r * n..=r * n + r], "{n}: row {r}");
+            }
+            assert_eq!(x, expected, "{n} {c}");
         }
     }
 }
