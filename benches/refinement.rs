@@ -138,7 +138,7 @@ fn saddle_solves(problem: &Problem, outcome: &Outcome) -> usize {
     let mut band = Band::new(&problem.hamiltonian, outcome.path.clone());
     band.evaluate();
     let c = 2.0 * anisotropy(outcome.path.sites());
-    let top = peaks(&band, 0.0, c).into_iter().next();
+    let top = peaks(&band, c).into_iter().next();
     top.map_or(0, |top| refine((&problem.hamiltonian).into(), &top.m, &top.tau, c, top.floor_mev).factorisations)
 }
 

@@ -1,4 +1,4 @@
-//! Climbs from any state to a saddle, and relaxations to a minimum.
+//! Climbs from any state to a saddle.
 
 use crate::common::Build;
 use rand::{RngExt, SeedableRng};
@@ -8,7 +8,8 @@ use spinneb::geometry::{Direction, Vector, rotate};
 use spinneb::lattice::{Chain, Frozen, Selection};
 use spinneb::linalg::{eigenvalues_symmetric, slab};
 use spinneb::sphere::move_points;
-use spinneb::stationary::{Climb, GaveUp, Limits, Saddle, Spectrum, State, climb, relax_nearby};
+use spinneb::spins::Spins;
+use spinneb::stationary::{Climb, GaveUp, Limits, Saddle, Spectrum, State, climb, relax_to_minimum};
 
 const NOTHING: &(dyn Fn(&[f64], f64) -> bool + Sync) = &|_, _| false;
 
@@ -160,8 +161,9 @@ fn a_climb_gives_up_where_its_limits_say_so() {
     assert_eq!(why(Limits { known: &beside, ..limits() }), GaveUp::Known);
     assert_eq!(why(Limits { steps: 2, ..limits() }), GaveUp::Steps);
     // no slope leads out of a minimum
-    let minimum = relax_nearby(e, &start, 100, 0.5).0.expect("a minimum");
-    assert_eq!(climb(e, &minimum.m, &limits()).saddle.map(|_| ()).unwrap_err(), GaveUp::Stuck);
+    let minimum =
+        relax_to_minimum(e, &Spins::from_components(&start).unwrap(), 1e-14 * h.stiffness_mev()).expect("a minimum");
+    assert_eq!(climb(e, minimum.spins.as_slice(), &limits()).saddle.map(|_| ()).unwrap_err(), GaveUp::Stuck);
 }
 
 #[test]
@@ -182,32 +184,12 @@ fn frozen_spins_stay_where_they_are() {
     let h = hamiltonian(Build::on(Chain { frozen, ..Chain::open(6) }).easy(0.5));
     let mut r = ChaCha8Rng::seed_from_u64(6);
     let mut found = 0;
-    for _ in 0..10 {
+    for _ in 0..40 {
         let start = component_major(&random_spins(6, &mut r));
-        let top = climb((&h).into(), &start, &limits()).saddle.map(|s| s.point);
-        let bottom = relax_nearby((&h).into(), &start, 200, 0.5).0;
-        for m in [top, bottom].into_iter().flatten().map(|p| p.m) {
-            found += 1;
-            assert!([0, 3].iter().all(|i| (0..3).all(|c| m[6 * c + i] == start[6 * c + i])));
-        }
+        let Ok(top) = climb((&h).into(), &start, &limits()).saddle else { continue };
+        found += 1;
+        let m = top.point.m;
+        assert!([0, 3].iter().all(|i| (0..3).all(|c| m[6 * c + i] == start[6 * c + i])));
     }
-    assert!(found > 10, "{found}");
-}
-
-#[test]
-fn any_state_relaxes_to_a_minimum_below_it() {
-    let mut r = ChaCha8Rng::seed_from_u64(5);
-    let mut steps = 0;
-    let tries = 100;
-    for seed in 0..tries {
-        let n = 2 + seed as usize % 14;
-        let h = glass(n, seed, UNTURNED);
-        let start = component_major(&random_spins(n, &mut r));
-        let (end, taken) = relax_nearby((&h).into(), &start, 200, 0.5);
-        let end = end.expect("a minimum");
-        steps += taken;
-        assert!(eigenvalues(&h, &end.m)[0] > 0.0 && h.difference_mev(&end.m, &start) < 0.0, "{seed}");
-        assert!(end.max_torque_mev() < 1e-14 * h.stiffness_mev(), "{seed}: {:e}", end.max_torque_mev());
-    }
-    assert!(steps < 20 * tries as usize, "{steps}");
+    assert!(found > 5, "{found}");
 }

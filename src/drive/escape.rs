@@ -6,6 +6,7 @@ use crate::landscape::Saddle;
 use crate::linalg::{slab, soft_modes};
 use crate::path::Path;
 use crate::sphere::{move_points, rotation_of};
+use crate::stationary::ALIKE;
 
 /// How far a path is pushed off a saddle of higher index (rad).
 const PUSH: f64 = 0.8;
@@ -13,7 +14,7 @@ const PUSH: f64 = 0.8;
 /// Two paths pushed off a stationary point of index > 1, along its lowest negative mode other than the path's own, both ways.
 pub fn escapes(band: &Band, found: &Saddle, c: f64) -> Vec<Path> {
     let state = &found.refined.state;
-    let enough = -1e-6 * c;
+    let enough = -ALIKE * c;
     let modes = soft_modes(&state.hessian, 8, &state.zeros, enough);
     let negative: Vec<_> = modes.into_iter().filter(|m| m.value < enough).collect();
     if negative.len() < 2 {
@@ -39,7 +40,7 @@ fn pushed(path: &Path, mode: &[f64], push: f64) -> Path {
         let mut v = mode.to_vec();
         project(path.image(k), &mut v);
         let size = rotation_of(&v);
-        if size > 1e-12 {
+        if size > 0.0 {
             let far = push * libm::sin(std::f64::consts::PI * k as f64 / last as f64) / size;
             let image = &mut out.as_mut_slice()[k * slab_size..(k + 1) * slab_size];
             move_points(image, &v, slab_size, far);

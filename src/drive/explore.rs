@@ -4,11 +4,13 @@
 //! the usual way. So several guesses are relaxed loosely, and the lowest goes on.
 
 use super::Problem;
+use super::search::DOMAIN;
 use crate::geometry::{Direction, vector};
-use crate::path::Path;
 use crate::path::guess::{
     Edge, Geodesic, GuessContext, GuessSpec, NoiseSpec, Rotation, Sweep, Ways, best_turn, natural,
 };
+use crate::path::{COARSE, Path};
+use crate::sphere::SAME;
 use crate::spins::Spins;
 use crate::stationary::{ALIKE, LOWER};
 use crate::threads::{MADE, apiece};
@@ -20,11 +22,6 @@ const NOISE: f64 = 2e-3;
 
 /// Walls whose energies differ by no more than this part are compared all along their ways.
 const CLOSE: f64 = 1e-2;
-/// Images of the way on which alike walls are compared.
-const WAY: usize = 9;
-
-/// Turns by less (rad) are no rotation of the whole.
-const TURNS: f64 = 0.3;
 
 /// A guess that only needs an axis.
 #[derive(Clone, Copy)]
@@ -131,8 +128,8 @@ fn rotation_axes(problem: &Problem, a: &Spins, b: &Spins) -> Vec<Direction> {
     for v in cartesian.iter().chain(problem.hamiltonian.symmetry_axes()) {
         let Ok(axis) = Direction::new(*v) else { continue };
         let (angle, together) = best_turn(a, b, axis);
-        let new = axes.iter().all(|k| vector::norm(vector::cross(k.vector(), *v)) > 1e-6);
-        if new && angle.abs() > TURNS && together > n - 1e-3 * n.max(10.0) {
+        let new = axes.iter().all(|k| vector::norm(vector::cross(k.vector(), *v)) > SAME);
+        if new && together > n - 1e-3 * n.max(10.0) {
             axes.push(axis);
             if angle.abs() > std::f64::consts::PI - 1e-3 {
                 axes.push(axis.reversed());
@@ -175,7 +172,7 @@ fn best_axis(problem: &Problem, ways: &Ways, cost: impl Fn(Direction, usize) -> 
     if alike.len() < 2 || !(holds_wall(ways.a) || holds_wall(ways.b)) {
         return first;
     }
-    lowest(&costs(&alike, WAY), h.stiffness_mev()).map_or(first, |(_, axis)| axis)
+    lowest(&costs(&alike, COARSE), h.stiffness_mev()).map_or(first, |(_, axis)| axis)
 }
 
 /// The first of the lowest (meV).
@@ -191,5 +188,5 @@ fn lowest(costs: &[(f64, Direction)], stiffness: f64) -> Option<(f64, Direction)
 
 /// Whether some spin is well off the line of the first.
 fn holds_wall(m: &Spins) -> bool {
-    (1..m.sites()).any(|i| vector::norm(vector::cross(m.get(0), m.get(i))) > 0.7)
+    (1..m.sites()).any(|i| vector::norm(vector::cross(m.get(0), m.get(i))) > DOMAIN)
 }

@@ -3,8 +3,8 @@
 use super::escape::escapes;
 use super::explore::natural_guesses;
 use super::first_path::{FirstPath, describe};
-use super::relaxation::{Goal, image_levels};
-use super::run::Run;
+use super::relaxation::{Goal, LOOSELY, image_levels};
+use super::run::{Run, WORTH};
 use super::{Images, Stop};
 use crate::band::{Band, align_rotations};
 use crate::error::Result;
@@ -15,8 +15,7 @@ use crate::stationary::ALIKE;
 
 /// Evaluations after which first paths are compared.
 const TRIAL: usize = 8;
-/// Neighbours of a band to start from are at most this far apart, any spin (rad).
-const COARSEST: f64 = 2.0;
+
 /// Rounds of leaving a saddle of higher index.
 const ESCAPES: usize = 3;
 /// On a film the best path of another kind is followed to its saddle too, unless its top is higher than the lowest saddle times this.
@@ -52,12 +51,12 @@ impl<'a> Run<'a, '_> {
         let (mut finished, mut lowest_barrier) = (0, f64::INFINITY);
         let mut kinds: Vec<String> = vec!["geodesic".into()];
         for c in &mut tried {
-            let lowest = c.peak_mev();
-            // a top that stands below every saddle may be a lower one
-            let worth = finished == 0 || (finished == 1 && lowest < 1.2 * lowest_barrier) || lowest < lowest_barrier;
             // a collapse and an escape over an edge are two answers, and both are told
-            let other = !is_row && !kinds.iter().any(|k| k == c.kind()) && lowest < OF_OTHER_KINDS * lowest_barrier;
-            if self.problem.seeks_saddles() && (worth || other) {
+            let is_other = !is_row && !kinds.iter().any(|k| k == c.kind());
+            let is_below = |part: f64| c.peak_mev() < part * lowest_barrier;
+            // a top that stands below every saddle may be a lower one
+            let is_worth = is_below(1.0) || finished < 2 && is_below(WORTH) || is_other && is_below(OF_OTHER_KINDS);
+            if self.problem.seeks_saddles() && is_worth {
                 self.conclude(c)?;
                 finished += 1;
                 lowest_barrier = lowest_barrier.min(c.barrier_mev(scale));
@@ -85,7 +84,7 @@ impl<'a> Run<'a, '_> {
         let mut relaxes = self.problem.hamiltonian.lattice().is_row();
         for round in 0..ESCAPES {
             if relaxes && !c.stop.is_converged() {
-                self.relax(c, Goal::Loose, c.band.evaluations() + 24)?;
+                self.relax(c, Goal::Loose, c.band.evaluations() + LOOSELY)?;
             }
             if !self.problem.seeks_saddles() {
                 break;
@@ -124,13 +123,10 @@ impl<'a> Run<'a, '_> {
     fn zoom(&mut self, c: &mut FirstPath<'a>) -> Result<Option<Peak>> {
         let mut top = highest(&c.band, self.scales.stiffness_mev);
         for _ in 0..ZOOMS {
-            let images = match self.problem.images {
-                Images::Count(n) => n,
-                Images::Auto => c.band.images() + 8,
-            };
+            let images = self.problem.images.asked_for().unwrap_or(c.band.images() + 8);
             let Some(path) = zoomed(&c.band, top.as_ref(), images) else { break };
             c.band = Band::continued(self.problem.evaluator(), path, c.band.evaluations());
-            self.relax(c, Goal::Loose, c.band.evaluations() + 24)?;
+            self.relax(c, Goal::Loose, c.band.evaluations() + LOOSELY)?;
             top = highest(&c.band, self.scales.stiffness_mev);
         }
         Ok(top)
@@ -162,7 +158,7 @@ impl<'a> Run<'a, '_> {
                 let lattice = context.states.lattice;
                 self.scales.images_between(lattice, moving_sites(a, b, lattice)) + 2
             }
-            Images::Count(n) => image_levels(n, |n| make(n).is_ok_and(|p| p.largest_rotation() <= COARSEST))[0],
+            Images::Count(n) => image_levels(n, |n| make(n).is_ok_and(|p| p.is_resolved()))[0],
         };
         let band = Band::new(self.problem.evaluator(), make(coarsest)?);
         let mut c = FirstPath::new(name, band, Stop::NotFinite);

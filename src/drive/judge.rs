@@ -67,8 +67,7 @@ impl Seen<'_> {
         let level = |k: usize| h.difference_mev(path.image(k), path.image(0)).abs() <= rounding;
         self.problem.relax_ends
             && self.ends.iter().all(Minimum::is_proven)
-            && height(self.band) <= 1e3 * rounding
-            && path.largest_rotation() <= 1.0
+            && path.is_resolved()
             && (1..path.images()).all(level)
     }
 

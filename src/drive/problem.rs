@@ -133,6 +133,16 @@ pub enum Images {
     Count(usize),
 }
 
+impl Images {
+    /// The number, if one was asked for.
+    pub fn asked_for(self) -> Option<usize> {
+        match self {
+            Images::Auto => None,
+            Images::Count(n) => Some(n),
+        }
+    }
+}
+
 /// How a band is relaxed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NebSettings {

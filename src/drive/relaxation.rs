@@ -10,24 +10,30 @@ use crate::geometry::Vector;
 use crate::landscape::{Bands, are_counts, are_finite};
 use crate::linalg::slab;
 use crate::optimise::{Follows, Optimiser, OptimiserSpec};
-use crate::path::Path;
+use crate::path::{COARSE, Path};
 use crate::record::Fingerprint;
 use crate::sphere::rotation_of;
+use crate::stationary::LOWER;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// |F⊥|∞/c that is enough to double the images or to read off which path is lowest.
 pub const LOOSE: f64 = 5e-3;
+/// Evaluations in which a band is relaxed so, and those in which one is tightly: a band that needs more has minima on its way.
+pub const LOOSELY: usize = 24;
+pub const TIGHTLY: usize = 60;
+/// The same for ways between minima.
+const WAYS: usize = 30;
+/// And for stretches between a saddle and a minimum, which have none.
+const STRETCHES: usize = 100;
+/// Evaluations without progress that end a relaxation.
+const PATIENCE: usize = 80;
 /// Methods that follow forces take so many times as many evaluations as the sweep.
-const SLOWER: usize = 20;
-/// Moves of more (rad, any spin) are too long to be told by their slope.
-const FREE: f64 = 1e-2;
+const SLOWER: usize = 50;
 /// A top that moves by less than this part of its height in an evaluation stands still, if its force can lower it by no more than
 /// that other part.
 const STILL: f64 = 1e-3;
 const LOWERED: f64 = 1e-2;
-/// A maximum climbs if it stands out by more than this part of the path's height.
-const PROMINENT: f64 = 1e-3;
 
 /// How far to go.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,12 +94,12 @@ impl Tools<'_> {
 }
 
 impl Bands for Tools<'_> {
-    fn loosely(&self, band: &mut Band, evaluations: usize) -> Result<()> {
-        self.relax(band, Goal::Loose, evaluations)
+    fn loosely(&self, band: &mut Band) -> Result<()> {
+        self.relax(band, Goal::Loose, WAYS)
     }
 
-    fn tightly(&self, band: &mut Band, evaluations: usize) -> Result<()> {
-        self.relax(band, Goal::Tight, evaluations)
+    fn tightly(&self, band: &mut Band) -> Result<()> {
+        self.relax(band, Goal::Tight, STRETCHES)
     }
 }
 
@@ -110,9 +116,8 @@ struct Progress {
 impl Progress {
     fn new(follows: Follows) -> Progress {
         let patience = match follows {
-            Follows::Sweep => 80,
-            Follows::Preconditioned => 400,
-            Follows::Springs => 4000,
+            Follows::Sweep => PATIENCE,
+            Follows::Preconditioned | Follows::Springs => SLOWER * PATIENCE,
         };
         Progress { best: f64::INFINITY, since: 0, patience, damps: follows == Follows::Sweep, damping: 1.0 }
     }
@@ -213,7 +218,7 @@ impl Relaxation<'_> {
         if !rotation.is_finite() || !force.is_finite() {
             return Some(Stop::NotFinite);
         }
-        if goal == Goal::Tight && (rotation <= tolerance || rotation < FREE && is_level(band, direction)) {
+        if goal == Goal::Tight && (rotation <= tolerance || is_level(band, direction)) {
             return Some(Stop::Converged { rotation, tolerance });
         }
         if band.evaluations() >= limit {
@@ -277,10 +282,10 @@ impl Relaxation<'_> {
         if goal == Goal::Loose || !self.climb {
             return Vec::new();
         }
-        if band.max_perpendicular_mev() > 4.0 * LOOSE * self.scales.stiffness_mev {
+        if band.max_perpendicular_mev() > LOOSE * self.scales.stiffness_mev {
             return Vec::new();
         }
-        prominent_maxima(band.energies_mev(), PROMINENT * height(band))
+        prominent_maxima(band.energies_mev(), LOWER * height(band))
     }
 
     fn record(&mut self, band: &Band, rotation: f64, hessian_products: usize) {
@@ -427,12 +432,12 @@ pub fn prominent_maxima(e: &[f64], prominence: f64) -> Vec<usize> {
     (1..last).filter(|&k| is_maximum(k) && stands_out(k)).collect()
 }
 
-/// The images to start from: fewer than `images`, halved as long as neighbours stay within 2 rad a spin; coarsest first.
+/// The images to start from: fewer than `images`, halved as long as that resolves the path; coarsest first.
 pub fn image_levels(images: usize, fits: impl Fn(usize) -> bool) -> Vec<usize> {
     let mut levels = vec![images];
     loop {
         let coarser = levels[0].div_ceil(2);
-        if coarser < 9 || !fits(coarser) {
+        if coarser < COARSE || !fits(coarser) {
             return levels;
         }
         levels.insert(0, coarser.max(levels[0] / 2 + 1));

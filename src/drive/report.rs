@@ -373,7 +373,7 @@ fn image_state(band: &Band, k: usize) -> EndPoint {
 fn band_minima(band: &Band) -> Vec<IntermediateMinimum> {
     let upside_down: Vec<f64> = band.energies_mev().iter().map(|e| -e).collect();
     let s = band.path().reaction_coordinate();
-    prominent_maxima(&upside_down, 1e-3 * height(band))
+    prominent_maxima(&upside_down, LOWER * height(band))
         .into_iter()
         .map(|k| IntermediateMinimum {
             image: k,

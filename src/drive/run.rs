@@ -7,14 +7,15 @@ use super::outcome::*;
 use super::relaxation::{Goal, Relaxation, height, needs_laplacian};
 use super::report::{self, Prepared, Proof};
 use super::settled::Settled;
-use super::{Images, Observer, Problem, Scales, Stop};
+use super::{Observer, Problem, Scales, Stop};
 use crate::band::{Band, Laplacian};
 use crate::energy::{Evaluator, recorded};
 use crate::error::{Error, Result};
 use crate::geometry::{Direction, Vector};
 use crate::landscape::{Doubt, Landscape, Minimum};
-use crate::path::distance;
 use crate::path::guess::{FirstGuess, GuessContext, Rotation};
+use crate::path::is_within;
+use crate::sphere::SAME;
 use crate::spins::Spins;
 use crate::stationary::{ALIKE, LOWER, RELAXED, Relaxed, relax_to_minimum};
 use crate::threads::both;
@@ -25,10 +26,8 @@ use std::time::Instant;
 pub const FEWEST_IMAGES: usize = 17;
 /// Further paths that are followed to the end.
 const SECOND_TRIES: usize = 2;
-/// They are not beside a path that cannot be proven if their top is higher than its times this.
-const SECOND_BELOW: f64 = 1.2;
-/// A proven path takes the place of an unproven one unless it is higher by more than this part: images may straddle a top.
-const AS_LOW: f64 = 1e-3;
+/// A path is not followed further if its top is higher than that of the best one times this.
+pub(super) const WORTH: f64 = 1.2;
 
 /// Finds the minimum-energy path of a problem, taking what its [`Control`](crate::control::Control) finds on record from there, and
 /// recording what it computes. A run that its control stops ends with [`Error::Stopped`](crate::error::Error::Stopped), one that meets an
@@ -123,7 +122,7 @@ impl<'a, 'o> Run<'a, 'o> {
 
     fn finish(mut self) -> Result<Outcome> {
         let (a, b) = (self.ends[0].spins.as_slice(), self.ends[1].spins.as_slice());
-        if distance(a, b) < 1e-6 * (self.problem.hamiltonian.sites() as f64).sqrt() {
+        if is_within(a, b, SAME) {
             return Ok(report::same_minimum(self.prepared()));
         }
         if let Some(flat) = self.turned_minimum()? {
@@ -149,7 +148,7 @@ impl<'a, 'o> Run<'a, 'o> {
             // a proven path is the one, unless what is known of another lies below its highest saddle
             let proven = best.proof.doubts.is_empty();
             let below = if proven { (1.0 - LOWER) * best.seen_mev() } else { f64::INFINITY };
-            if next.barrier_mev(scale) > below.min(SECOND_BELOW * best.seen_mev()) {
+            if next.barrier_mev(scale) > below.min(WORTH * best.seen_mev()) {
                 others.push(next);
                 continue;
             }
@@ -162,8 +161,7 @@ impl<'a, 'o> Run<'a, 'o> {
             }
             let next = self.settle(next, below)?;
             // the images of an unproven path are an upper bound all the same
-            let allowed = if proven { 0.0 } else { AS_LOW * best.seen_mev().abs() };
-            let better = next.proof.doubts.is_empty() && next.seen_mev() < best.seen_mev() + allowed;
+            let better = next.proof.doubts.is_empty() && next.seen_mev() < (1.0 + LOWER) * best.seen_mev();
             let mut left = if better { std::mem::replace(&mut best, next) } else { next };
             left.first.followed_mev = Some(left.seen_mev());
             others.push(left.first);
@@ -207,10 +205,7 @@ impl<'a, 'o> Run<'a, 'o> {
         }
         // the landscape keeps one of them for both
         let ends = Minimum::examine_both(h, [a, b]);
-        let images = match self.problem.images {
-            Images::Count(n) => n,
-            Images::Auto => FEWEST_IMAGES,
-        };
+        let images = self.problem.images.asked_for().unwrap_or(FEWEST_IMAGES);
         // about an axis of symmetry the way is as long as it is; the shortest way between two states of a cone leads across it
         let axis = match self.axes[..] {
             [axis] => Direction::new(axis).ok(),

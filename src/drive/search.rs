@@ -11,19 +11,18 @@ use crate::energy::Hamiltonian;
 use crate::error::Result;
 use crate::geometry::Vector;
 use crate::hessian::factorisation_flops;
-use crate::landscape::{Aim, Effort, Landscape, Minimum, Settings, search};
+use crate::landscape::{Aim, Effort, Landscape, Minimum, Searched, Settings, search};
 use crate::record::Count;
 use crate::spins::Spins;
 use crate::stationary::{RELAXED, Relaxed, relax_to_minimum};
 
-/// Single states are evaluated until so many spins were, or so many times as often as for the first paths; and their Hessians until
-/// so many operations were spent on factorising them, or as many times as often.
+/// Single states are evaluated until so many spins were, or as often as for the first paths; and their Hessians until so many
+/// operations were spent on factorising them, or as often.
 const SPINS: usize = 10_000_000;
 const FLOPS: f64 = 1e9;
-const PARTS: usize = 2;
 
-/// Domains with a spin that is further apart are two (rad).
-const DOMAIN: f64 = 0.5;
+/// Spins that are further apart (rad) are of different domains.
+pub(super) const DOMAIN: f64 = 0.5;
 
 impl<'a> Run<'a, '_> {
     /// Looks for a route below the top of the best path, and leads the path over it.
@@ -59,16 +58,13 @@ impl<'a> Run<'a, '_> {
         let searched = search(&mut self.land, Aim::Route(ends, top_mev), &settings, &mut |standing| {
             self.observer.searching(standing)
         })?;
-        report.searches = searched.searches;
-        report.quiet = searched.quiet;
-        report.spent = searched.spent;
-        report.minima = self.land.minima().len();
-        report.saddles = self.land.edges().iter().filter(|edge| !edge.is_twin).count();
+        let Searched { searches, quiet, spent } = searched;
+        let saddles = self.land.edges().iter().filter(|edge| !edge.is_twin).count();
+        report = SearchReport { searches, quiet, spent, minima: self.land.minima().len(), saddles, ..report };
         let least = self.land.tolerance_mev(first_mev);
         let lower = |top_mev: f64| first_mev - top_mev > least;
-        let Some(route) = self.land.route(ends[0], ends[1]).filter(|route| lower(route.top_mev) || unproven) else {
-            return Ok(report);
-        };
+        let route = self.land.route(ends[0], ends[1]).filter(|route| lower(route.top_mev) || unproven);
+        let Some(route) = route else { return Ok(report) };
         let proof = Proof { ends: best.proof.ends.clone(), links: self.land.passes_of(&route), doubts: Vec::new() };
         let name = best.first.name.clone();
         if self.lead_over(&mut best.first, &proof)? {
@@ -97,10 +93,7 @@ impl<'a> Run<'a, '_> {
         // of the whole run: so many of the whole band
         let allowed = self.problem.neb.max_evaluations.saturating_mul(images);
         let left = allowed.saturating_sub(own.evaluations);
-        Count {
-            evaluations: (SPINS / h.sites()).max(PARTS * own.evaluations).min(left),
-            hessians: hessians.max(PARTS * own.hessians),
-        }
+        Count { evaluations: (SPINS / h.sites()).max(own.evaluations).min(left), hessians: hessians.max(own.hessians) }
     }
 
     /// Ways through the domains that the ends consist of: out of the lattice and in again.

@@ -2,26 +2,22 @@
 
 use super::Images;
 use super::first_path::FirstPath;
-use super::relaxation::{Goal, Tools, height, image_levels, refined};
+use super::relaxation::{Goal, LOOSELY, TIGHTLY, Tools, height, image_levels, refined};
 use super::report::Proof;
 use super::run::{FEWEST_IMAGES, Run};
 use super::settled::Settled;
 use crate::band::Band;
 use crate::error::Result;
-use crate::landscape::{Assembled, Connector, Doubt, Pass, PathEnd, Saddle, assemble, peaks};
-use crate::path::{distance, is_within};
+use crate::landscape::{Assembled, Connector, Doubt, Minimum, Pass, PathEnd, Saddle, assemble, peaks};
+use crate::path::{RESOLVED, distance, is_within};
 use crate::sphere::SAME;
 use crate::spins::Spins;
 use crate::stationary::LOWER;
 
-/// Neighbouring images of an automatic path are at most this far apart, any spin (rad).
-const RESOLVED: f64 = 1.0;
 /// Most images of an automatic path.
 const MOST_IMAGES: usize = 2001;
 /// More images are of use where they bring neighbours nearer, to this part of how far they were.
 const FINER: f64 = 0.8;
-/// Evaluations of a band before its minima are looked at.
-const FIRST: usize = 60;
 /// Maxima within this part of the path's height of the highest are refined.
 const WINDOW: f64 = 0.1;
 
@@ -45,7 +41,7 @@ impl<'a> Run<'a, '_> {
             }
         }
         if proves {
-            self.relax_resolved(&mut c, FIRST)?;
+            self.relax_resolved(&mut c, TIGHTLY)?;
             let found = self.all_saddles(&c)?;
             let proof = self.prove(&c, &found, below_mev)?;
             if self.needs_leading(&c, &found, &proof) && self.lead_over(&mut c, &proof)? {
@@ -101,7 +97,7 @@ impl<'a> Run<'a, '_> {
 
     /// Whether an automatic path needs more images.
     fn is_coarse(&self, c: &FirstPath<'a>) -> bool {
-        self.problem.images == Images::Auto && c.band.path().largest_rotation() > RESOLVED
+        self.problem.images == Images::Auto && !c.band.path().is_resolved()
     }
 
     /// Whether a path is better put together from the stretches of its route: it has minima between its ends, the band is not where
@@ -122,10 +118,7 @@ impl<'a> Run<'a, '_> {
         }
         self.observer.stage("putting the path together");
         let ends = [&self.ends[0].spins, &self.ends[1].spins];
-        let images = match self.problem.images {
-            Images::Auto => None,
-            Images::Count(n) => Some(n),
-        };
+        let images = self.problem.images.asked_for();
         let assembled = assemble(&self.land, &proof.links, ends, images, 0.9 * RESOLVED, &self.tools())?;
         let Some(mut way) = assembled else { return Ok(false) };
         let good = self.follow(c, &way, &proof.links)?;
@@ -149,7 +142,7 @@ impl<'a> Run<'a, '_> {
         }
         let before = std::mem::replace(&mut c.band, band);
         let stop = c.stop;
-        self.relax(c, Goal::Tight, c.band.evaluations() + FIRST)?;
+        self.relax(c, Goal::Tight, c.band.evaluations() + TIGHTLY)?;
         let fits = c.top_mev() <= over(c, links);
         if fits && !c.stop.is_converged() {
             self.relax(c, Goal::Tight, usize::MAX)?;
@@ -178,13 +171,7 @@ impl<'a> Run<'a, '_> {
         self.observer.stage("proving the saddles");
         let scale = self.scales.stiffness_mev;
         if !self.problem.relax_ends {
-            let alone = match self.problem.rates {
-                None => Pass::between(h, highest.clone(), ends.clone()),
-                Some(_) => None,
-            };
-            let pass = alone.map_or_else(|| Pass::recorded(h, highest.clone(), scale, &self.both_ends()), Ok)?;
-            let doubts = pass.doubt(h).into_iter().collect();
-            return Ok(Proof { ends, links: vec![pass], doubts });
+            return self.prove_alone(highest, ends);
         }
         if self.land.height_mev(highest.spins()) >= below_mev {
             return Ok(Proof { ends, links: Vec::new(), doubts: vec![Doubt::NoRoute(0)] });
@@ -227,6 +214,19 @@ impl<'a> Run<'a, '_> {
         Ok(Proof { ends, links, doubts })
     }
 
+    /// What a saddle between ends that are kept as they are is by itself.
+    fn prove_alone(&self, saddle: &Saddle, ends: [Minimum; 2]) -> Result<Proof> {
+        let h = self.problem.evaluator();
+        let alone = match self.problem.rates {
+            None => Pass::between(h, saddle.clone(), ends.clone()),
+            Some(_) => None,
+        };
+        let descended = || Pass::recorded(h, saddle.clone(), self.scales.stiffness_mev, &self.both_ends());
+        let pass = alone.map_or_else(descended, Ok)?;
+        let doubts = pass.doubt(h).into_iter().collect();
+        Ok(Proof { ends, links: vec![pass], doubts })
+    }
+
     fn both_ends(&self) -> [&Spins; 2] {
         self.ends.each_ref().map(|end| &end.spins)
     }
@@ -248,7 +248,9 @@ impl<'a> Run<'a, '_> {
         }
         let h = self.problem.evaluator();
         let mut found: Vec<Saddle> = Vec::new();
-        for top in peaks(&c.band, WINDOW * height(&c.band), scale) {
+        let tops = peaks(&c.band, scale);
+        let least = tops.first().map_or(0.0, |top| top.energy_mev) - WINDOW * height(&c.band);
+        for top in tops.into_iter().filter(|top| top.energy_mev >= least) {
             let from_there = |f: &&Saddle| f.top.m == top.m && f.top.tau == top.tau;
             let f = match c.found.as_ref().filter(|f| is_seated(&c.band, top.image, f) || from_there(f)) {
                 Some(f) => Saddle { top, refined: f.refined.clone() },
@@ -264,7 +266,7 @@ impl<'a> Run<'a, '_> {
     /// More images, each time relaxed loosely: to the number asked for, or until neighbours are within 1 rad a spin.
     fn resolve(&mut self, c: &mut FirstPath<'a>) -> Result<()> {
         if !c.stop.is_converged() {
-            self.relax(c, Goal::Loose, c.band.evaluations() + 24)?;
+            self.relax(c, Goal::Loose, c.band.evaluations() + LOOSELY)?;
         }
         let mut apart = f64::INFINITY;
         loop {

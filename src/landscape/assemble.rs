@@ -16,8 +16,6 @@ use rayon::prelude::*;
 
 /// Intervals of a turn about the axis of symmetry.
 const TURN: usize = 16;
-/// Band evaluations of a stretch, at most.
-const EVALUATIONS: usize = 100;
 /// Rounds of making a stretch's images fewer radians apart.
 const ROUNDS: usize = 12;
 
@@ -167,7 +165,7 @@ fn relaxed(h: Evaluator, path: Path, bands: &dyn Bands) -> Result<Path> {
         return Ok(path);
     }
     let mut band = Band::new(h, path);
-    bands.tightly(&mut band, EVALUATIONS)?;
+    bands.tightly(&mut band)?;
     Ok(band.into_path())
 }
 

@@ -9,33 +9,22 @@ use crate::band::Band;
 use crate::energy::Evaluator;
 use crate::error::Result;
 use crate::path::guess::GuessContext;
-use crate::path::{Path, distance};
+use crate::path::{COARSE, Path, distance};
 use crate::spins::Spins;
 use crate::stationary::FLAT;
 
-/// Most pairs that are tried.
-const MOST: usize = 600;
-/// How often one is: along the band, and two other ways.
-const TRIES: usize = 3;
-/// Images of a way, at least, and intervals of a part of the path that is one.
-const IMAGES: usize = 9;
+/// Intervals, at least, of a part of the path that is a way.
 const FEWEST: usize = 5;
-/// Band evaluations a way may take.
-const EVALUATIONS: usize = 30;
-/// Maxima of a way that are refined, at most.
-const PEAKS: usize = 5;
-/// How many evaluations may pass until a flat way shows.
-const FLAT_EVALUATIONS: usize = 60;
 /// A way that is lower than this part of c after a little relaxation may be flat.
 const LOW: f64 = 1e-3;
 
 /// What relaxes bands.
 pub trait Bands: Sync {
-    /// Loosely, with at most so many evaluations.
-    fn loosely(&self, band: &mut Band, evaluations: usize) -> Result<()>;
+    /// Loosely.
+    fn loosely(&self, band: &mut Band) -> Result<()>;
 
-    /// As far as the run's tolerance, with at most so many evaluations.
-    fn tightly(&self, band: &mut Band, evaluations: usize) -> Result<()>;
+    /// As far as the run's tolerance.
+    fn tightly(&self, band: &mut Band) -> Result<()>;
 }
 
 /// What is needed to connect two minima.
@@ -67,24 +56,23 @@ impl Connector<'_> {
             return Ok(None);
         }
         land.unfold();
-        for tried in 0..MOST {
-            if is_done(land) {
-                return Ok(None);
-            }
+        let mut tried = 0;
+        while !is_done(land) {
             let left = self.evaluations.saturating_sub(land.evaluator().evaluated().evaluations);
-            let next = if left > 0 { land.next_pair(ends, self.below_mev, TRIES) } else { None };
+            let next = if left > 0 { land.next_pair(ends, self.below_mev, WAYS / 2) } else { None };
             let Some(pair) = next else { return Ok(Some(Doubt::NoRoute(tried))) };
             let k = land.try_once_more(pair);
             let along = self.part_between(land, pair);
             let way = match (along, k) {
                 (Some(part), 0) => Some(part),
-                (along, k) => way(land, pair, (k - usize::from(along.is_some())) % WAYS, IMAGES, &self.context),
+                (along, k) => way(land, pair, (k - usize::from(along.is_some())) % WAYS, COARSE, &self.context),
             };
             if let Some(way) = way {
                 self.follow(land, pair, way)?;
             }
+            tried += 1;
         }
-        Ok(if is_done(land) { None } else { Some(Doubt::NoRoute(MOST)) })
+        Ok(None)
     }
 
     /// The part of the path between two states on it, turned about the symmetry axes to be near it, if it has images enough there.
@@ -108,14 +96,14 @@ impl Connector<'_> {
         }
         row.insert(0, near(ends[0], i));
         row.push(near(ends[1], j));
-        Some(Path::new(&row).resampled((i.abs_diff(j) + 1).max(IMAGES)))
+        Some(Path::new(&row).resampled((i.abs_diff(j) + 1).max(COARSE)))
     }
 
     /// Relaxes a way a little and puts the pass of its highest new saddle in.
     fn follow(&self, land: &mut Landscape, pair: [usize; 2], way: Path) -> Result<()> {
         let h = land.evaluator();
         let mut band = Band::new(h, way);
-        self.bands.loosely(&mut band, EVALUATIONS)?;
+        self.bands.loosely(&mut band)?;
         if self.is_flat(&mut band)? {
             land.merge(pair, band.into_path());
             return Ok(());
@@ -123,13 +111,13 @@ impl Connector<'_> {
         for _ in 0..ZOOMS {
             let Some(path) = zoomed(&band, highest(&band, self.c).as_ref(), band.images() + 4) else { break };
             band = Band::new(h, path);
-            self.bands.loosely(&mut band, EVALUATIONS)?;
+            self.bands.loosely(&mut band)?;
         }
-        let tops = peaks(&band, f64::INFINITY, self.c);
+        let tops = peaks(&band, self.c);
         if tops.first().is_some_and(|top| top.floor_mev - land.reference_mev() > self.below_mev) {
             return Ok(());
         }
-        for top in tops.into_iter().take(PEAKS) {
+        for top in tops {
             let found = Saddle::recorded(h, top, self.c, self.hop)?;
             if found.is_saddle(self.c) && !land.knows(&found) {
                 return self.add(land, found);
@@ -157,7 +145,7 @@ impl Connector<'_> {
         if !low || !level(band, band.images() - 1) {
             return Ok(false);
         }
-        self.bands.tightly(band, FLAT_EVALUATIONS)?;
-        Ok(band.path().largest_rotation() < 1.0 && (0..band.images()).all(|k| level(band, k)))
+        self.bands.tightly(band)?;
+        Ok(band.path().is_resolved() && (0..band.images()).all(|k| level(band, k)))
     }
 }

@@ -5,6 +5,7 @@ use crate::field::Components;
 use crate::linalg::slab;
 use crate::path::blend;
 use crate::sphere::write_logs;
+use crate::stationary::ALIKE;
 use crate::threads::both;
 use serde::{Deserialize, Serialize};
 
@@ -29,8 +30,8 @@ pub struct Peak {
 /// A saddle is lower than its peak by no more than this part of what the peak rises above the higher end.
 const NEAR: f64 = 0.2;
 
-/// Every maximum whose energy is within `window` (meV) of the highest, highest first; c: stiffness scale (meV).
-pub fn peaks(band: &Band, window: f64, c: f64) -> Vec<Peak> {
+/// Every maximum, highest first; c: stiffness scale (meV).
+pub fn peaks(band: &Band, c: f64) -> Vec<Peak> {
     let profile = band.profile();
     let e = band.energies_mev();
     let last = e.len() - 1;
@@ -46,19 +47,17 @@ pub fn peaks(band: &Band, window: f64, c: f64) -> Vec<Peak> {
             found.push(between(band, &profile, &x, c));
         }
     }
-    let highest = found.iter().map(|t| t.energy_mev).fold(f64::NEG_INFINITY, f64::max);
-    found.retain(|t| t.energy_mev >= highest - window);
     found.sort_by(|p, q| q.energy_mev.total_cmp(&p.energy_mev).then(p.image.cmp(&q.image)));
     found
 }
 
 /// The highest maximum, if the band rises anywhere above its ends.
 pub fn highest(band: &Band, c: f64) -> Option<Peak> {
-    peaks(band, 0.0, c).into_iter().next()
+    peaks(band, c).into_iter().next()
 }
 
-/// A maximal image, or the interpolated maximum beside it where that can be trusted: its force is below twice the image's, or
-/// its energy is within 2 % of what the interpolation said (on coarse plateaus the interpolation overshoots).
+/// A maximal image, or the interpolated maximum beside it where that can be trusted: its force is below twice the image's (on coarse
+/// plateaus the interpolation overshoots).
 fn beside(band: &Band, profile: &Profile, k: usize, c: f64) -> Peak {
     let image = Peak {
         m: band.path().image(k).to_vec(),
@@ -78,8 +77,7 @@ fn beside(band: &Band, profile: &Profile, k: usize, c: f64) -> Peak {
     let along = slab::dot(&f, &top.tau);
     slab::add_scaled(&mut f, -along, &top.tau);
     let image_force = slab::max_abs(band.perpendicular(k)) + band.along(k).abs() * slab::max_abs(band.tangent(k));
-    let height = band.energies_mev()[k] - band.energies_mev()[0].min(band.energies_mev()[band.images() - 1]);
-    let trusted = slab::max_abs(&f) < 2.0 * image_force || (energy - top.energy_mev).abs() < 0.02 * height;
+    let trusted = slab::max_abs(&f) < 2.0 * image_force;
     let floor_mev = image.floor_mev.min(floor(band, energy, k, c));
     if trusted { Peak { energy_mev: energy.max(image.energy_mev), floor_mev, ..top } } else { image }
 }
@@ -122,7 +120,7 @@ fn through(band: &Band, k: usize) -> Vec<f64> {
     let (mut t, back) = both(here.len(), || direction(here, on, 1.0), || direction(here, back, -1.0));
     slab::add_scaled(&mut t, 1.0, &back);
     let size = slab::norm(&t);
-    if size < 1e-12 {
+    if size < ALIKE {
         return band.tangent(k).to_vec();
     }
     slab::scale(&mut t, 1.0 / size);

@@ -4,18 +4,15 @@ use super::peaks::Peak;
 use crate::energy::{Evaluator, recorded};
 use crate::error::Result;
 use crate::linalg::{Matrix, lowest_modes, slab};
-use crate::path::largest_angle;
 use crate::sphere::rotation_of;
 use crate::stationary::{
-    self, ALIKE, Climb, Limits, Refined, STATIONARY, Spectrum, State, Verdict, climb, follow_modes, refine,
+    self, ALIKE, Climb, Limits, Refined, STATIONARY, Spectrum, State, climb, follow_modes, refine,
 };
 use crate::symmetry::Operation;
 use serde::{Deserialize, Serialize};
 
 /// A mode of less than this part of c is shallow.
 const SHALLOW: f64 = 1e-3;
-/// A saddle this far from the place where its search began (rad, any spin) is another one.
-const SAME_PLACE: f64 = 2.5;
 
 /// Where a refined saddle was looked for, and what was found.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -51,15 +48,7 @@ impl Saddle {
             image: 0,
             floor_mev: f64::NEG_INFINITY,
         };
-        let rotation_rad = largest_angle(start, &point.m);
-        let refined = Refined {
-            verdict: Verdict::Saddle,
-            valley: mode,
-            factorisations,
-            index: 1,
-            rotation_rad,
-            state: State::of(h, point),
-        };
+        let refined = Refined { arrived: true, valley: mode, factorisations, index: 1, state: State::of(h, point) };
         Some(Saddle { top, refined })
     }
 
@@ -150,12 +139,11 @@ impl Saddle {
         better(refine(h, &start, &self.refined.valley, c, floor)).or_else(|| better(follow_modes(h, &start, floor)?))
     }
 
-    /// Stationary to machine precision, and still the start's saddle: near it, and near its height.
+    /// Stationary to machine precision, and near the start's height.
     pub fn is_stationary(&self, c: f64) -> bool {
-        let done = matches!(self.refined.verdict, Verdict::Saddle | Verdict::Flat | Verdict::HigherIndex);
         let zero = (ALIKE * c).max(STATIONARY * self.refined.state.hessian.norm1());
         let near = self.refined.state.energy_mev >= self.top.floor_mev;
-        done && near && self.refined.state.max_torque_mev() < zero && self.refined.rotation_rad < SAME_PLACE
+        self.refined.arrived && near && self.refined.state.max_torque_mev() < zero
     }
 
     /// A stationary state with at most one negative direction.

@@ -18,16 +18,14 @@ use crate::energy::{Evaluator, Stored, recorded_each};
 use crate::error::Result;
 use crate::path::guess::GuessContext;
 use crate::record::Count;
-use crate::stationary::Limits;
+use crate::stationary::{Limits, STEPS, STRIDE};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Most steps of a climb, most of them in a row without a descending mode, and the largest rotation of a spin in one (rad).
-const STEPS: usize = 40;
+/// Most steps of a climb in a row without a descending mode.
 const WITHOUT_MODE: usize = 8;
-const RADIUS: f64 = 0.5;
 /// Searches of a batch.
 const BATCH: usize = 8;
 /// The seed of everything random in a search.
@@ -256,7 +254,7 @@ fn climb(land: &Landscape, start: &[f64], below: f64, c: f64) -> Result<Caught> 
     let limits = Limits {
         steps: STEPS,
         without_mode: WITHOUT_MODE,
-        radius: RADIUS,
+        radius: STRIDE,
         ceiling_mev: land.reference_mev() + below,
         known: &|m, energy_mev| land.is_beside_a_saddle(m, energy_mev - land.reference_mev()),
     };

@@ -17,6 +17,12 @@ use ndarray::Array3;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize, Serializer};
 
+/// Neighbouring images that are no further apart (rad, any spin) resolve a path.
+pub const RESOLVED: f64 = 1.0;
+
+/// Images of a path that is only to be looked at.
+pub const COARSE: usize = 9;
+
 /// Images along a path. Inside (image, xyz, site), so that an image is one contiguous slab of 3N numbers.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(try_from = "(usize, Vec<f64>)")]
@@ -85,6 +91,11 @@ impl Path {
     pub fn longest_step(&self, turns: f64) -> f64 {
         let steps = self.steps(|a, b| if largest_angle(a, b) > turns { distance(a, b) } else { 0.0 });
         steps.into_iter().fold(0.0, f64::max)
+    }
+
+    /// Whether its images resolve it.
+    pub fn is_resolved(&self) -> bool {
+        self.largest_rotation() <= RESOLVED
     }
 
     /// The largest rotations of any spin from image to image, all together (rad).

@@ -12,6 +12,7 @@ use super::point::Point;
 use super::quench::quench;
 use super::spectrum::Spectrum;
 use super::state::State;
+use super::tolerances::{ALIKE, LARGER, LAST_SHIFT, RELAXED, SHARP, STEP};
 use super::trail::Trail;
 use crate::energy::Evaluator;
 use crate::field::project;
@@ -21,17 +22,14 @@ use crate::sphere::rotation_of;
 use crate::spins::Spins;
 use std::mem::{swap, take};
 
-/// Largest rotation of a spin in one step (rad).
-const CAP: f64 = 0.3;
 /// The first step along a valley, the longest one, and how fast they grow (rad, any spin). Between two soft modes the first one
 /// may be shorter, down to the shortest.
 const FIRST: f64 = 0.05;
 const SHORTEST: f64 = 1e-4;
 const LONGEST: f64 = 0.4;
 const GROWTH: f64 = 1.4;
-/// Most steps along a valley at a time.
-const MARCH: usize = 600;
-/// Most Newton steps across a valley after each step along it, which end when one is less than this part of that step.
+/// Most Newton steps across a valley after each step along it, which end when one is less than this part of that step; and most that
+/// are taken more where the slope is not the valley's.
 const CORRECTIONS: usize = 3;
 const ON_THE_WAY: f64 = 0.1;
 /// A step that ends by a correction larger than this part of it, or falls by another amount than the slopes at its ends tell,
@@ -42,19 +40,21 @@ const AS_TOLD: f64 = 1.25;
 const LESS_STEEP: f64 = 0.8;
 /// Slopes below this part of the stiffness (a radian) may be rounding error: the top is flat there.
 const FLAT: f64 = 256.0 * f64::EPSILON;
+/// Differences of energies below this part of it may be.
+const NOISE: f64 = 64.0 * f64::EPSILON;
+/// A fall of so many times as much can be compared with what it was told to be.
+const PLAIN: f64 = 1e3;
 /// A slope below this part of the torque is not the valley's, but of what is left across it.
 const ROUGH: f64 = 1e-3;
-/// Most steps across a valley more, where that is so.
-const SETTLE: usize = 2;
+/// Most steps along a valley at a time, and most times.
+const MARCH: usize = 600;
+const ROUNDS: usize = 24;
 /// Most steps down the gradient.
 const STEPS: usize = 20_000;
-/// So many steps down the gradient shorter than this (rad, any spin) are a crawl.
+/// So many steps down the gradient shorter than the first along a valley are a crawl.
 const CRAWL: usize = 4;
-const SHORT: f64 = 0.05;
 /// A state whose spins are turned by less than this (rad, any spin) is beside another.
 const BESIDE: f64 = 1.5;
-/// How often a descent goes on along a valley.
-const ROUNDS: usize = 24;
 
 /// Where a descent ended.
 #[derive(Debug)]
@@ -164,7 +164,7 @@ impl Walk<'_> {
         self.room.v.clone_from(&self.tau);
         slab::scale(&mut self.room.v, FIRST / rotation_of(&self.tau));
         self.here.go(self.h, &from, &self.room.v);
-        let arrived = quench(self.h, &mut self.here, &mut self.next, &mut self.trail, [FIRST, CAP])
+        let arrived = quench(self.h, &mut self.here, &mut self.next, &mut self.trail, [FIRST, STEP])
             && from.above_mev(&self.here) > self.h.rounding_mev()
             && matches!(self.fall(true), Fall::Arrived)
             && (self.is_minimum() || self.fork());
@@ -188,7 +188,7 @@ impl Walk<'_> {
         let mut half = vec![0.0; end.m.len()];
         blend(&from.m, &end.m, 0.5, &mut half);
         self.here = Point::at(self.h, half.clone());
-        let falls = quench(self.h, &mut self.here, &mut self.next, &mut self.trail, [FIRST, CAP])
+        let falls = quench(self.h, &mut self.here, &mut self.next, &mut self.trail, [FIRST, STEP])
             && largest_angle(&self.here.m, &half) < 0.5 * BESIDE
             && from.above_mev(&self.here) > rounding
             && self.here.above_mev(&end) > rounding;
@@ -203,7 +203,7 @@ impl Walk<'_> {
 
     /// Along the valley as long as it falls, and its slope is more than a part of the steepest; whether it went any way.
     fn march(&mut self, part: f64) -> bool {
-        let noise = 64.0 * f64::EPSILON * self.h.stiffness_mev();
+        let noise = NOISE * self.h.stiffness_mev();
         let flat = FLAT * self.h.stiffness_mev();
         let (mut slope, mut steepest) = (0.0f64, 0.0f64);
         let mut step = FIRST;
@@ -215,7 +215,7 @@ impl Walk<'_> {
             let fallen = self.here.above_mev(&self.next);
             if fallen < -noise && !moved && step > SHORTEST && !self.h.is_stopped() {
                 self.turn_back();
-                step /= 4.0;
+                step /= LARGER;
                 continue;
             }
             if fallen < -noise || self.h.is_stopped() {
@@ -223,7 +223,7 @@ impl Walk<'_> {
             }
             let there = self.slope_ahead();
             let told = 0.5 * (slope + there) * length;
-            let foretold = fallen < 1e3 * noise || (told / AS_TOLD..told * AS_TOLD).contains(&fallen);
+            let foretold = fallen < PLAIN * noise || (told / AS_TOLD..told * AS_TOLD).contains(&fallen);
             if step > FIRST && !(kept && foretold) {
                 self.turn_back();
                 step /= 2.0;
@@ -283,7 +283,7 @@ impl Walk<'_> {
     /// More steps across the valley, where the energy seems to rise or what is left of the torque across could hide the slope;
     /// whether the valley is still there.
     fn settle(&mut self, noise: f64, flat: f64) -> bool {
-        for _ in 0..SETTLE {
+        for _ in 0..CORRECTIONS {
             let rises = self.here.above_mev(&self.next) < -noise;
             let torque = self.next.max_torque_mev();
             let hidden = torque > flat && self.slope_ahead() < ROUGH * torque;
@@ -315,13 +315,13 @@ impl Walk<'_> {
     /// (rad, any spin). None where the valley is lost: straight on, the descent will find the way.
     fn correct(&mut self) -> Option<f64> {
         let Room { pinned: p, x, v, .. } = &mut self.room;
-        let kappa = (self.h.stiffness_mev() / 3.0).max(self.c);
+        let kappa = Pinned::strength_mev(self.h, self.c);
         let mut matrix = p.take_memory();
         self.next.write_hessian(self.h, 1e-6 * self.c, &mut matrix);
         self.next.basis.write_coordinates(&self.tau, x);
         p.factor(matrix, &self.next.zeros, x, kappa);
         p.write_valley(x);
-        if p.complement_negatives > 0 || slab::dot(x, p.soft()).abs() < 0.05 * slab::norm(x) {
+        if p.complement_negatives > 0 || slab::dot(x, p.soft()).abs() < ON_THE_WAY * slab::norm(x) {
             return None;
         }
         self.next.write_field(x, &mut self.tau);
@@ -329,8 +329,8 @@ impl Walk<'_> {
         p.solve_in_place(x);
         self.next.write_field(x, v);
         let rotation = rotation_of(v);
-        if rotation > CAP {
-            slab::scale(v, CAP / rotation);
+        if rotation > STEP {
+            slab::scale(v, STEP / rotation);
         }
         self.next.move_by(self.h, v);
         project(&self.next.m, &mut self.tau);
@@ -340,7 +340,7 @@ impl Walk<'_> {
     /// Implicit Euler down the gradient, to a point where it vanishes; `near` such a point 1/Δt is no larger than the torque.
     fn fall(&mut self, near: bool) -> Fall {
         let scale = self.h.stiffness_mev();
-        let tolerance = 4e-15 * scale;
+        let tolerance = SHARP * scale;
         let mut rate = if near { self.c.min(self.here.max_torque_mev()) } else { self.c };
         let mut short = 0;
         let mut refusals: usize = 0;
@@ -355,15 +355,15 @@ impl Walk<'_> {
             refusals = if refused { CRAWL } else { refusals.saturating_sub(1) };
             // plain Newton steps that gain nothing: the rest is rounding
             let settled = rate == 0.0
-                && self.next.max_torque_mev() < 1e-9 * self.c
+                && self.next.max_torque_mev() < ALIKE * self.c
                 && self.next.max_torque_mev() > 0.5 * self.here.max_torque_mev()
-                && self.here.above_mev(&self.next) <= 64.0 * f64::EPSILON * scale;
+                && self.here.above_mev(&self.next) <= NOISE * scale;
             swap(&mut self.here, &mut self.next);
             self.trail.pass(&self.here.m);
             if settled {
                 return Fall::Arrived;
             }
-            short = if refusals > 0 && rotation_of(&self.room.v) < SHORT { short + 1 } else { 0 };
+            short = if refusals > 0 && rotation_of(&self.room.v) < FIRST { short + 1 } else { 0 };
             if short >= CRAWL {
                 self.tau.clone_from(&self.room.v);
                 project(&self.here.m, &mut self.tau);
@@ -376,23 +376,23 @@ impl Walk<'_> {
     /// Takes one step to `next`; whether a longer one was refused. The rate 1/Δt rises until H + rate is positive definite and the
     /// energy falls as foretold, and falls again after a step that succeeds at once.
     fn euler(&mut self, rate: &mut f64, scale: f64) -> Option<bool> {
-        let noise = 256.0 * f64::EPSILON * scale;
-        let smallest = 1e-14 * scale;
+        let noise = FLAT * scale;
+        let smallest = RELAXED * scale;
         let mut refused = false;
-        while *rate < 1e6 * scale {
+        while *rate < LAST_SHIFT * scale {
             if let Some(told) = self.leap(*rate + smallest) {
                 let fallen = self.here.above_mev(&self.next);
                 // a fall that was not foretold leads over a maximum into another valley
-                let foretold = told < 16.0 * noise || (0.25 * told..4.0 * told).contains(&fallen);
+                let foretold = told < noise || (told / AS_TOLD..told * LARGER).contains(&fallen);
                 if foretold && fallen >= -noise {
                     if !refused {
-                        *rate = if *rate < 4.0 * smallest { 0.0 } else { *rate / 4.0 };
+                        *rate = if *rate < LARGER * smallest { 0.0 } else { *rate / LARGER };
                     }
                     return Some(refused);
                 }
             }
             refused = true;
-            *rate = (4.0 * *rate).max(smallest);
+            *rate = (LARGER * *rate).max(smallest);
         }
         None
     }
@@ -411,7 +411,7 @@ impl Walk<'_> {
         }
         self.here.write_field(x, v);
         let rotation = rotation_of(v);
-        let part = if rotation > CAP { CAP / rotation } else { 1.0 };
+        let part = if rotation > STEP { STEP / rotation } else { 1.0 };
         slab::scale(v, part);
         self.next.go(self.h, &self.here, v);
         let down = -slab::dot(&self.here.slope, x);

@@ -1,7 +1,7 @@
 //! Minima and saddles to machine precision, and what kind of stationary state they are.
 //!
-//! From any state one search, in steps inside a trust region, leads to a stationary state with a wanted number of negative directions
-//! (`search`, `step`): climbs, relaxations nearby, mode following and last digits are uses of it.
+//! From any state one search, in steps inside a trust region, leads to a saddle of index one (`search`, `step`): climbs and mode
+//! following are uses of it.
 //!
 //! A wall that can slide gives a chain's Hessian one eigenvalue of either sign that may be 1e-12 of the others. Plain Newton
 //! oscillates there; so the soft mode is split off (Lyapunov–Schmidt): Newton across it, a safeguarded search along it.
@@ -28,8 +28,8 @@ pub use modes::follow_modes;
 pub use pinned::Pinned;
 pub use point::Point;
 pub use relax::{Relaxed, WayDown, relax_to_minimum};
-pub use search::{Climb, GaveUp, Limits, Saddle, climb, relax_nearby};
+pub use search::{Climb, GaveUp, Limits, STEPS, Saddle, climb};
 pub use spectrum::{Spectrum, lowest_eigenvalues_mev};
 pub use state::State;
-pub use tolerances::{ALIKE, FLAT, LOWER, RELAXED, STATIONARY};
-pub use valley::{Refined, Verdict, refine};
+pub use tolerances::{ALIKE, FLAT, LOWER, RELAXED, STATIONARY, STRIDE};
+pub use valley::{Refined, refine};

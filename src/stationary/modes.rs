@@ -4,34 +4,23 @@
 //! through a start may lead to a maximum. What this search ends in has index one.
 
 use super::point::Point;
-use super::search::{GaveUp, Search};
+use super::search::{GaveUp, STEPS, Search};
 use super::state::State;
-use super::step::Wanted;
-use super::valley::{Refined, Verdict};
+use super::tolerances::STEP;
+use super::valley::Refined;
 use crate::energy::Evaluator;
 use crate::path::largest_angle;
 
-/// Most steps.
-const STEPS: usize = 60;
-/// Largest rotation of a spin in a step (rad).
-const RADIUS: f64 = 0.3;
 /// Farthest from the start (rad, any spin).
 const FARTHEST: f64 = 2.0;
 
 /// The saddle of index one that following the lowest mode from `m` reaches, if it reaches one nearby without falling below
 /// `floor_mev` (meV above the Hamiltonian's reference).
 pub fn follow_modes(h: Evaluator, m: &[f64], floor_mev: f64) -> Option<Refined> {
-    let mut search = Search::from(h, m, Wanted::Saddle, RADIUS);
+    let mut search = Search::from(h, m, STEP);
     let left = |here: &Point| largest_angle(m, &here.m) > FARTHEST || here.energy_mev < floor_mev;
     let found = search.run(STEPS, |here, _| left(here).then_some(GaveUp::Stuck));
     let factorisations = search.steps;
     let saddle = found.and_then(|()| search.saddle()).ok()?;
-    Some(Refined {
-        verdict: Verdict::Saddle,
-        rotation_rad: largest_angle(m, &saddle.point.m),
-        state: State::of(h, saddle.point),
-        valley: saddle.mode,
-        factorisations,
-        index: 1,
-    })
+    Some(Refined { arrived: true, state: State::of(h, saddle.point), valley: saddle.mode, factorisations, index: 1 })
 }

@@ -12,6 +12,8 @@
 
 use super::border::{Border, pin};
 use super::state::State;
+use super::tolerances::INDEPENDENT;
+use crate::energy::Evaluator;
 use crate::linalg::{Factors, Inverse, Matrix, remove, slab};
 use std::mem::take;
 
@@ -32,6 +34,11 @@ pub struct Pinned {
 }
 
 impl Pinned {
+    /// How stiff the pinned directions are made (meV).
+    pub fn strength_mev(h: Evaluator, c: f64) -> f64 {
+        (h.stiffness_mev() / 3.0).max(c)
+    }
+
     /// Of H + shift·1 at a state, with the soft mode `t` (tangent coordinates, any length) and `frozen` further modes that are
     /// treated as zero modes; κ is the stiffness of the pins (meV). Solutions get a step of iterative refinement.
     pub fn new(state: &State, t: &[f64], shift: f64, frozen: &[Vec<f64>], kappa: f64) -> Pinned {
@@ -74,7 +81,7 @@ impl Pinned {
             z.clone_from(mode);
             remove(&mut z, &self.zeros);
             let size = slab::norm(&z);
-            if size > 1e-3 {
+            if size > INDEPENDENT {
                 slab::scale(&mut z, 1.0 / size);
                 pin(matrix, &z, &mut used, kappa);
                 self.zeros.push(z);

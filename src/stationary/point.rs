@@ -1,5 +1,6 @@
 //! A configuration with its energy, gradient and tangent basis, in memory that is used again for the next one.
 
+use super::tolerances::INDEPENDENT;
 use crate::energy::Evaluator;
 use crate::field::{Components, TILE};
 use crate::hessian::{TangentBasis, assemble_into};
@@ -78,7 +79,7 @@ impl Point {
             self.basis.write_rotation(*axis, &mut t);
             t
         });
-        self.zeros = orthonormal(rotations.collect(), 1e-6);
+        self.zeros = orthonormal(rotations.collect(), INDEPENDENT);
     }
 
     /// Largest component of the Riemannian gradient (meV).

@@ -3,6 +3,7 @@
 //! no step has.
 
 use super::point::Point;
+use super::tolerances::LARGER;
 use super::trail::Trail;
 use crate::energy::Evaluator;
 use crate::field::project;
@@ -47,7 +48,7 @@ pub fn quench(h: Evaluator, here: &mut Point, next: &mut Point, trail: &mut Trai
         if risen {
             // a shorter one, straight down
             secants = Secants::of(MEMORY);
-            length /= 4.0;
+            length /= LARGER;
             if length < NONE * cap {
                 return false;
             }

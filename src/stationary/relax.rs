@@ -1,5 +1,6 @@
 //! Relaxing a state to its minimum: Newton's method with a shift that keeps the Hessian positive, and descent checked.
 
+use super::tolerances::{ALIKE, FIRST_SHIFT, LARGER, LAST_SHIFT, NEARLY, ROUNDING, STATIONARY, STRIDE};
 use super::{Point, Spectrum, State, descend};
 use crate::energy::Evaluator;
 use crate::error::{Error, Result};
@@ -12,12 +13,10 @@ use crate::spins::Spins;
 use serde::{Deserialize, Serialize};
 use std::mem::take;
 
-/// Largest rotation of a spin in one step (rad).
-const CAP: f64 = 0.5;
 /// Most Newton steps to a stationary state.
 const STEPS: usize = 500;
-/// The first shift and the least one, in parts of the largest stiffness; one below the third gives way to none where it can.
-const SHIFTS: [f64; 3] = [1e-3, 1e-9, 1e-4];
+/// A shift below this part of the largest stiffness gives way to none where it can.
+const SMALL: f64 = 1e-4;
 
 /// A relaxed state.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -69,7 +68,7 @@ pub fn relax_to_minimum(h: Evaluator, start: &Spins, tolerance_mev: f64) -> Resu
         steps,
         largest_rotation_rad: largest_angle(start.as_slice(), &p.m),
         left,
-        converged: p.max_torque_mev() <= 1e3 * tolerance_mev,
+        converged: p.max_torque_mev() <= NEARLY * tolerance_mev,
         spins: Spins::from_unit_components(&p.m),
     })
 }
@@ -95,7 +94,7 @@ fn stationary(h: Evaluator, mut p: Point, tolerance_mev: f64, steps: &mut usize,
         let before = p.max_torque_mev();
         let Some(next) = newton_step(h, &p, &mut shift, memory) else { break };
         let torque = next.max_torque_mev();
-        stalled = if torque > 0.5 * before && torque < 20.0 * tolerance_mev { stalled + 1 } else { 0 };
+        stalled = if torque > 0.5 * before && torque < NEARLY * tolerance_mev { stalled + 1 } else { 0 };
         p = next;
         *steps += 1;
     }
@@ -107,12 +106,12 @@ fn stationary(h: Evaluator, mut p: Point, tolerance_mev: f64, steps: &mut usize,
 /// to step by a part that does not depend on how soft it is.
 fn newton_step(h: Evaluator, p: &Point, shift: &mut f64, memory: &mut Matrix) -> Option<Point> {
     let scale = h.stiffness_mev();
-    let slack = 1e-13 * (p.energy_mev.abs() + scale);
-    let [first, least, small] = SHIFTS.map(|part| part * scale);
+    let slack = ROUNDING * (p.energy_mev.abs() + scale);
+    let [first, least, small] = [FIRST_SHIFT, ALIKE, SMALL].map(|part| part * scale);
     let mut trial = if *shift > small { *shift } else { 0.0 };
-    while trial < 1e6 * scale && !h.is_stopped() {
+    while trial < LAST_SHIFT * scale && !h.is_stopped() {
         let mut matrix = take(memory);
-        p.write_hessian(h, trial + 1e-12 * scale, &mut matrix);
+        p.write_hessian(h, trial + STATIONARY * scale, &mut matrix);
         let mut x = p.downhill();
         let factors = Factors::solving(matrix, &mut x, 1);
         let positive = factors.negatives() == 0;
@@ -120,18 +119,18 @@ fn newton_step(h: Evaluator, p: &Point, shift: &mut f64, memory: &mut Matrix) ->
         if positive {
             let mut v = p.field(&x);
             let rotation = rotation_of(&v);
-            if rotation > CAP {
-                slab::scale(&mut v, CAP / rotation);
+            if rotation > STRIDE {
+                slab::scale(&mut v, STRIDE / rotation);
             }
             let mut next = Point::default();
             next.go(h, p, &v);
             if next.energy_mev <= p.energy_mev + slack {
-                *shift = if trial > 0.0 { (trial / 4.0).max(least) } else { 0.0 };
+                *shift = if trial > 0.0 { (trial / LARGER).max(least) } else { 0.0 };
                 return Some(next);
             }
         }
         trial = match (trial > 0.0, *shift > 0.0) {
-            (true, _) => 4.0 * trial,
+            (true, _) => LARGER * trial,
             (false, true) => *shift,
             (false, false) => first,
         };

@@ -1,19 +1,19 @@
-//! The search for a stationary state with a wanted number of negative directions, from any state.
+//! The search for a saddle of index one, from any state.
 
 use super::point::Point;
 use super::spectrum::Spectrum;
 use super::state::State;
-use super::step::{Region, Step, Wanted};
-use super::tolerances::{FLAT, SHARP};
+use super::step::{Region, Step};
+use super::tolerances::{FLAT, ROUGHLY, SHARP, STEP};
 use crate::energy::Evaluator;
 use crate::linalg::Matrix;
 use std::mem::swap;
 
-/// A Newton step to a saddle that is shorter (rad, any spin) tells its energy, to this part of how far that is.
-const CLOSE: f64 = 0.15;
-const TOLD: f64 = 0.3;
 /// How far a stationary state of too many negative directions is left along the lowest of the wrong ones (rad, any spin).
 const LEAVE: f64 = 0.1;
+
+/// Most steps of a search.
+pub const STEPS: usize = 40;
 
 /// What bounds a climb.
 pub struct Limits<'a> {
@@ -68,7 +68,7 @@ pub struct Saddle {
 
 /// Climbs from any state to a saddle of index one: up along the lowest mode, down along all others.
 pub fn climb(h: Evaluator, start: &[f64], limits: &Limits) -> Climb {
-    let mut search = Search::from(h, start, Wanted::Saddle, limits.radius);
+    let mut search = Search::from(h, start, limits.radius);
     let mut without = 0;
     let ended = search.run(limits.steps, |here, step| {
         without = if step.negative == 0 { without + 1 } else { 0 };
@@ -81,25 +81,17 @@ pub fn climb(h: Evaluator, start: &[f64], limits: &Limits) -> Climb {
         if (limits.known)(&here.m, here.energy_mev) {
             return Some(GaveUp::Known);
         }
-        let there = here.energy_mev + step.rise_mev - TOLD * step.rise_mev.abs();
-        (step.is_newton && step.rotation < CLOSE && there > limits.ceiling_mev).then_some(GaveUp::TooHigh)
+        // a short step of Newton's tells how high the saddle is
+        let there = here.energy_mev + step.rise_mev - ROUGHLY * step.rise_mev.abs();
+        (step.is_newton && step.rotation < STEP && there > limits.ceiling_mev).then_some(GaveUp::TooHigh)
     });
     let steps = search.steps;
     Climb { saddle: ended.and_then(|()| search.saddle()), steps }
 }
 
-/// Relaxes any state to a minimum nearby in so many steps of at most `radius` (rad, any spin), the energy never rising; and the
-/// Hessians that it took. Not the minimum that the steepest descent leads to: that is [`descend`](super::descend)'s.
-pub fn relax_nearby(h: Evaluator, start: &[f64], steps: usize, radius: f64) -> (Result<Point, GaveUp>, usize) {
-    let mut search = Search::from(h, start, Wanted::Minimum, radius);
-    let ended = search.run(steps, |_, _| None);
-    (ended.map(|()| search.here), search.steps)
-}
-
 /// A search on its way.
 pub(super) struct Search<'a> {
     h: Evaluator<'a>,
-    wanted: Wanted,
     region: Region<'a>,
     here: Point,
     next: Point,
@@ -107,9 +99,9 @@ pub(super) struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    pub fn from(h: Evaluator<'a>, start: &[f64], wanted: Wanted, radius: f64) -> Search<'a> {
+    pub fn from(h: Evaluator<'a>, start: &[f64], radius: f64) -> Search<'a> {
         let here = Point::at(h, start.to_vec());
-        Search { h, wanted, region: Region::new(h, wanted, radius), here, next: Point::default(), steps: 0 }
+        Search { h, region: Region::new(h, radius), here, next: Point::default(), steps: 0 }
     }
 
     /// Until the torque is rounding error; `each` may end it before any step.
@@ -130,10 +122,11 @@ impl<'a> Search<'a> {
             }
             if torque > loose {
                 // Newton's steps leave the negative directions as many as they are
-                if self.go(&step) && step.is_newton && self.here.max_torque_mev() <= sharp {
+                self.go(&step);
+                if step.is_newton && self.here.max_torque_mev() <= sharp {
                     return Ok(());
                 }
-            } else if step.negative == self.wanted.negative() {
+            } else if step.negative == 1 {
                 if self.last_digits(torque, sharp) {
                     return Ok(());
                 }
@@ -144,18 +137,10 @@ impl<'a> Search<'a> {
         Err(GaveUp::Steps)
     }
 
-    /// Takes a step, but not one to a minimum that raises the energy; whether it was taken.
-    fn go(&mut self, step: &Step) -> bool {
+    fn go(&mut self, step: &Step) {
         self.next.go(self.h, &self.here, &self.region.v);
-        let risen = self.next.above_mev(&self.here);
-        self.region.judge(step, risen);
-        let taken = self.wanted == Wanted::Saddle || risen <= self.h.rounding_mev();
-        if taken {
-            swap(&mut self.here, &mut self.next);
-        } else {
-            self.region.cut(step);
-        }
-        taken
+        self.region.judge(step, self.next.above_mev(&self.here));
+        swap(&mut self.here, &mut self.next);
     }
 
     /// Takes a step that lessens a torque of rounding errors; whether it was the last.
@@ -172,12 +157,11 @@ impl<'a> Search<'a> {
 
     /// Leaves a stationary state along the lowest of its wrong modes; not one that has none too many.
     fn leave(&mut self, step: &Step) -> bool {
-        let wanted = self.wanted.negative();
-        if step.negative > wanted {
-            self.region.along(&self.here, wanted, LEAVE);
+        if step.negative > 1 {
+            self.region.along_second(&self.here, LEAVE);
             self.here.move_by(self.h, &self.region.v);
         }
-        step.negative > wanted
+        step.negative > 1
     }
 
     /// Where it is, if that is a saddle of index one.

@@ -1,52 +1,29 @@
-//! Steps towards a stationary state with a wanted number of negative directions, inside a trust region.
+//! Steps towards a saddle of index one, inside a trust region.
 //!
 //! ```text
-//! to a saddle    s = −Σ_k ± (g_k/|λ_k|) u_k      up (−) along the lowest mode, down along all others
-//! to a minimum   s = −(H + μ)⁻¹ g                μ = 0 where H is positive definite
+//! s = −Σ_k ± (g_k/|λ_k|) u_k      up (−) along the lowest mode, down along all others
 //! ```
-//! The first is Newton's step −H⁻¹g with its parts along the wrong modes reversed: one factorisation where the number of negative
-//! directions is the wanted one, and the modes in question where it is not. Reversal on the way to a minimum takes more steps than a
-//! shift, and longer. A step is cut to the trust radius, which follows how well the model
-//! told the energy. (Cerjan, Miller, J. Chem. Phys. 75, 2800 (1981), doi:10.1063/1.442352; Wales, J. Chem. Phys. 101, 3750 (1994),
+//! This is Newton's step −H⁻¹g with its parts along the wrong modes reversed: one factorisation where one direction is negative,
+//! and the modes in question where more are or none is. Where very many are, the step goes down: s = −(H + μ)⁻¹g. A step is cut to
+//! the trust radius, which follows how well the model told the energy. (Cerjan, Miller, J. Chem. Phys. 75, 2800 (1981), doi:10.1063/1.442352; Wales, J. Chem. Phys. 101, 3750 (1994),
 //! doi:10.1063/1.467559.)
 
 use super::border::pin;
 use super::point::Point;
+use super::tolerances::{FIRST_SHIFT, LARGER, LAST_SHIFT, ROUGHLY};
 use crate::energy::Evaluator;
 use crate::linalg::{Factors, Matrix, lowest_modes, modes_by_factors, remove, slab};
 use crate::sphere::rotation_of;
 use std::mem::take;
 use std::ops::Range;
 
-/// More modes than this are not reversed one by one: the step is one to a minimum.
+/// More modes than this are not reversed one by one: the step goes down.
 const MODES: usize = 8;
-/// How sharp a mode must be to be reversed: |A⁻¹v − v/λ| in parts of 1/|λ|.
-const MODE: f64 = 0.3;
-/// The model's error, in parts of |g||s|, below which the radius is doubled, and above which it is half the step.
-const GOOD: f64 = 0.15;
-const POOR: f64 = 0.3;
-
-/// What a stationary state is wanted to be.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Wanted {
-    /// A minimum: no negative direction.
-    Minimum,
-    /// A saddle of index one.
-    Saddle,
-}
-
-impl Wanted {
-    /// How many negative directions that is.
-    pub fn negative(self) -> usize {
-        usize::from(self == Wanted::Saddle)
-    }
-}
 
 /// A trust region, with the memory for steps inside it.
 #[derive(Debug)]
 pub struct Region<'a> {
     h: Evaluator<'a>,
-    wanted: Wanted,
     /// Largest rotation of a spin in a step (rad), now and ever.
     radius: f64,
     largest: f64,
@@ -66,7 +43,7 @@ pub struct Step {
     pub negative: usize,
     /// Largest rotation of a spin (rad).
     pub rotation: f64,
-    /// It is Newton's, not cut, and there are as many negative directions as wanted.
+    /// It is Newton's, not cut, and there is one negative direction.
     pub is_newton: bool,
     /// By how much the energy is to rise (meV).
     pub rise_mev: f64,
@@ -76,10 +53,10 @@ pub struct Step {
 
 impl<'a> Region<'a> {
     /// Of steps no longer than `radius` (rad, any spin).
-    pub fn new(h: Evaluator<'a>, wanted: Wanted, radius: f64) -> Region<'a> {
+    pub fn new(h: Evaluator<'a>, radius: f64) -> Region<'a> {
         let [hessian, room] = [(); 2].map(|()| Matrix::default());
         let (modes, x, v) = (Vec::new(), Vec::new(), Vec::new());
-        Region { h, wanted, radius, largest: radius, hessian, room, modes, x, v }
+        Region { h, radius, largest: radius, hessian, room, modes, x, v }
     }
 
     /// Newton's step from a point, in `v`, wherever it leads; its largest rotation of a spin (rad).
@@ -95,16 +72,13 @@ impl<'a> Region<'a> {
         here.write_hessian(self.h, 0.0, &mut self.hessian);
         let factors = self.newton(here);
         let negative = factors.negatives();
-        let reversed = match (self.wanted, negative) {
-            (Wanted::Saddle, 0) => Some(0..1),
-            (Wanted::Saddle, 2..=MODES) => Some(1..negative),
-            _ => None,
-        };
-        if let Some(which) = reversed.clone() {
-            self.reverse(here, &factors, which);
+        match negative {
+            0 => self.reverse(here, &factors, 0..1),
+            2..=MODES => self.reverse(here, &factors, 1..negative),
+            _ => {}
         }
         self.room = factors.into_memory();
-        if reversed.is_none() && negative != self.wanted.negative() {
+        if negative > MODES {
             self.shifted(here);
         }
         here.write_field(&self.x, &mut self.v);
@@ -117,29 +91,24 @@ impl<'a> Region<'a> {
         }
         let rise_mev = here.predicted_mev(&self.hessian, &self.x);
         let size_mev = slab::norm(&self.x) * slab::norm(&here.slope);
-        let is_newton = whole && negative == self.wanted.negative();
+        let is_newton = whole && negative == 1;
         Step { negative, rotation: rotation.min(self.radius), is_newton, rise_mev, size_mev }
     }
 
     /// Fits the radius to what the energy did (meV) in a step.
     pub fn judge(&mut self, step: &Step, risen_mev: f64) {
-        let error = (risen_mev - step.rise_mev).abs();
-        if error < GOOD * step.size_mev {
+        let error = (risen_mev - step.rise_mev).abs() - ROUGHLY * step.size_mev;
+        if error < 0.0 {
             self.radius = (2.0 * self.radius).min(self.largest);
-        } else if error > POOR * step.size_mev + 256.0 * f64::EPSILON * self.h.stiffness_mev() {
+        } else if error > self.h.rounding_mev() {
             self.radius = 0.5 * step.rotation;
         }
     }
 
-    /// Makes the radius a part of a step that is not taken.
-    pub fn cut(&mut self, step: &Step) {
-        self.radius = 0.3 * step.rotation;
-    }
-
-    /// A way along one of the lowest modes (rad, any spin), in `v`.
-    pub fn along(&mut self, here: &Point, mode: usize, rotation: f64) {
-        let modes = lowest_modes(&self.hessian, mode + 1, &here.zeros);
-        here.write_field(&modes[mode.min(modes.len() - 1)].vector, &mut self.v);
+    /// A way along the second of the lowest modes (rad, any spin), in `v`.
+    pub fn along_second(&mut self, here: &Point, rotation: f64) {
+        let modes = lowest_modes(&self.hessian, 2, &here.zeros);
+        here.write_field(&modes[modes.len() - 1].vector, &mut self.v);
         self.h.hold_frozen(&mut self.v);
         let size = rotation_of(&self.v);
         slab::scale(&mut self.v, rotation / size);
@@ -173,7 +142,7 @@ impl<'a> Region<'a> {
             here.basis.write_coordinates(mode, &mut before);
             slab::add_scaled(&mut start, slab::norm(&self.x), &before);
         }
-        let modes = modes_by_factors(factors, &here.zeros, vec![start], MODE).unwrap_or_else(|| {
+        let modes = modes_by_factors(factors, &here.zeros, vec![start], ROUGHLY).unwrap_or_else(|| {
             lowest_modes(&self.hessian, which.end, &here.zeros).into_iter().map(|mode| mode.vector).collect()
         });
         for u in modes.get(which).unwrap_or_default() {
@@ -186,8 +155,8 @@ impl<'a> Region<'a> {
     /// The step of the least shift, in fours, that makes the Hessian positive definite.
     fn shifted(&mut self, here: &Point) {
         let scale = self.h.stiffness_mev();
-        let mut shift = 1e-3 * scale;
-        while shift < 1e6 * scale && !self.h.is_stopped() {
+        let mut shift = FIRST_SHIFT * scale;
+        while shift < LAST_SHIFT * scale && !self.h.is_stopped() {
             let mut matrix = take(&mut self.room);
             matrix.copy_from(&self.hessian);
             matrix.shift(shift);
@@ -197,7 +166,7 @@ impl<'a> Region<'a> {
             if positive {
                 break;
             }
-            shift *= 4.0;
+            shift *= LARGER;
         }
     }
 }

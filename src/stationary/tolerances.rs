@@ -3,8 +3,33 @@
 //! An energy is a sum of densities of the size of the stiffness c of the stiffest spin, so that a torque has a rounding error of some eps c,
 //! and what a search leaves of it shifts energies by its square. All are parts of c, but where something else is said.
 
+/// Steps that turn no spin by more (rad) stay in their valley.
+pub const STEP: f64 = 0.3;
+
+/// Steps that may lead into another valley turn no spin by more (rad).
+pub const STRIDE: f64 = 0.5;
+
+/// What a quadratic model tells of an energy or a mode is right to this part of it.
+pub const ROUGHLY: f64 = 0.3;
+
+/// Fields of which less than this part is left beside others depend on them.
+pub const INDEPENDENT: f64 = 1e-6;
+
+/// Shifts of a Hessian that is to be positive begin at this part of c, and end at so many times c.
+pub const FIRST_SHIFT: f64 = 1e-3;
+pub const LAST_SHIFT: f64 = 1e6;
+
+/// What is too small or too large, a shift or a step, becomes so many times as large or as small.
+pub const LARGER: f64 = 4.0;
+
+/// An energy that changes by less than this part of its size is rounding.
+pub const ROUNDING: f64 = 1e-13;
+
 /// A torque of this size is rounding error.
 pub const SHARP: f64 = 4e-15;
+
+/// A torque of so many times the tolerance may be as small as it becomes.
+pub const NEARLY: f64 = 1e3;
 
 /// A state with no larger torque is relaxed.
 pub const RELAXED: f64 = 1e-14;

@@ -11,41 +11,42 @@
 
 use super::pinned::Pinned;
 use super::polish::polish;
+use super::search::STEPS;
 use super::state::State;
-use super::tolerances::{ALIKE, SHARP};
+use super::tolerances::{ALIKE, LARGER, NEARLY, ROUNDING, SHARP, STEP};
 use crate::energy::Evaluator;
 use crate::linalg::{Matrix, Mode, lowest_modes, orthonormal, rayleigh_ritz, remove, slab, soft_modes, soft_space};
-use crate::path::{distance, largest_angle};
+use crate::path::distance;
 use crate::sphere::rotation_of;
 use serde::{Deserialize, Serialize};
 
-/// Most steps.
-const STEPS: usize = 80;
-/// Largest rotation of a spin in a step (rad).
-const CAP: f64 = 0.3;
-/// Farthest along the valley (rad).
-const FARTHEST: f64 = 8.0;
-
-/// How a refinement ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Verdict {
-    /// A stationary point to machine precision.
-    Saddle,
-    /// Stationary across the valley, and along it as far as rounding tells.
-    Flat,
-    /// A stationary point with more than one negative direction.
-    HigherIndex,
-    /// The search left the start's neighbourhood.
-    Left,
-    /// No convergence.
-    Stalled,
-}
+/// Shifts begin at this part of c.
+const SHIFT: f64 = 0.1;
+/// How often a Hessian is pinned in another way at one place.
+const TRIES: usize = 15;
+/// How many modes beside the soft one are looked at; those flatter than this part of c are frozen.
+const MODES: usize = 6;
+const FROZEN: f64 = 1e-4;
+/// A step across the valley that is shorter (rad, any component) is one beside it.
+const BESIDE: f64 = 0.03;
+/// What the valley tells of a slope or a curvature is to be so many times what is left across it.
+const TOLD: f64 = 10.0;
+/// The longest move along the valley may grow so far at a time; where the valley is not reached yet, a part of it is allowed.
+const GROWTH: f64 = 1.6;
+const CAREFUL: f64 = 0.3;
+/// A search that needs shifts for so many steps is where more than one direction falls; so often it is kicked out of there.
+const BAD: usize = 6;
+const KICKS: usize = 2;
+/// Between kicks a search that needs shifts ends so far (rad) from the valley.
+const ASTRAY: f64 = 1.5;
+/// A torque of so many times the rounding error may be as small as it becomes.
+const LAST: f64 = 1e2;
 
 /// A refined saddle.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Refined {
-    /// How it ended.
-    pub verdict: Verdict,
+    /// The search came to rest at a stationary point.
+    pub arrived: bool,
     /// Where it ended.
     pub state: State,
     /// Unit tangent field (3N) of the valley there.
@@ -54,8 +55,6 @@ pub struct Refined {
     pub factorisations: usize,
     /// Negative directions, zero modes apart.
     pub index: usize,
-    /// Largest rotation of a spin from the start (rad).
-    pub rotation_rad: f64,
 }
 
 /// The search's memory.
@@ -74,8 +73,6 @@ struct Search<'a> {
     visited: Vec<(f64, f64)>,
     frozen: Vec<Vec<f64>>,
     factorisations: usize,
-    freezes: usize,
-    aims: usize,
     kicks: usize,
     bad: usize,
     last_step: f64,
@@ -86,7 +83,8 @@ struct Search<'a> {
 enum Next {
     Move(Vec<f64>, Vec<f64>),
     Retry,
-    Stop(Verdict),
+    Arrived,
+    Lost,
 }
 
 /// Refines `m` to the saddle along the path direction `tau` (3N); `c` is the stiffness scale (meV). A search that falls below
@@ -94,7 +92,7 @@ enum Next {
 pub fn refine(h: Evaluator, m: &[f64], tau: &[f64], c: f64, floor_mev: f64) -> Refined {
     let state = State::at(h, m.to_vec());
     let tau = unit_tangent(&state.m, tau);
-    let kappa = (h.stiffness_mev() / 3.0).max(c);
+    let kappa = Pinned::strength_mev(h, c);
     let mut s = Search {
         h,
         c,
@@ -104,19 +102,17 @@ pub fn refine(h: Evaluator, m: &[f64], tau: &[f64], c: f64, floor_mev: f64) -> R
         state,
         tau,
         x: 0.0,
-        reach: 0.3,
+        reach: STEP,
         shift: 0.0,
         visited: Vec::new(),
         frozen: Vec::new(),
         factorisations: 0,
-        freezes: 0,
-        aims: 0,
         kicks: 0,
         bad: 0,
-        last_step: 9.0,
+        last_step: f64::INFINITY,
         torques: Vec::new(),
     };
-    let mut verdict = Verdict::Stalled;
+    let mut arrived = false;
     for step in 0..STEPS {
         if h.is_stopped() {
             break;
@@ -128,13 +124,14 @@ pub fn refine(h: Evaluator, m: &[f64], tau: &[f64], c: f64, floor_mev: f64) -> R
                 s.state = State::at(h, m);
             }
             Next::Retry => {}
-            Next::Stop(v) => {
-                verdict = v;
+            Next::Arrived => {
+                arrived = true;
                 break;
             }
+            Next::Lost => break,
         }
     }
-    s.report(verdict)
+    s.report(arrived)
 }
 
 impl Search<'_> {
@@ -144,8 +141,8 @@ impl Search<'_> {
 
     /// The Hessian pinned along the soft mode, without negative directions beside it if that can be had.
     fn pinned(&mut self) -> Pinned {
-        self.shift = if self.shift < 0.05 * self.c { 0.0 } else { self.shift / 4.0 };
-        for _ in 0..15 {
+        self.shift = if self.shift < SHIFT * self.c { 0.0 } else { self.shift / LARGER };
+        for _ in 0..TRIES {
             let t = self.state.basis.coordinates(&self.tau);
             let frozen: Vec<Vec<f64>> = self.frozen.iter().map(|f| self.state.basis.coordinates(f)).collect();
             let p = Pinned::new(&self.state, &t, self.shift, &frozen, self.kappa);
@@ -156,8 +153,7 @@ impl Search<'_> {
                 }
                 continue;
             }
-            self.shift =
-                if self.shift < 1e-6 * self.c { 1.001e-6 * self.c } else { (4.0 * self.shift).max(0.1 * self.c) };
+            self.shift = (LARGER * self.shift).max(SHIFT * self.c);
         }
         let t = self.state.basis.coordinates(&self.tau);
         self.factorisations += 1;
@@ -185,16 +181,12 @@ impl Search<'_> {
 
     /// Freezes modes that are flat to 1e-4 c, if nothing beside them is worse.
     fn freeze_flat(&mut self, p: &Pinned) -> bool {
-        if self.freezes >= 6 {
-            return false;
-        }
-        self.freezes += 1;
-        let flat = 1e-4 * self.c;
+        let flat = FROZEN * self.c;
         // what is negative still is less than −shift
         if self.shift >= flat {
             return false;
         }
-        let modes = self.complement(p, 5, flat);
+        let modes = self.complement(p, MODES, flat);
         if modes.first().is_none_or(|m| m.value <= -flat) {
             return false;
         }
@@ -207,7 +199,7 @@ impl Search<'_> {
 
     /// With one negative direction in all, makes that the soft mode.
     fn aim_lower(&mut self, p: &Pinned) -> bool {
-        if p.index > 1 || self.shift != 0.0 || self.aims >= 4 {
+        if p.index > 1 || self.shift != 0.0 {
             return false;
         }
         let Some(lowest) = lowest_modes(&self.state.hessian, 1, p.zeros()).into_iter().next() else { return false };
@@ -215,7 +207,6 @@ impl Search<'_> {
         let mut field = self.state.field(&lowest.vector);
         slab::scale(&mut field, sign);
         self.tau = field;
-        self.aims += 1;
         self.visited.clear();
         true
     }
@@ -223,12 +214,9 @@ impl Search<'_> {
     fn step(&mut self, step: usize) -> Next {
         let p = self.pinned();
         let c = self.c;
-        self.bad = if self.shift > 1e-5 * c { self.bad + 1 } else { 0 };
-        if self.bad >= 6 && self.last_step < 0.02 {
+        self.bad = if self.shift > 0.0 { self.bad + 1 } else { 0 };
+        if self.bad >= BAD && self.last_step < BESIDE {
             return self.kick(&p);
-        }
-        if self.bad >= 25 {
-            return Next::Stop(Verdict::HigherIndex);
         }
         let g = self.state.slope.clone();
         let minus: Vec<f64> = g.iter().map(|x| -x).collect();
@@ -240,30 +228,28 @@ impl Search<'_> {
         self.last_step = across;
         let torque = slab::max_abs(&g);
         let trusted =
-            (across < 0.03 && slope.abs() > 10.0 * c * across * across && curvature.abs() > 10.0 * c * across)
-                || across < 1e-9;
-        if let Some(verdict) = self.arrived(&p, &g, torque, across, step) {
-            return Next::Stop(verdict);
+            across < BESIDE && slope.abs() > TOLD * c * across * across && curvature.abs() > TOLD * c * across
+                || across < ALIKE;
+        if self.has_arrived(&p, &g, torque, across, step) {
+            return Next::Arrived;
         }
         if trusted {
             self.visited.push((self.x, slope));
         }
         let along = self.along(slope, curvature, size, across, trusted);
-        if (self.x + along).abs() > FARTHEST || self.state.energy_mev < self.floor_mev {
-            return Next::Stop(Verdict::Left);
+        if self.state.energy_mev < self.floor_mev {
+            return Next::Lost;
         }
-        if step > 6
-            && self.shift > 0.0
-            && distance(&self.start, &self.state.m) > self.x.abs() + 1.5 * (self.kicks + 1) as f64
-        {
-            return Next::Stop(Verdict::Left);
+        let apart = ASTRAY * (self.kicks + 1) as f64;
+        if self.shift > 0.0 && distance(&self.start, &self.state.m) > self.x.abs() + apart {
+            return Next::Lost;
         }
-        if across > 0.05 {
-            self.reach = (0.5 * self.reach).max(0.05);
-        } else if trusted && along.abs() > 0.99 * self.reach {
-            self.reach = (1.6 * self.reach).min(2.0);
+        if across > BESIDE {
+            self.reach = (0.5 * self.reach).max(BESIDE);
+        } else if trusted && along.abs() >= self.reach {
+            self.reach = (GROWTH * self.reach).min(2.0);
         }
-        self.leave(&p, &g, d, w, size, along, torque, across, curvature)
+        self.leave(&p, &g, d, w, size, along, torque, curvature)
     }
 
     /// The move along the valley, in rad.
@@ -271,10 +257,10 @@ impl Search<'_> {
         let newton = if curvature < 0.0 { -slope / curvature * size } else { f64::INFINITY * slope.signum() };
         let newton = if newton.is_nan() { 0.0 } else { newton.clamp(-self.reach, self.reach) };
         if !trusted {
-            return if across < 0.03 { 0.0 } else { newton.clamp(-0.3 * self.reach, 0.3 * self.reach) };
+            return if across < BESIDE { 0.0 } else { newton.clamp(-CAREFUL * self.reach, CAREFUL * self.reach) };
         }
         match self.bracket() {
-            Some((a, b)) if b - a > 1e-9 && !(a - 1e-12..b + 1e-12).contains(&(self.x + newton)) => {
+            Some((a, b)) if b - a > ALIKE && !(a - ALIKE..b + ALIKE).contains(&(self.x + newton)) => {
                 0.5 * (a + b) - self.x
             }
             _ => newton,
@@ -296,19 +282,16 @@ impl Search<'_> {
         best
     }
 
-    fn arrived(&self, p: &Pinned, g: &[f64], torque: f64, across: f64, step: usize) -> Option<Verdict> {
+    fn has_arrived(&self, p: &Pinned, g: &[f64], torque: f64, across: f64, step: usize) -> bool {
         let tolerance = self.tolerance();
         if !self.frozen.is_empty() && step > 0 {
             let mut rest = g.to_vec();
             remove(&mut rest, p.zeros());
-            if slab::max_abs(&rest) <= 4.0 * tolerance && torque <= 1e2 * tolerance {
-                return Some(Verdict::Flat);
+            if slab::max_abs(&rest) <= LARGER * tolerance && torque <= LAST * tolerance {
+                return true;
             }
         }
-        if torque <= tolerance && across < 1e-8 {
-            return Some(if p.index <= 1 { Verdict::Saddle } else { Verdict::HigherIndex });
-        }
-        None
+        torque <= tolerance && across < ALIKE
     }
 
     /// The step itself, unless nothing is left to gain.
@@ -322,17 +305,16 @@ impl Search<'_> {
         size: f64,
         along: f64,
         torque: f64,
-        across: f64,
         curvature: f64,
     ) -> Next {
         let tolerance = self.tolerance();
         slab::add_scaled(&mut d, along / size, &w);
         let mut v = self.state.field(&d);
         let rotation = rotation_of(&v);
-        if rotation < 3e-15 && !self.torques.is_empty() {
-            return Next::Stop(if torque < 1e3 * tolerance { Verdict::Saddle } else { Verdict::Stalled });
+        if rotation < SHARP && !self.torques.is_empty() {
+            return if torque < NEARLY * tolerance { Next::Arrived } else { Next::Lost };
         }
-        let factor = if rotation > CAP { CAP / rotation } else { 1.0 };
+        let factor = if rotation > STEP { STEP / rotation } else { 1.0 };
         slab::scale(&mut v, factor);
         let mut hs = vec![0.0; d.len()];
         self.state.hessian.multiply(p.soft(), &mut hs);
@@ -340,16 +322,17 @@ impl Search<'_> {
         let tau = if softer { self.state.field(&w) } else { self.state.field(p.soft()) };
         self.x += factor * along;
         let predicted = slab::dot(g, &d).abs();
-        let scale = self.state.energy_mev.abs().max(1e-2 * self.c);
+        let scale = self.state.energy_mev.abs().max(self.c);
         let history = &self.torques;
         let n = history.len();
         let before = history.last().copied().unwrap_or(f64::INFINITY);
-        let tiny = predicted < 1e-13 * scale && n >= 2 && torque <= 1e2 * tolerance;
-        if tiny && (self.shift > 0.0 || torque > 0.1 * before || across > 1e3 * torque / self.c) {
-            return Next::Stop(Verdict::Flat);
+        let is_last = torque <= LAST * tolerance;
+        let tiny = predicted < ROUNDING * scale && n >= 2 && is_last;
+        if tiny && (self.shift > 0.0 || torque > 0.5 * before) {
+            return Next::Arrived;
         }
-        if torque < 1e2 * tolerance && n > 3 && torque > 0.5 * history[n - 1] && torque > 0.5 * history[n - 2] {
-            return Next::Stop(if p.index <= 1 { Verdict::Saddle } else { Verdict::HigherIndex });
+        if is_last && n > 3 && torque > 0.5 * history[n - 1] && torque > 0.5 * history[n - 2] {
+            return Next::Arrived;
         }
         self.torques.push(torque);
         Next::Move(v, tau)
@@ -357,17 +340,17 @@ impl Search<'_> {
 
     /// Leaves a region with more than one negative direction along the lowest mode beside the soft one.
     fn kick(&mut self, p: &Pinned) -> Next {
-        if self.kicks >= 2 {
-            return Next::Stop(Verdict::HigherIndex);
+        if self.kicks >= KICKS {
+            return Next::Arrived;
         }
-        let modes = self.complement(p, 6, 0.0);
+        let modes = self.complement(p, MODES, 0.0);
         match modes.first() {
             Some(lowest) if lowest.value < -ALIKE * self.c => {
                 let mut v = self.state.field(&lowest.vector);
                 let size = rotation_of(&v);
-                slab::scale(&mut v, 0.25 / size);
+                slab::scale(&mut v, STEP / size);
                 self.kicks += 1;
-                (self.bad, self.shift, self.last_step) = (0, 0.0, 9.0);
+                (self.bad, self.shift, self.last_step) = (0, 0.0, f64::INFINITY);
                 self.visited.clear();
                 Next::Move(v, self.tau.clone())
             }
@@ -378,8 +361,8 @@ impl Search<'_> {
         }
     }
 
-    fn report(mut self, verdict: Verdict) -> Refined {
-        if verdict != Verdict::Left {
+    fn report(mut self, arrived: bool) -> Refined {
+        if arrived {
             self.state = State::of(self.h, polish(self.h, self.state.point));
             self.tau = unit_tangent(&self.state.m, &self.tau);
         }
@@ -388,11 +371,10 @@ impl Search<'_> {
         let p = Pinned::new(&self.state, &t, 0.0, &frozen, self.kappa);
         self.factorisations += 1;
         Refined {
-            verdict,
+            arrived,
             valley: self.state.field(p.soft()),
             factorisations: self.factorisations,
             index: p.index,
-            rotation_rad: largest_angle(&self.start, &self.state.m),
             state: self.state,
         }
     }

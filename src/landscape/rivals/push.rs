@@ -4,7 +4,7 @@ use super::{Cut, Rival};
 use crate::field::Components;
 use crate::geometry::{Direction, Vector, vector};
 use crate::lattice::Lattice;
-use crate::sphere::rotate_sites;
+use crate::sphere::{SAME, rotate_sites};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
@@ -99,7 +99,7 @@ pub(super) fn anywhere(random: &mut ChaCha8Rng) -> Vector {
 fn across(along: Vector, random: &mut ChaCha8Rng) -> Option<Direction> {
     let any = anywhere(random);
     let across = vector::cross(along, any);
-    Direction::new(if vector::norm(across) > 1e-6 { across } else { any }).ok()
+    Direction::new(if vector::norm(across) > SAME { across } else { any }).ok()
 }
 
 #[cfg(test)]
