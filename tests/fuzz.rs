@@ -16,8 +16,8 @@ mod runs;
 mod writer;
 
 use cases::{Corpus, Kind};
+use cpu_time::ThreadTime;
 use std::path::Path;
-use std::time::Instant;
 
 #[test]
 fn mutated_configs_and_files_are_read_or_refused_in_words_without_a_panic() {
@@ -26,7 +26,7 @@ fn mutated_configs_and_files_are_read_or_refused_in_words_without_a_panic() {
     for kind in [Kind::Configs, Kind::Files] {
         let mut read = 0;
         for number in 0..20_000 {
-            let started = Instant::now();
+            let started = ThreadTime::now();
             match corpus.run(kind, 7, number) {
                 Ok(was_read) => read += u64::from(was_read),
                 Err(what) => panic!("{kind:?}, case {number}: {what}"),
