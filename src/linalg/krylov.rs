@@ -47,6 +47,8 @@ pub(super) struct Krylov<'a> {
     block: usize,
     /// What the block is made of first; where that is too few, of anything.
     pub starts: Vec<Vec<f64>>,
+    /// Whether to end with what there is.
+    pub stop: &'a dyn Fn() -> bool,
     /// How often a vector is made orthogonal to those before it.
     pub passes: usize,
     random: ChaCha8Rng,
@@ -62,7 +64,7 @@ impl<'a> Krylov<'a> {
     pub fn new(inverse: &'a dyn Inverse, known: &'a [Vec<f64>], block: usize) -> Krylov<'a> {
         let (starts, random) = (Vec::new(), ChaCha8Rng::seed_from_u64(0x5eed));
         let (basis, images, products) = (Vec::new(), Vec::new(), Vec::new());
-        Krylov { inverse, known, block, starts, passes: 2, random, basis, images, products }
+        Krylov { inverse, known, block, starts, stop: &|| false, passes: 2, random, basis, images, products }
     }
 
     /// Dimensions of the space that A acts in, known vectors apart.
@@ -80,7 +82,7 @@ impl<'a> Krylov<'a> {
     pub fn largest(&mut self, wanted: Modes, most: usize) -> (Vec<Vec<f64>>, bool) {
         let mut look = wanted.count + 2 * self.block;
         loop {
-            let last = !self.grow() || self.is_full(most);
+            let last = !self.grow() || self.is_full(most) || (self.stop)();
             if last || self.basis.len() >= look {
                 if let Some(vectors) = self.settled(wanted, false) {
                     return (vectors, true);

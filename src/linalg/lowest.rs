@@ -22,12 +22,12 @@ const MOST_AS_IT_IS: usize = 60;
 /// than solutions by them, block Lanczos on (A − s)⁻¹ (see `together`). The inertia tells whether one was missed. Either way takes the other's place where that does not
 /// arrive.
 pub fn lowest_modes(matrix: &Matrix, count: usize, known: &[Vec<f64>]) -> Vec<Mode> {
-    soft_modes(matrix, count, known, f64::INFINITY)
+    soft_modes(matrix, count, known, f64::INFINITY, &|| false)
 }
 
 /// The modes among the `count` lowest that are below a limit, but one at least; as [`lowest_modes`], without the time that the
-/// modes above the limit take, which on long chains are close together.
-pub fn soft_modes(matrix: &Matrix, count: usize, known: &[Vec<f64>], below: f64) -> Vec<Mode> {
+/// modes above the limit take, which on long chains are close together. Where it is to `stop`, some of them, to be thrown away.
+pub fn soft_modes(matrix: &Matrix, count: usize, known: &[Vec<f64>], below: f64, stop: &dyn Fn() -> bool) -> Vec<Mode> {
     let n = matrix.order();
     let room = n.saturating_sub(known.len());
     let count = count.min(room);
@@ -43,7 +43,7 @@ pub fn soft_modes(matrix: &Matrix, count: usize, known: &[Vec<f64>], below: f64)
         }
         _ => slices(),
     };
-    found.unwrap_or_else(|| lanczos(matrix, count, known, below).0)
+    found.unwrap_or_else(|| lanczos(matrix, Modes { count, below }, known, stop).0)
 }
 
 /// The vectors of all negative modes of a factorised matrix, or, where there are none, of the lowest mode; ascending, in the space
@@ -93,7 +93,7 @@ pub fn soft_space(
 }
 
 /// Some of the `count` lowest modes, at least one, by block Lanczos; and whether they are eigenvectors, none missed.
-fn lanczos(matrix: &Matrix, count: usize, known: &[Vec<f64>], below: f64) -> (Vec<Mode>, bool) {
+fn lanczos(matrix: &Matrix, wanted: Modes, known: &[Vec<f64>], stop: &dyn Fn() -> bool) -> (Vec<Mode>, bool) {
     let scale = matrix.norm1().max(1e-280);
     let shift = shift_below(matrix, scale);
     let mut shifted = matrix.clone();
@@ -102,9 +102,10 @@ fn lanczos(matrix: &Matrix, count: usize, known: &[Vec<f64>], below: f64) -> (Ve
     let mut modes = Vec::new();
     for block in BLOCKS {
         let mut krylov = Krylov::new(&factors, known, block);
-        let (space, settled) = krylov.largest(Modes { count, below: below + shift }, MOST);
+        krylov.stop = stop;
+        let (space, settled) = krylov.largest(Modes { below: wanted.below + shift, ..wanted }, MOST);
         modes = rayleigh_ritz(matrix, &space);
-        if none_is_missed(matrix, &modes, known, scale) {
+        if stop() || none_is_missed(matrix, &modes, known, scale) {
             return (modes, settled);
         }
     }
@@ -157,7 +158,12 @@ mod tests {
         let slices = sliced(matrix, count, known, f64::INFINITY).expect("slices converge");
         let (near, complete) = together(matrix, known, Modes { count, below: f64::INFINITY });
         assert!(complete);
-        [slices, lanczos(matrix, count, known, f64::INFINITY).0, near, lowest_modes(matrix, count, known)]
+        [
+            slices,
+            lanczos(matrix, Modes { count, below: f64::INFINITY }, known, &|| false).0,
+            near,
+            lowest_modes(matrix, count, known),
+        ]
     }
 
     #[test]

@@ -170,7 +170,7 @@ impl Search<'_> {
         {
             return rayleigh_ritz(&self.state.hessian, &space);
         }
-        let modes = soft_modes(&self.state.hessian, count, p.zeros(), below);
+        let modes = soft_modes(&self.state.hessian, count, p.zeros(), below, &|| self.h.is_stopped());
         let rest = modes.into_iter().map(|mut m| {
             remove(&mut m.vector, &known);
             m.vector
