@@ -7,7 +7,7 @@
 
 use cpu_time::ProcessTime;
 use spinneb::config::load_text;
-use spinneb::drive::{HistoryRow, Outcome, Problem, Silent, run};
+use spinneb::drive::{Problem, Silent, run};
 use spinneb::landscape::Effort;
 use std::path::Path;
 
@@ -59,7 +59,7 @@ fn tell(cells: usize, problem: &Problem) {
         "{:>9} {sites:>9} {:>10} {:>8.1} {:>9} {:>20.14} {:>9} {cpu:>8.2} {:>8.2} {:>7.0} {:>8}",
         format!("{cells}²"),
         found.work.iterations,
-        products(&found),
+        found.hessian_products_an_image(),
         found.work.force_evaluations,
         found.barrier.map_or(f64::NAN, |barrier| barrier.forward_mev),
         if found.certified { "yes" } else { "no" },
@@ -68,12 +68,6 @@ fn tell(cells: usize, problem: &Problem) {
         peak_gb().map_or("unknown".into(), |gb| format!("{gb:.2}")),
     );
     found.warnings.iter().for_each(|warning| println!("{:>9} {warning}", ""));
-}
-
-/// Products with a Hessian an image, in the band of the reported path.
-fn products(found: &Outcome) -> f64 {
-    let moving = |row: &HistoryRow| row.hessian_products as f64 / (row.images - 2) as f64;
-    found.history.iter().map(moving).sum()
 }
 
 fn problem(cells: usize, periodic: bool, energy: &str, initial: &str, end: &str) -> Problem {

@@ -1,5 +1,8 @@
 //! Every registered energy term keeps its contract: energy, gradient and Hessian are derivatives of one another.
 
+#[path = "../benches/shared/qdldl.rs"]
+mod qdldl;
+
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use spinneb::energy::{EnergyTerm, Hamiltonian, Medium, TermSpec};
@@ -408,8 +411,7 @@ fn the_hessian_of_a_long_ranged_chain_is_its_product_dense_or_as_exponentials() 
     }
 }
 
-/// A⁻¹b, the number of negative pivots and ln|det A| by a sparse LDLᵀ that is not ours, a port of QDLDL (Stellato et al., Math.
-/// Program. Comput. 12, 637 (2020), doi:10.1007/s12532-020-00179-2).
+/// A⁻¹b, the number of negative pivots and ln|det A| by a sparse LDLᵀ that is not ours.
 fn by_qdldl(matrix: &Matrix, b: &[f64]) -> (Vec<f64>, usize, f64) {
     let n = b.len();
     let (mut starts, mut rows, mut entries) = (vec![0usize], Vec::new(), Vec::new());
@@ -420,31 +422,10 @@ fn by_qdldl(matrix: &Matrix, b: &[f64]) -> (Vec<f64>, usize, f64) {
         }
         starts.push(rows.len());
     }
-    let (mut counts, mut tree, mut integers) = (vec![0; n], vec![None; n], vec![0; 3 * n]);
-    let size = ldl::etree(n, &starts, &rows, &mut integers, &mut counts, &mut tree).unwrap();
-    let (mut l_starts, mut l_rows, mut l) = (vec![0; n + 1], vec![0; size], vec![0.0; size]);
-    let (mut d, mut inverse, mut numbers) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
-    let mut marks = vec![ldl::Marker::Unused; n];
-    let positive = ldl::factor(
-        n,
-        &starts,
-        &rows,
-        &entries,
-        &mut l_starts,
-        &mut l_rows,
-        &mut l,
-        &mut d,
-        &mut inverse,
-        &counts,
-        &tree,
-        &mut marks,
-        &mut integers,
-        &mut numbers,
-    )
-    .unwrap();
+    let factors = qdldl::Plan::of(starts, rows).factor(&entries);
     let mut x = b.to_vec();
-    ldl::solve(n, &l_starts, &l_rows, &l, &inverse, &mut x);
-    (x, n - positive, d.iter().map(|d: &f64| d.abs().ln()).sum())
+    factors.solve(&mut x);
+    (x, factors.negatives, factors.pivots.iter().map(|d: &f64| d.abs().ln()).sum())
 }
 
 #[test]

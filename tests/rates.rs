@@ -1100,6 +1100,7 @@ fn a_network_of_all_places_of_a_skyrmion_says_what_its_path_says() {
         let loaded = load_text("skyrmion.json".as_ref(), text).unwrap();
         let outcome = solve(&loaded.problem().unwrap());
         let escape = &outcome.rates.as_ref().unwrap().transitions[0].rows[0].escape;
+        let mut ways_there: Vec<[f64; 2]> = Vec::new();
         // every place by itself, and all that translations make of one as one
         for (images, minima) in [(IMAGES, 1 + places), (1, 1 + places / 144)] {
             let mut asked = loaded.survey().unwrap();
@@ -1117,10 +1118,14 @@ fn a_network_of_all_places_of_a_skyrmion_says_what_its_path_says() {
                     assert!((time + rate.unwrap()).abs() < 1e-9, "{tesla} T: {time} {escape:?}");
                 }
             }
+            // from the state without one over each of the places
+            ways_there.push(row("minimum 0", None).ln_time_s.map(Option::unwrap));
             if minima > 2 {
                 let hop = row("minimum 1", Some("minimum 2"));
                 assert!(hop.ln_time_s == [None, None] && hop.reason.as_ref().unwrap().contains("one state"), "{hop:?}");
             }
         }
+        let [each, one] = ways_there[..] else { panic!("{ways_there:?}") };
+        assert!(each.iter().zip(one).all(|(each, one)| (each - one).abs() < 1e-9), "{tesla} T: {each:?} {one:?}");
     }
 }

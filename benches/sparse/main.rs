@@ -7,6 +7,9 @@
 mod inertia;
 #[cfg(feature = "faer")]
 mod others;
+#[cfg(feature = "faer")]
+#[path = "../shared/qdldl.rs"]
+mod qdldl;
 
 use cpu_time::ThreadTime;
 use spinneb::linalg::{Graph, SparseLdl, SparseMatrix, Symbolic};

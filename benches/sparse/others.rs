@@ -1,5 +1,4 @@
-//! The same matrices by two programs that are not ours: faer, supernodal, and a port of QDLDL (Stellato et al., Math. Program. Comput.
-//! 12, 637 (2020), doi:10.1007/s12532-020-00179-2). Both in the order of an approximate minimum degree, on one thread.
+//! The same matrices by two programs that are not ours: faer, supernodal, and a port of QDLDL. Both in the order of an approximate minimum degree, on one thread.
 
 use cpu_time::ThreadTime;
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -98,42 +97,22 @@ fn negatives(plan: &SymbolicCholesky<usize>, values: &[f64]) -> usize {
 /// By QDLDL.
 pub fn qdldl(matrix: &SparseMatrix, b: &[f64]) -> Taken {
     let a = lower(matrix);
-    let n = b.len();
     let start = ThreadTime::now();
-    let plan = plan(&a);
-    let order: PermRef<usize> = plan.perm().expect("an order");
+    let faer = plan(&a);
+    let order: PermRef<usize> = faer.perm().expect("an order");
     let (to, from) = order.arrays();
     let (starts, rows, entries) = upper_in_order(&a, from);
-    let (mut counts, mut tree, mut integers) = (vec![0; n], vec![None; n], vec![0; 3 * n]);
-    let size = ldl::etree(n, &starts, &rows, &mut integers, &mut counts, &mut tree).expect("a plan");
+    let plan = super::qdldl::Plan::of(starts, rows);
     let plan_s = start.elapsed().as_secs_f64();
-    let (mut l_starts, mut l_rows, mut l) = (vec![0; n + 1], vec![0; size], vec![0.0; size]);
-    let (mut d, mut inverse, mut numbers) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
-    let mut marks = vec![ldl::Marker::Unused; n];
     let start = ThreadTime::now();
-    let positive = ldl::factor(
-        n,
-        &starts,
-        &rows,
-        &entries,
-        &mut l_starts,
-        &mut l_rows,
-        &mut l,
-        &mut d,
-        &mut inverse,
-        &counts,
-        &tree,
-        &mut marks,
-        &mut integers,
-        &mut numbers,
-    );
+    let factors = plan.factor(&entries);
     let factor_s = start.elapsed().as_secs_f64();
     let mut x: Vec<f64> = to.iter().map(|i| b[*i]).collect();
     let start = ThreadTime::now();
-    ldl::solve(n, &l_starts, &l_rows, &l, &inverse, &mut x);
+    factors.solve(&mut x);
     let solve_s = start.elapsed().as_secs_f64();
     let x = from.iter().map(|k| x[*k]).collect();
-    Taken { plan_s, factor_s, solve_s, negatives: n - positive.expect("no pivot is zero"), x }
+    Taken { plan_s, factor_s, solve_s, negatives: factors.negatives, x }
 }
 
 /// The upper half by columns, where `place` says at which place an order has each row.

@@ -181,6 +181,13 @@ pub struct ProfilePoint {
     pub above_initial_mev: f64,
 }
 
+impl Outcome {
+    /// Products with a Hessian an image that moves, in the band of the reported path.
+    pub fn hessian_products_an_image(&self) -> f64 {
+        self.history.iter().map(|row| row.hessian_products as f64 / (row.images - 2) as f64).sum()
+    }
+}
+
 /// One row a band iteration.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HistoryRow {

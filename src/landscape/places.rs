@@ -25,13 +25,13 @@ impl Places {
     /// Whether one of them makes `b` of `a`, perhaps with a rotation about the symmetry axes.
     pub fn join(&self, h: Evaluator, a: &[f64], b: &[f64]) -> bool {
         let seen = Seen::of(h, b);
-        self.0.iter().any(|by| seen.may_be(by, a) && is_same_state(h, &by.apply(a), b))
+        self.0.iter().any(|by| seen.is_made(by, a))
     }
 
     /// At how many places a state may be.
     pub fn count(&self, h: Evaluator, m: &[f64]) -> usize {
         let seen = Seen::of(h, m);
-        let keeps = self.0.iter().filter(|by| seen.may_be(by, m) && is_same_state(h, &by.apply(m), m)).count();
+        let keeps = self.0.iter().filter(|by| seen.is_made(by, m)).count();
         (1 + self.0.len()) / (1 + keeps)
     }
 }
@@ -39,24 +39,30 @@ impl Places {
 /// A state, looked at first where it is least like the rest.
 pub struct Seen<'a> {
     h: Evaluator<'a>,
-    m: Components<'a>,
+    m: &'a [f64],
     first: usize,
 }
 
 impl<'a> Seen<'a> {
     /// This state (3N).
     pub fn of(h: Evaluator<'a>, m: &'a [f64]) -> Seen<'a> {
-        let m = Components::new(m);
-        let sum = (0..m.sites()).fold([0.0; 3], |sum, i| vector::add(sum, m.get(i)));
-        let odd = |i: &usize| vector::dot(m.get(*i), sum);
-        let first = (0..m.sites()).min_by(|i, j| odd(i).total_cmp(&odd(j))).unwrap_or(0);
+        let spins = Components::new(m);
+        let sum = (0..spins.sites()).fold([0.0; 3], |sum, i| vector::add(sum, spins.get(i)));
+        let odd = |i: &usize| vector::dot(spins.get(*i), sum);
+        let first = (0..spins.sites()).min_by(|i, j| odd(i).total_cmp(&odd(j))).unwrap_or(0);
         Seen { h, m, first }
     }
 
-    /// Whether an operation may make it of another state: what no rotation about the symmetry axes changes is compared.
-    pub fn may_be(&self, by: &Operation, of: &[f64]) -> bool {
-        let (from, sites) = (Components::new(of), self.m.sites());
-        let off = |i: usize| vector::sub(by.at(from, i), self.m.get(i));
+    /// Whether an operation makes it of another state, perhaps with a rotation about the symmetry axes.
+    pub fn is_made(&self, by: &Operation, of: &[f64]) -> bool {
+        self.may_be(by, of) && is_same_state(self.h, &by.apply(of), self.m)
+    }
+
+    /// Whether it may: what no rotation about the symmetry axes changes is compared.
+    fn may_be(&self, by: &Operation, of: &[f64]) -> bool {
+        let [own, from] = [self.m, of].map(Components::new);
+        let sites = own.sites();
+        let off = |i: usize| vector::sub(by.at(from, i), own.get(i));
         let is_off = |i: usize| match self.h.symmetry_axes() {
             [] => vector::norm(off(i)) > SAME,
             [axis] => vector::dot(*axis, off(i)).abs() > SAME,

@@ -3,10 +3,10 @@
 use super::lifetimes::Lifetimes;
 use super::{Effort, SurveyProblem, Unseen};
 use crate::error::Result;
-use crate::landscape::{Landscape, Searched, Seen, is_same_state};
+use crate::landscape::{Landscape, Searched, Seen};
 use crate::spins::Spins;
 use crate::stationary::Spectrum;
-use crate::symmetry::{Group, Operation};
+use crate::symmetry::Group;
 use rayon::prelude::*;
 
 /// States that symmetry makes of one.
@@ -278,8 +278,7 @@ impl View<'_> {
     fn multiplicity(&self, m: &[f64]) -> usize {
         let (h, group) = (self.land.evaluator(), self.group);
         let seen = Seen::of(h, m);
-        let is_kept = |by: &Operation| seen.may_be(by, m) && is_same_state(h, &by.apply(m), m);
-        let keeps = 1 + group.operations().filter(is_kept).count();
+        let keeps = 1 + group.operations().filter(|by| seen.is_made(by, m)).count();
         group.order() / keeps
     }
 }
