@@ -68,7 +68,7 @@ fn measure(length: usize, dimensions: u32, periodic: bool) {
     matrix.multiply(&x, &mut product);
     let residual = product.iter().zip(&b).fold(0.0f64, |m, (p, b)| m.max((p - b).abs()));
     assert!(residual < 1e-8, "residual {residual:e}");
-    let (mib, gflop) = (plan.bytes() as f64 / f64::from(1 << 20), plan.flops() / 1e9);
+    let (mib, gflop) = (plan.bytes(1) as f64 / f64::from(1 << 20), plan.flops() / 1e9);
     println!(
         "{:>12} {sites:>8} {periodic:>9} {planned:>10.3} {first:>10.3} {again:>10.3} {solved:>9.4} {mib:>9.1} {gflop:>9.2} {:>9.1}",
         format!("{length}^{dimensions}"),

@@ -17,7 +17,7 @@ pub fn band_bytes(images: usize, sites: usize, layout: &Layout, threads: usize) 
     let (factored, hessian) = match layout {
         // 2 rows a site, each with the blocks up to the furthest partner
         Layout::Band { span, .. } => (images, sites * 2 * 2 * (2 * span + 6) * size_of::<f64>()),
-        Layout::Sparse(plan) => (images.min(2 * threads), plan.bytes()),
+        Layout::Sparse(plan) => (images.min(2 * threads), plan.bytes(1)),
         Layout::Dense => (images.min(2 * threads), 2 * 4 * sites * sites * size_of::<f64>()),
     };
     images as f64 * vectors as f64 + factored as f64 * hessian as f64

@@ -3,6 +3,8 @@
 use super::panels::{self, WIDTH};
 use crate::linalg::pivot::guarded;
 use multiversion::multiversion;
+use rayon::prelude::*;
+use std::ops::Range;
 
 /// Panels that are eliminated before the rest is brought up to date.
 const BLOCK: usize = 16;
@@ -10,6 +12,9 @@ const BLOCK: usize = 16;
 const ROWS: usize = 36;
 /// Rows of a tile in registers.
 const TILE: usize = 12;
+/// Multiplications that are worth waking a thread for, and numbers that are only scaled.
+const WORTH_A_THREAD: usize = 1 << 20;
+const WORTH: usize = 1 << 16;
 
 /// Numbers of a square of a panel.
 const SQUARE: usize = WIDTH * WIDTH;
@@ -85,15 +90,31 @@ impl Sources<'_> {
         }
         let above = self.rows - rows;
         work.resize(depth * columns, 0.0);
-        for (q, scaled) in work.chunks_exact_mut(depth).enumerate() {
-            self.scale(above + WIDTH * q, scaled);
+        let scaled = work.par_chunks_exact_mut(depth).enumerate().with_min_len(WORTH.div_ceil(depth));
+        scaled.for_each(|(q, scaled)| self.scale(above + WIDTH * q, scaled));
+        self.subtract_panels(target, rows, 0..columns, work);
+    }
+
+    /// The same of some of the panels, where the columns of all are scaled; several at a time where they are long.
+    fn subtract_panels(&self, target: &mut [f64], rows: usize, columns: Range<usize>, scaled: &[f64]) {
+        let depth = SQUARE * (self.end - self.first);
+        if target.len() * depth / WIDTH > WORTH_A_THREAD && columns.len() > 1 {
+            let middle = columns.start.midpoint(columns.end);
+            let (before, after) = target.split_at_mut(panels::first(rows, middle) - panels::first(rows, columns.start));
+            rayon::join(
+                || self.subtract_panels(before, rows, columns.start..middle, scaled),
+                || self.subtract_panels(after, rows, middle..columns.end, scaled),
+            );
+            return;
         }
-        for start in (0..rows).step_by(ROWS) {
+        let (above, from_here) = (self.rows - rows, panels::first(rows, columns.start));
+        for start in (WIDTH * columns.start..rows).step_by(ROWS) {
             let end = rows.min(start + ROWS);
-            for q in 0..columns.min(end.div_ceil(WIDTH)) {
-                let (scaled, top) = (&work[depth * q..depth * (q + 1)], WIDTH * q);
+            for q in columns.start..columns.end.min(end.div_ceil(WIDTH)) {
+                let (scaled, top) = (&scaled[depth * q..depth * (q + 1)], WIDTH * q);
                 let from = start.max(top);
-                let panel = &mut target[panels::first(rows, q)..][WIDTH * (from - top)..WIDTH * (end - top)];
+                let panel =
+                    &mut target[panels::first(rows, q) - from_here..][WIDTH * (from - top)..WIDTH * (end - top)];
                 subtract_tiles(panel, self.l, [self.rows, self.first, above + from], scaled);
             }
         }

@@ -225,7 +225,22 @@ mod tests {
             let m = &factors.memory;
             let numbers =
                 m.l.len() + m.d.len() + m.waiting[0].len() + m.waiting[1].len() + 4 * factors.matrix.blocks.len();
-            assert_eq!(size_of::<f64>() * numbers, factors.matrix.plan.bytes(), "{}", lattice.name);
+            assert_eq!(size_of::<f64>() * numbers, factors.matrix.plan.bytes(1), "{}", lattice.name);
+        }
+    }
+
+    #[test]
+    fn branches_side_by_side_have_the_bits_of_one_after_the_other() {
+        let mut r = ChaCha8Rng::seed_from_u64(19);
+        for cells in [[110, 90, 1], [12, 11, 13]] {
+            let lattice = Lattice::grid(cells, [true, false, false], 1.0, &mut r);
+            let a = lattice.random(&mut r);
+            let (plan, whole) = (a.plan(), Arc::new(a.plan().without_branches()));
+            assert!(plan.branches.len() > 8 && whole.branches.is_empty(), "{} {:e}", plan.branches.len(), plan.flops());
+            let mut b = SparseMatrix::zeros(whole);
+            b.blocks.clone_from(&a.blocks);
+            let (x, y) = (SparseLdl::of(a), SparseLdl::of(b));
+            assert!(x.memory.l == y.memory.l && x.memory.d == y.memory.d && x.negatives == y.negatives);
         }
     }
 

@@ -18,7 +18,7 @@ mod matrix;
 mod memory;
 mod panels;
 #[cfg(test)]
-mod samples;
+pub(super) mod samples;
 mod solve;
 mod supernodes;
 mod symbolic;

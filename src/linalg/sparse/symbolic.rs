@@ -5,6 +5,11 @@ use super::supernodes::{self, Group, NONE};
 use super::{Graph, nested_dissection};
 use std::ops::Range;
 
+/// Factors of less arithmetic than this are computed by one thread: some 10 ms.
+const WORTH: f64 = 1e8;
+/// A branch is no more than one of so many parts of the work.
+const PIECES: f64 = 16.0;
+
 /// The plan of the LDLᵀ of all matrices of a graph; computed once a lattice.
 #[derive(Clone, Debug, Default)]
 pub struct Symbolic {
@@ -25,9 +30,20 @@ pub struct Symbolic {
     pub(super) pivots: usize,
     /// Rows of the largest front.
     pub(super) most_rows: usize,
-    /// Most entries that wait in either stack.
+    /// Whole branches of the tree that can be eliminated side by side, ascending; the other fronts are the trunk. None where that
+    /// would gain nothing.
+    pub(super) branches: Vec<Branch>,
+    /// Most entries of the trunk that wait in either stack.
     pub(super) waiting: [usize; 2],
     flops: f64,
+}
+
+/// A front and all that are below it.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Branch {
+    pub fronts: Range<usize>,
+    /// Most entries that wait in either stack.
+    pub waiting: [usize; 2],
 }
 
 /// Sites that are eliminated together, and those they are coupled to then.
@@ -110,10 +126,14 @@ impl Symbolic {
         &self.graph
     }
 
-    /// Memory of a matrix, its factors and their computation, in bytes.
-    pub fn bytes(&self) -> usize {
-        let numbers = 4 * self.graph.block_count() + self.entries + self.pivots + self.waiting[0] + self.waiting[1];
-        numbers * size_of::<f64>()
+    /// Memory of a matrix, its factors and their computation by so many threads, in bytes.
+    pub fn bytes(&self, threads: usize) -> usize {
+        let mut stacks: Vec<usize> = self.branches.iter().map(|branch| branch.waiting.iter().sum()).collect();
+        stacks.sort_unstable_by(|a, b| b.cmp(a));
+        let of_branches = stacks.iter().take(threads).sum::<usize>()
+            + self.branches.iter().map(|branch| self.fronts[branch.fronts.end - 1].left()).sum::<usize>();
+        let numbers = 4 * self.graph.block_count() + self.entries + self.pivots + self.waiting.iter().sum::<usize>();
+        (numbers + of_branches) * size_of::<f64>()
     }
 
     /// The arithmetic of a factorisation, in those of a solution by it. (A film of 40² sites: 20.)
@@ -198,21 +218,68 @@ impl Symbolic {
                 self.fronts[*c as usize].stack = 1 - stack;
             }
         }
-        let mut waiting = [0; 2];
-        for k in 0..self.fronts.len() {
-            let front = &mut self.fronts[k];
+        for front in &mut self.fronts {
             let length = panels::length(front.rows(), front.panels);
             (front.entries, front.pivot) = (self.entries..self.entries + length, self.pivots);
             self.entries += length;
             self.pivots += front.own_rows();
             self.most_rows = self.most_rows.max(front.rows());
-            self.flops += supernodes::flops(front.own.len(), front.others.len());
-            waiting[front.stack] += front.left();
-            self.waiting[front.stack] = self.waiting[front.stack].max(waiting[front.stack]);
-            let front = &self.fronts[k];
-            let children = &self.children[front.children.clone()];
-            waiting[1 - front.stack] -= children.iter().map(|c| self.fronts[*c as usize].left()).sum::<usize>();
         }
+        self.set_branches();
+        for k in 0..self.branches.len() {
+            self.branches[k].waiting = self.most_waiting(self.branches[k].fronts.clone());
+        }
+        self.waiting = self.most_waiting(0..self.fronts.len());
+    }
+
+    /// The plan that eliminates front after front.
+    #[cfg(test)]
+    pub(super) fn without_branches(&self) -> Symbolic {
+        let mut plan = Symbolic { branches: Vec::new(), ..self.clone() };
+        plan.waiting = plan.most_waiting(0..plan.fronts.len());
+        plan
+    }
+
+    /// Which branches are eliminated side by side: the largest that are no more than a part of the work each.
+    fn set_branches(&mut self) {
+        // the arithmetic of the branch that ends with a front, and the first of its fronts
+        let mut branches: Vec<(f64, usize)> = Vec::with_capacity(self.fronts.len());
+        for (k, front) in self.fronts.iter().enumerate() {
+            let own = supernodes::flops(front.own.len(), front.others.len());
+            let children = self.children[front.children.clone()].iter().map(|c| branches[*c as usize]);
+            branches.push(children.fold((own, k), |(flops, first), (f, c)| (flops + f, first.min(c))));
+            self.flops += own;
+        }
+        if self.flops < WORTH {
+            return;
+        }
+        let mut end = self.fronts.len();
+        while end > 0 {
+            let (flops, first) = branches[end - 1];
+            if flops > self.flops / PIECES {
+                end -= 1;
+            } else {
+                self.branches.push(Branch { fronts: first..end, waiting: [0; 2] });
+                end = first;
+            }
+        }
+        self.branches.reverse();
+    }
+
+    /// Most entries that wait in either stack while these fronts are eliminated, branches within them apart.
+    fn most_waiting(&self, fronts: Range<usize>) -> [usize; 2] {
+        let (mut waiting, mut most) = ([0; 2], [0; 2]);
+        let inner: Vec<&Range<usize>> =
+            self.branches.iter().map(|branch| &branch.fronts).filter(|f| **f != fronts).collect();
+        let is_inside = |k: usize| inner.get(inner.partition_point(|f| f.end <= k)).is_some_and(|f| f.contains(&k));
+        for k in fronts.filter(|k| !is_inside(*k)) {
+            let front = &self.fronts[k];
+            waiting[front.stack] += front.left();
+            most[front.stack] = most[front.stack].max(waiting[front.stack]);
+            let children = self.children[front.children.clone()].iter().filter(|c| !is_inside(**c as usize));
+            waiting[1 - front.stack] -= children.map(|c| self.fronts[*c as usize].left()).sum::<usize>();
+        }
+        most
     }
 }
 
