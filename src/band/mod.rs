@@ -31,6 +31,9 @@ use crate::threads::{MADE, READ, apiece};
 use rayon::prelude::*;
 use split::Split;
 
+/// Numbers of a field of all images that are worth giving back.
+const LARGE: usize = 1 << 22;
+
 /// A path with the energies, forces and tangents of its images. The two ends never move.
 #[derive(Debug)]
 pub struct Band<'h> {
@@ -47,19 +50,21 @@ pub struct Band<'h> {
     spacing: Vec<f64>,
     held: Vec<bool>,
     evaluations: usize,
+    /// While it rests.
+    profile: Option<Profile>,
 }
 
 impl<'h> Band<'h> {
     /// The band of a path; the two ends are evaluated, the images between them not yet.
     pub fn new(hamiltonian: impl Into<Evaluator<'h>>, path: Path) -> Band<'h> {
         let hamiltonian = hamiltonian.into();
-        let (images, slab) = (path.images(), 3 * path.sites());
+        let images = path.images();
         let mut band = Band {
             hamiltonian,
             energy: vec![0.0; images],
-            gradient: vec![0.0; images * slab],
-            tangent: vec![0.0; images * slab],
-            perpendicular: vec![0.0; images * slab],
+            gradient: Vec::new(),
+            tangent: Vec::new(),
+            perpendicular: Vec::new(),
             along: vec![0.0; images],
             chord: vec![0.0; images],
             largest: vec![0.0; images],
@@ -67,18 +72,52 @@ impl<'h> Band<'h> {
             spacing: vec![0.0; images - 1],
             held: vec![false; images],
             evaluations: 0,
+            profile: None,
             path,
         };
-        for end in [0, images - 1] {
-            band.energy[end] =
-                hamiltonian.energy_gradient(band.path.image(end), &mut band.gradient[end * slab..(end + 1) * slab]);
-        }
+        band.make_room();
         band
+    }
+
+    /// Makes room for the fields, with the gradients of the two ends.
+    fn make_room(&mut self) {
+        let (slab, last) = (3 * self.path.sites(), self.path.images() - 1);
+        for field in [&mut self.gradient, &mut self.tangent, &mut self.perpendicular] {
+            *field = vec![0.0; (last + 1) * slab];
+        }
+        for end in [0, last] {
+            let gradient = &mut self.gradient[end * slab..(end + 1) * slab];
+            self.energy[end] = self.hamiltonian.energy_gradient(self.path.image(end), gradient);
+        }
     }
 
     /// The band of a path that continues a relaxation of `evaluations` evaluations.
     pub fn continued(hamiltonian: impl Into<Evaluator<'h>>, path: Path, evaluations: usize) -> Band<'h> {
         Band { evaluations, ..Band::new(hamiltonian, path) }
+    }
+
+    /// Gives back the memory of all but the images, their energies and the profile, where that is much, until
+    /// [`wake`](Self::wake): bands that wait for their turn.
+    pub fn rest(&mut self) {
+        if self.gradient.len() > LARGE {
+            self.give_back();
+        }
+    }
+
+    fn give_back(&mut self) {
+        self.profile = Some(self.profile());
+        let fields = [&mut self.gradient, &mut self.tangent, &mut self.perpendicular];
+        fields.into_iter().for_each(|field| *field = Vec::new());
+    }
+
+    /// Evaluates anew what [`rest`](Self::rest) gave back, if it did.
+    pub fn wake(&mut self) {
+        if self.gradient.is_empty() {
+            self.profile = None;
+            self.make_room();
+            self.evaluate();
+            self.evaluations -= 1;
+        }
     }
 
     /// One evaluation of the whole band where its images now are.
@@ -156,6 +195,11 @@ impl<'h> Band<'h> {
     pub fn hold(&mut self, k: usize, saddle: &[f64]) {
         let n = saddle.len();
         self.path.as_mut_slice()[k * n..(k + 1) * n].copy_from_slice(saddle);
+        self.held[k] = true;
+    }
+
+    /// Image k is a saddle, and stays.
+    pub fn hold_here(&mut self, k: usize) {
         self.held[k] = true;
     }
 
@@ -243,11 +287,42 @@ impl<'h> Band<'h> {
 
     /// The energy between images, by cubic Hermite pieces with the slopes −F·τ.
     pub fn profile(&self) -> Profile {
-        Profile::of(self)
+        self.profile.clone().unwrap_or_else(|| Profile::of(self))
     }
 
     fn slab<'a>(&self, data: &'a [f64], k: usize) -> &'a [f64] {
         let n = 3 * self.path.sites();
         &data[k * n..(k + 1) * n]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Band;
+    use crate::energy::test_terms::{hamiltonian, lattice};
+    use crate::path::Path;
+    use crate::spins::Spins;
+
+    #[test]
+    fn a_band_that_rested_is_what_it_was() {
+        let lattice = lattice(r#"{"square": {"cells": [4, 3]}}"#);
+        let easy = r#"{"anisotropy": {"K": "0.3 meV", "axis": [0, 0, 1]}}"#;
+        let h = hamiltonian(&lattice, &[r#"{"exchange": {"J": ["1 meV"]}}"#, easy]);
+        let images: Vec<Spins> = (0..5).map(|k| Spins::random(lattice.sites, k)).collect();
+        let mut band = Band::new(&h, Path::new(&images));
+        band.hold_here(2);
+        band.evaluate();
+        let told = |band: &Band| {
+            let fields = (0..5).flat_map(|k| [band.gradient(k), band.tangent(k), band.perpendicular(k)].concat());
+            let bits: Vec<u64> = fields.chain(band.energies_mev().iter().copied()).map(f64::to_bits).collect();
+            (bits, band.evaluations(), band.is_held(2), band.force(2).to_bits(), band.profile().highest_mev().to_bits())
+        };
+        let before = told(&band);
+        band.give_back();
+        assert!(band.gradient.is_empty() && band.profile().highest_mev().to_bits() == before.4);
+        band.wake();
+        assert_eq!(told(&band), before);
+        band.rest();
+        assert!(!band.gradient.is_empty(), "so few numbers are not worth it");
     }
 }

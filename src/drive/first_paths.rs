@@ -43,7 +43,9 @@ impl<'a> Run<'a, '_> {
                 guesses.iter().filter(|(other, _)| describe(other, false) == describe(guess, false)).count();
             let name = describe(guess, namesakes > 1);
             self.observer.stage(&format!("first path: {name}"));
-            tried.push(self.start(name, guess, noise.as_ref(), None, TRIAL)?);
+            let mut c = self.start(name, guess, noise.as_ref(), None, TRIAL)?;
+            c.band.rest();
+            tried.push(c);
         }
         tried.sort_by(|p, q| p.peak_mev().total_cmp(&q.peak_mev()));
         let scale = self.scales.stiffness_mev;
@@ -58,6 +60,7 @@ impl<'a> Run<'a, '_> {
             let is_worth = is_below(1.0) || finished < 2 && is_below(WORTH) || is_other && is_below(OF_OTHER_KINDS);
             if self.problem.seeks_saddles() && is_worth {
                 self.conclude(c)?;
+                c.band.rest();
                 finished += 1;
                 lowest_barrier = lowest_barrier.min(c.barrier_mev(scale));
                 kinds.push(c.kind().into());
@@ -80,6 +83,7 @@ impl<'a> Run<'a, '_> {
     /// Relaxes a path, where it needs to be, until its top is a refined saddle of index one, leaving saddles of higher index sideways.
     pub(super) fn conclude(&mut self, c: &mut FirstPath<'a>) -> Result<()> {
         let scale = self.scales.stiffness_mev;
+        c.band.wake();
         // on a film the saddle is found by its lowest mode, and from farther away than by a valley
         let mut relaxes = self.problem.hamiltonian.lattice().is_row();
         for round in 0..ESCAPES {

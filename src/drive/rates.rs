@@ -175,7 +175,7 @@ fn stored_link(h: Evaluator, saddle: &SaddlePoint, beside: &[Minimum]) -> Pass {
     let towards = |end: &Minimum| h.difference_mev(&state.m, end.spins.as_slice());
     let fallen_mev = [towards(&before), towards(&after)];
     let spectrum = stationary::Spectrum::of(h, &state, 0);
-    let lowest = state.lowest_mode();
+    let lowest = state.lowest_mode(h);
     let valley = lowest.as_ref().map_or_else(|| vec![0.0; state.m.len()], |mode| state.field(&mode.vector));
     let mut tau = valley.clone();
     let size = slab::norm(&tau);

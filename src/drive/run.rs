@@ -164,6 +164,7 @@ impl<'a, 'o> Run<'a, 'o> {
             let better = next.proof.doubts.is_empty() && next.seen_mev() < (1.0 + LOWER) * best.seen_mev();
             let mut left = if better { std::mem::replace(&mut best, next) } else { next };
             left.first.followed_mev = Some(left.seen_mev());
+            left.first.band.rest();
             others.push(left.first);
         }
         others.extend(firsts);

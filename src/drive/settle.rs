@@ -9,15 +9,10 @@ use super::settled::Settled;
 use crate::band::Band;
 use crate::error::Result;
 use crate::landscape::{Assembled, Connector, Doubt, Minimum, Pass, PathEnd, Saddle, assemble, peaks};
-use crate::path::{RESOLVED, distance, is_within};
+use crate::path::{FINER, MOST_IMAGES, RESOLVED, distance, is_within};
 use crate::sphere::SAME;
-use crate::spins::Spins;
 use crate::stationary::LOWER;
 
-/// Most images of an automatic path.
-const MOST_IMAGES: usize = 2001;
-/// More images are of use where they bring neighbours nearer, to this part of how far they were.
-const FINER: f64 = 0.8;
 /// Maxima within this part of the path's height of the highest are refined.
 const WINDOW: f64 = 0.1;
 
@@ -31,6 +26,7 @@ fn over(c: &FirstPath, links: &[Pass]) -> f64 {
 impl<'a> Run<'a, '_> {
     /// A path in full, led over a route below a height (meV above the initial state) if there is one.
     pub(super) fn settle(&mut self, mut c: FirstPath<'a>, below_mev: f64) -> Result<Settled<'a>> {
+        c.band.wake();
         let proves = self.problem.certify && self.problem.seeks_saddles();
         if proves && !self.problem.hamiltonian.lattice().is_row() {
             // away from its tops a band of a film relaxes slowly, and the descents from its saddles are the path
@@ -119,14 +115,24 @@ impl<'a> Run<'a, '_> {
         self.observer.stage("putting the path together");
         let ends = [&self.ends[0].spins, &self.ends[1].spins];
         let images = self.problem.images.asked_for();
+        c.band.rest();
         let assembled = assemble(&self.land, &proof.links, ends, images, 0.9 * RESOLVED, &self.tools())?;
-        let Some(mut way) = assembled else { return Ok(false) };
-        let good = self.follow(c, &way, &proof.links)?;
+        let led = match assembled {
+            Some(way) => self.follow_finer(c, way, &proof.links)?,
+            None => false,
+        };
+        c.band.wake();
+        Ok(led)
+    }
+
+    /// Follows a path that was put together, with more images where it is not resolved when relaxed; says whether it took the place.
+    fn follow_finer(&mut self, c: &mut FirstPath<'a>, mut way: Assembled, links: &[Pass]) -> Result<bool> {
+        let good = self.follow(c, &way, links)?;
         while good && self.is_coarse(c) && c.band.images() < MOST_IMAGES {
             let before = c.band.path().longest_step(RESOLVED);
             let Some(finer) = way.finer(c.band.path(), RESOLVED) else { break };
             way = finer;
-            if !self.follow(c, &way, &proof.links)? || c.band.path().longest_step(RESOLVED) > FINER * before {
+            if !self.follow(c, &way, links)? || c.band.path().longest_step(RESOLVED) > FINER * before {
                 break;
             }
         }
@@ -137,9 +143,7 @@ impl<'a> Run<'a, '_> {
     /// over its saddles; says whether it took the place.
     fn follow(&mut self, c: &mut FirstPath<'a>, way: &Assembled, links: &[Pass]) -> Result<bool> {
         let mut band = Band::continued(self.problem.evaluator(), way.path.clone(), c.band.evaluations());
-        for &k in &way.stops {
-            band.hold(k, way.path.image(k));
-        }
+        way.stops.iter().for_each(|k| band.hold_here(*k));
         let before = std::mem::replace(&mut c.band, band);
         let stop = c.stop;
         self.relax(c, Goal::Tight, c.band.evaluations() + TIGHTLY)?;
@@ -182,10 +186,14 @@ impl<'a> Run<'a, '_> {
             if own.iter().any(|pass| pass.is_on_a_level_with(h, saddle)) {
                 continue;
             }
-            let pass = Pass::recorded(h, saddle.clone(), scale, &self.both_ends())?;
-            doubts.extend(pass.doubt(h));
-            if pass.doubt(h).is_none() {
-                self.land.add(pass.clone());
+            let mut pass = Pass::recorded(h, saddle.clone(), scale, &ends.each_ref())?;
+            match pass.doubt(h) {
+                None => {
+                    // the landscape alone keeps its ways
+                    let ways = std::mem::take(&mut pass.ways);
+                    self.land.add(Pass { ways, ..pass.clone() });
+                }
+                Some(doubt) => doubts.push(doubt),
             }
             own.push(pass);
             if self.land.top_mev(self.minima[0], self.minima[1]).is_some_and(|top| top < below_mev) {
@@ -221,14 +229,10 @@ impl<'a> Run<'a, '_> {
             None => Pass::between(h, saddle.clone(), ends.clone()),
             Some(_) => None,
         };
-        let descended = || Pass::recorded(h, saddle.clone(), self.scales.stiffness_mev, &self.both_ends());
+        let descended = || Pass::recorded(h, saddle.clone(), self.scales.stiffness_mev, &ends.each_ref());
         let pass = alone.map_or_else(descended, Ok)?;
         let doubts = pass.doubt(h).into_iter().collect();
         Ok(Proof { ends, links: vec![pass], doubts })
-    }
-
-    fn both_ends(&self) -> [&Spins; 2] {
-        self.ends.each_ref().map(|end| &end.spins)
     }
 
     fn tools(&self) -> Tools<'a> {

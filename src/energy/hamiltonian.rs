@@ -105,7 +105,12 @@ impl Hamiltonian {
 
     /// Whether factors of a matrix of its bonds take so long that solutions by iteration are quicker.
     pub fn has_dear_factors(&self) -> bool {
-        matches!(&self.layout, Layout::Sparse(plan) if plan.solutions() > CHEAP)
+        self.solutions_a_factor() > CHEAP
+    }
+
+    /// The arithmetic of factors of a matrix of its bonds, in those of a solution by them, where it is of blocks; else 0.
+    pub fn solutions_a_factor(&self) -> f64 {
+        if let Layout::Sparse(plan) = &self.layout { plan.solutions() } else { 0.0 }
     }
 
     /// Whether site `i` never moves.

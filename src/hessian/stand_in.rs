@@ -9,14 +9,17 @@
 //! of the images are met to a factor √2: c + s is rounded to c 2^k. (Preconditioning by the exchange operator: Packwood et al.,
 //! J. Chem. Phys. 144, 164109 (2016), doi:10.1063/1.4947024.)
 
+use super::TangentBasis;
 use crate::energy::Hamiltonian;
 use crate::field::Components;
 use crate::geometry::vector;
-use crate::linalg::{Multigrid, Rows, multigrid};
+use crate::linalg::{Inverse, Multigrid, Rows, multigrid, slab};
 use std::sync::OnceLock;
 
 /// Most k.
 const LEVELS: usize = 48;
+/// The least of what spins feel beside their neighbours, in parts of the largest stiffness.
+const LEAST: f64 = 1e-9;
 
 /// M + s for all s that are wanted.
 #[derive(Debug)]
@@ -49,6 +52,18 @@ impl StandIn {
         StandIn { matrix: Rows::new(h.sites(), rows), c, levels }
     }
 
+    /// For the configuration m with gradient g alone, and with it in c what its spins feel beside their neighbours, on the average.
+    pub fn about(h: &Hamiltonian, m: &[f64], g: &[f64]) -> StandIn {
+        let mut stand_in = StandIn::between(h, &[(m, g)], 0.0);
+        let alone = |(i, own): (usize, f64)| {
+            let others: f64 = stand_in.matrix.row(i).filter(|(j, _)| *j != i).map(|(_, a)| a).sum();
+            (own - others.abs()).abs()
+        };
+        let sum: f64 = on_their_own(h, m, g).into_iter().enumerate().map(alone).sum();
+        stand_in.c = (sum / h.sites() as f64).max(LEAST * h.stiffness_mev());
+        stand_in
+    }
+
     /// (M + s)⁻¹ v, nearly, of a field of 3N numbers; `room` is memory.
     pub fn solve(&self, s: f64, v: &[f64], out: &mut [f64], room: &mut multigrid::Room) {
         let level = self.level(s);
@@ -63,6 +78,35 @@ impl StandIn {
     /// M + c (2ᵏ − 1).
     fn shifted(&self, level: usize) -> Rows {
         self.matrix.shifted(self.c * (libm::exp2(level as f64) - 1.0))
+    }
+}
+
+/// (M + c)⁻¹ in the tangent coordinates of one configuration.
+pub struct StandInAt<'a> {
+    stand_in: &'a StandIn,
+    basis: &'a TangentBasis,
+}
+
+impl StandIn {
+    /// In the tangent space of a basis.
+    pub fn at<'a>(&'a self, basis: &'a TangentBasis) -> StandInAt<'a> {
+        StandInAt { stand_in: self, basis }
+    }
+}
+
+impl Inverse for StandInAt<'_> {
+    fn order(&self) -> usize {
+        2 * self.stand_in.matrix.order()
+    }
+
+    fn solve(&self, x: &mut [f64], columns: usize) {
+        slab::one_by_one(x, columns, |x| {
+            let mut field = vec![0.0; x.len() / 2 * 3];
+            let mut out = field.clone();
+            self.basis.field(x, &mut field);
+            self.stand_in.solve(self.stand_in.c, &field, &mut out, &mut multigrid::Room::default());
+            x.copy_from_slice(&self.basis.coordinates(&out));
+        });
     }
 }
 
@@ -83,7 +127,6 @@ mod tests {
     use super::*;
     use crate::energy::test_terms::{hamiltonian, lattice};
     use crate::geometry::Direction;
-    use crate::linalg::slab;
     use crate::spins::Spins;
 
     #[test]

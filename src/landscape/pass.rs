@@ -17,7 +17,7 @@ const PURE: f64 = 0.1;
 
 /// The direction (3N) in which a saddle falls: the valley that its search followed, or, where that is a mixture of soft modes,
 /// the lowest mode, if that is plainly negative.
-fn falling(saddle: &Saddle) -> Vec<f64> {
+fn falling(h: Evaluator, saddle: &Saddle) -> Vec<f64> {
     let (state, valley) = (&saddle.refined.state, &saddle.refined.valley);
     let v = state.basis.coordinates(valley);
     let mut residual = vec![0.0; v.len()];
@@ -28,7 +28,7 @@ fn falling(saddle: &Saddle) -> Vec<f64> {
         return valley.clone();
     }
     let floor = 1e3 * f64::EPSILON * state.hessian.norm1();
-    match state.lowest_mode() {
+    match state.lowest_mode(h) {
         Some(lowest) if lowest.value < -floor => state.field(&lowest.vector),
         _ => valley.clone(),
     }
@@ -54,16 +54,21 @@ pub struct Pass {
 }
 
 impl Pass {
-    /// Descends from a saddle on both sides; where a slope forks, to one of the states `beside` it, if one of them is.
-    pub fn of(h: Evaluator, saddle: Saddle, c: f64, beside: &[&Spins]) -> Result<Pass> {
+    /// Descends from a saddle on both sides; where a slope forks or ends there, to one of the minima `beside` it, if one of them is.
+    pub fn of(h: Evaluator, saddle: Saddle, c: f64, beside: &[&Minimum]) -> Result<Pass> {
+        let beside: Vec<&Minimum> = beside.iter().copied().filter(|minimum| minimum.is_proven()).collect();
+        let ends: Vec<&Spins> = beside.iter().map(|minimum| &minimum.spins).collect();
         let state = &saddle.refined.state;
-        let falls = falling(&saddle);
+        let falls = falling(h, &saddle);
         let sign = if slab::dot(&falls, &saddle.top.tau) < 0.0 { -1.0 } else { 1.0 };
         let side = |direction: f64| -> Result<(Minimum, f64, Vec<Spins>)> {
             let valley: Vec<f64> = falls.iter().map(|v| direction * sign * v).collect();
-            let d = descend(h, state, &valley, c, beside);
-            let relaxed = relax_to_minimum(h, &Spins::from_unit_components(&d.m), RELAXED * h.stiffness_mev())?;
+            let d = descend(h, state, &valley, c, &ends);
             let way = d.way.into_iter().map(|m| Spins::from_unit_components(&m)).collect();
+            if let Some(known) = beside.iter().find(|minimum| minimum.spins.as_slice() == d.m) {
+                return Ok((Minimum::clone(known), d.fallen_mev, way));
+            }
+            let relaxed = relax_to_minimum(h, &Spins::from_unit_components(&d.m), RELAXED * h.stiffness_mev())?;
             Ok((Minimum::examine(h, &relaxed.spins), d.fallen_mev, way))
         };
         let spectrum = Spectrum::of(h, state, 0);
@@ -85,10 +90,10 @@ impl Pass {
     }
 
     /// The same, as far as it is not on record.
-    pub fn recorded(h: Evaluator, saddle: Saddle, c: f64, beside: &[&Spins]) -> Result<Pass> {
+    pub fn recorded(h: Evaluator, saddle: Saddle, c: f64, beside: &[&Minimum]) -> Result<Pass> {
         let Saddle { top, refined } = &saddle;
         let [m, valley, tau] = [&refined.state.m, &refined.valley, &top.tau].map(Vec::clone);
-        let states = beside.iter().map(|spins| spins.as_slice());
+        let states = beside.iter().map(|minimum| minimum.spins.as_slice());
         let inputs: Vec<&[f64]> = [&m[..], &valley, &tau].into_iter().chain(states).collect();
         recorded(h, "descents", &inputs, || Pass::of(h, saddle, c, beside))
     }

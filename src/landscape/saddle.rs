@@ -3,7 +3,7 @@
 use super::peaks::Peak;
 use crate::energy::{Evaluator, recorded};
 use crate::error::Result;
-use crate::linalg::{Matrix, lowest_modes, slab};
+use crate::linalg::{Matrix, slab};
 use crate::sphere::rotation_of;
 use crate::stationary::{
     self, ALIKE, Climb, Limits, Refined, STATIONARY, Spectrum, State, climb, follow_modes, refine,
@@ -122,7 +122,7 @@ impl Saddle {
     fn beside(&self, h: Evaluator, c: f64, far: f64) -> Option<Saddle> {
         let state = &self.refined.state;
         let along = state.basis.coordinates(&self.refined.valley);
-        let modes = lowest_modes(&state.hessian, 2, &state.zeros);
+        let modes = state.lowest_modes(h, 2);
         let other = modes
             .iter()
             .min_by(|p, q| slab::dot(&p.vector, &along).abs().total_cmp(&slab::dot(&q.vector, &along).abs()))?;

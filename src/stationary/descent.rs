@@ -53,8 +53,9 @@ const ROUNDS: usize = 24;
 const STEPS: usize = 20_000;
 /// So many steps down the gradient shorter than the first along a valley are a crawl.
 const CRAWL: usize = 4;
-/// A state whose spins are turned by less than this (rad, any spin) is beside another.
+/// A state whose spins are turned by less than this (rad, any spin) is beside another, and by less than that has reached it.
 const BESIDE: f64 = 1.5;
+const REACHED: f64 = 0.03;
 
 /// Where a descent ended.
 #[derive(Debug)]
@@ -70,8 +71,8 @@ pub struct Descent {
     pub way: Vec<Vec<f64>>,
 }
 
-/// Descends from a saddle along ± its valley (a unit field of 3N numbers); c is the stiffness scale (meV). Where its slope forks, it
-/// goes to one of the states `beside` it, if one of them is.
+/// Descends from a saddle along ± its valley (a unit field of 3N numbers); c is the stiffness scale (meV). Where its slope forks, and
+/// where it has all but reached one, it goes to one of the minima `beside` it, which are proven.
 pub fn descend(h: Evaluator, saddle: &State, valley: &[f64], c: f64, beside: &[&Spins]) -> Descent {
     let mut walk = Walk {
         h,
@@ -147,7 +148,7 @@ impl Walk<'_> {
             }
             project(&self.here.m, &mut self.tau);
             let state = State::of(self.h, self.here.clone());
-            let Some(mode) = state.lowest_mode() else { return false };
+            let Some(mode) = state.lowest_mode(self.h) else { return false };
             let mut on = state.field(&mode.vector);
             if slab::dot(&on, &self.tau) < 0.0 {
                 slab::scale(&mut on, -1.0);
@@ -164,10 +165,9 @@ impl Walk<'_> {
         self.room.v.clone_from(&self.tau);
         slab::scale(&mut self.room.v, FIRST / rotation_of(&self.tau));
         self.here.go(self.h, &from, &self.room.v);
-        let arrived = quench(self.h, &mut self.here, &mut self.next, &mut self.trail, [FIRST, STEP])
+        let arrived = self.quench()
             && from.above_mev(&self.here) > self.h.rounding_mev()
-            && matches!(self.fall(true), Fall::Arrived)
-            && (self.is_minimum() || self.fork());
+            && (self.join() || matches!(self.fall(true), Fall::Arrived) && (self.is_minimum() || self.fork()));
         if !arrived {
             self.trail.go_back_to(points);
             (self.here, self.tau) = (from, tau);
@@ -175,25 +175,47 @@ impl Walk<'_> {
         arrived
     }
 
+    /// Down by gradients alone; whether to where the slope ends.
+    fn quench(&mut self) -> bool {
+        quench(self.h, &mut self.here, &mut self.next, &mut self.trail, [FIRST, STEP])
+    }
+
+    /// To a state beside the descent that is all but reached; whether there is one.
+    fn join(&mut self) -> bool {
+        let Some(end) = self.nearest().filter(|end| largest_angle(end.as_slice(), &self.here.m) < REACHED) else {
+            return false;
+        };
+        let end = Point::at(self.h, end.as_slice().to_vec());
+        let falls = self.here.above_mev(&end) > -self.h.rounding_mev();
+        if falls {
+            self.here = end;
+        }
+        falls
+    }
+
+    /// The nearest of the states beside the descent.
+    fn nearest(&self) -> Option<&Spins> {
+        let far = |end: &Spins| largest_angle(end.as_slice(), &self.here.m);
+        self.beside.iter().copied().min_by(|p, q| far(p).total_cmp(&far(q)))
+    }
+
     /// From a stationary state that is no minimum, where the slope forks, as by symmetry at a skyrmion between two places of its
-    /// lattice: to a state beside it, if the valley falls all the way, as the place half-way tells; whether that is a minimum.
+    /// lattice: to a state beside it, if the valley falls all the way, as the place half-way tells; whether it does.
     fn fork(&mut self) -> bool {
         let (from, rounding) = (self.here.clone(), self.h.rounding_mev());
-        let far = |end: &&&Spins| largest_angle(end.as_slice(), &from.m);
-        let Some(end) = self.beside.iter().min_by(|p, q| far(p).total_cmp(&far(q))).filter(|end| far(end) < BESIDE)
-        else {
+        let Some(end) = self.nearest().filter(|end| largest_angle(end.as_slice(), &from.m) < BESIDE) else {
             return false;
         };
         let end = Point::at(self.h, end.as_slice().to_vec());
         let mut half = vec![0.0; end.m.len()];
         blend(&from.m, &end.m, 0.5, &mut half);
         self.here = Point::at(self.h, half.clone());
-        let falls = quench(self.h, &mut self.here, &mut self.next, &mut self.trail, [FIRST, STEP])
+        let falls = self.quench()
             && largest_angle(&self.here.m, &half) < 0.5 * BESIDE
             && from.above_mev(&self.here) > rounding
             && self.here.above_mev(&end) > rounding;
         self.here = end;
-        falls && self.is_minimum()
+        falls
     }
 
     /// Whether no direction is negative here.

@@ -144,7 +144,7 @@ fn way_down(h: Evaluator, p: &Point, memory: &mut Matrix) -> Option<(Point, WayD
         return None;
     }
     let state = State::of(h, p.clone());
-    let mode = state.field(&state.lowest_mode()?.vector);
+    let mode = state.field(&state.lowest_mode(h)?.vector);
     let below = Point::at(h, descend(h, &state, &mode, h.stiffness_mev(), &[]).m);
     let turns = Components::new(&mode);
     let largest = (0..h.sites()).max_by(|i, j| vector::norm(turns.get(*i)).total_cmp(&vector::norm(turns.get(*j))));

@@ -171,7 +171,7 @@ impl<'a> Search<'a> {
             return Err(GaveUp::Stuck);
         }
         let state = State::of(self.h, self.here);
-        let lowest = state.lowest_mode().ok_or(GaveUp::Stuck)?;
+        let lowest = state.lowest_mode(self.h).ok_or(GaveUp::Stuck)?;
         let (mut mode, curvature_mev) = (state.field(&lowest.vector), lowest.value);
         self.h.hold_frozen(&mut mode);
         Ok(Saddle { point: state.point, mode, curvature_mev })

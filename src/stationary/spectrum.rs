@@ -8,7 +8,7 @@ use super::point::Point;
 use super::state::State;
 use super::tolerances::STATIONARY;
 use crate::energy::Evaluator;
-use crate::linalg::{Factors, Matrix, lowest_modes};
+use crate::linalg::{Factors, Matrix};
 use serde::{Deserialize, Serialize};
 use std::mem::take;
 
@@ -66,7 +66,7 @@ impl Spectrum {
 pub fn lowest_eigenvalues_mev(h: Evaluator, state: &State, count: usize) -> Vec<f64> {
     let frozen = (0..h.sites()).filter(|&i| h.is_frozen(i)).count();
     let free = (state.hessian.order() - 2 * frozen).saturating_sub(state.zeros.len());
-    let modes = lowest_modes(&state.hessian, count.min(free), &state.zeros);
+    let modes = state.lowest_modes(h, count.min(free));
     modes.into_iter().map(|m| m.value).collect()
 }
 

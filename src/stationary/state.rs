@@ -2,10 +2,14 @@
 
 use super::point::Point;
 use crate::energy::Evaluator;
-use crate::linalg::{Matrix, Mode, lowest_modes};
+use crate::hessian::StandIn;
+use crate::linalg::{Matrix, Mode, lowest_modes, softest};
 use crate::sphere::move_points;
 use serde::{Deserialize, Serialize};
 use std::ops::Deref;
+
+/// Modes are found sooner without factors where those take so many solutions' arithmetic: from films of some 100² sites on, cubes of 12³.
+const DEAR: f64 = 24.0;
 
 /// Everything a Newton step needs, at one configuration: all that a [`Point`] has, and the Hessian.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -39,8 +43,18 @@ impl State {
     }
 
     /// The lowest mode, zero modes apart; none where there is no other direction.
-    pub fn lowest_mode(&self) -> Option<Mode> {
-        lowest_modes(&self.hessian, 1, &self.zeros).into_iter().next()
+    pub fn lowest_mode(&self, h: Evaluator) -> Option<Mode> {
+        self.lowest_modes(h, 1).into_iter().next()
+    }
+
+    /// The lowest modes, so many if there are, zero modes apart; where factors take long, without them if that can be had.
+    pub fn lowest_modes(&self, h: Evaluator, count: usize) -> Vec<Mode> {
+        let iterated = || {
+            let stand_in = StandIn::about(&h, &self.m, &self.gradient);
+            softest(&self.hessian, count, &self.zeros, &stand_in.at(&self.basis), &|| h.is_stopped())
+        };
+        let found = (h.solutions_a_factor() > DEAR).then(iterated).flatten();
+        found.unwrap_or_else(|| lowest_modes(&self.hessian, count, &self.zeros))
     }
 
     /// The spins after a move along a vector field.

@@ -2,7 +2,7 @@
 
 use super::{Cut, Rival};
 use crate::energy::Evaluator;
-use crate::linalg::{lowest_modes, slab};
+use crate::linalg::slab;
 use crate::sphere::rotation_of;
 use crate::stationary::State;
 use rand_chacha::ChaCha8Rng;
@@ -27,10 +27,11 @@ impl Rival for Modes {
         while self.next.is_empty() {
             let minimum = cut.starts().find(|k| !self.left.contains(k))?;
             self.left.insert(minimum);
-            let state = State::at(cut.land.evaluator(), cut.land.minima()[minimum].spins.as_slice().to_vec());
-            for mode in lowest_modes(&state.hessian, MODES, &state.zeros) {
+            let h = cut.land.evaluator();
+            let state = State::at(h, cut.land.minima()[minimum].spins.as_slice().to_vec());
+            for mode in state.lowest_modes(h, MODES) {
                 let along = state.field(&mode.vector);
-                self.next.extend([1.0, -1.0].map(|sense| top(cut.land.evaluator(), &state, &along, sense)));
+                self.next.extend([1.0, -1.0].map(|sense| top(h, &state, &along, sense)));
             }
         }
         self.next.pop_front()

@@ -16,7 +16,7 @@ impl Rows {
     pub fn new(columns: usize, rows: impl IntoIterator<Item = Vec<(usize, f64)>>) -> Rows {
         let mut matrix = Rows { starts: vec![0], columns, ..Rows::default() };
         rows.into_iter().for_each(|mut row| matrix.push(&mut row));
-        matrix
+        matrix.fitted()
     }
 
     /// Row after row, each written by `fill` into a list that is empty.
@@ -29,7 +29,14 @@ impl Rows {
             fill(i, &mut row);
             matrix.push(&mut row);
         }
-        matrix
+        matrix.fitted()
+    }
+
+    /// In no more memory than it needs.
+    fn fitted(mut self) -> Rows {
+        self.at.shrink_to_fit();
+        self.entries.shrink_to_fit();
+        self
     }
 
     /// One row more.
