@@ -11,7 +11,7 @@ use spinneb::lattice::Lattice;
 use spinneb::path::Path;
 use spinneb::path::guess::{GuessSpec, PathFile};
 use spinneb::spins::Spins;
-use spinneb::stationary::{Spectrum, State, refine, relax_to_minimum};
+use spinneb::stationary::{Spectrum, State, descend, refine, relax_to_minimum};
 use std::sync::Arc;
 
 /// Images of a first path.
@@ -292,6 +292,32 @@ fn a_skyrmion_put_between_four_sites_is_no_minimum_and_is_left() {
         assert!((spectrum.lowest_mev[0] - 6.8397e-5).abs() < 1e-8, "{:?}", spectrum.lowest_mev);
     }
     assert!(h.difference_mev(a.spins.as_slice(), b.spins.as_slice()).abs() < 1e-12);
+}
+
+#[test]
+fn a_descent_ends_at_a_minimum_beside_it_where_it_has_reached_that_and_nowhere_else() {
+    let problem = skyrmion(20, 1.0, 10.0);
+    let h = &problem.hamiltonian;
+    let tolerance = 1e-14 * h.stiffness_mev();
+    let [skyrmion, up] =
+        [&problem.initial, &problem.final_state].map(|end| relax_to_minimum(h.into(), end, tolerance).unwrap().spins);
+    let found = by_default(self::skyrmion(20, 1.0, 10.0));
+    let saddle = State::at(h.into(), found.saddles[0].spins.as_slice().to_vec());
+    let valley = saddle.field(&saddle.lowest_mode(h.into()).unwrap().vector);
+    for beside in [&[][..], &[&up], &[&skyrmion], &[&skyrmion, &up]] {
+        let ends = [-1.0, 1.0].map(|sense| {
+            let down: Vec<f64> = valley.iter().map(|v| sense * v).collect();
+            let descent = descend(h.into(), &saddle, &down, 0.2, beside);
+            assert!(descent.arrived && descent.fallen_mev > 4.0, "{}", descent.fallen_mev);
+            descent.m
+        });
+        let is_up = |end: &[f64]| h.difference_mev(end, up.as_slice()).abs() < 1e-9;
+        let is_skyrmion = |end: &[f64]| h.difference_mev(end, skyrmion.as_slice()).abs() < 1e-9;
+        let [a, b] = &ends;
+        assert!(is_up(a) && is_skyrmion(b) || is_skyrmion(a) && is_up(b), "{} beside", beside.len());
+        let is_there = |end: &Spins| a == end.as_slice() || b == end.as_slice();
+        assert!(!beside.contains(&&up) || is_there(&up), "it is that minimum to the bit");
+    }
 }
 
 #[test]

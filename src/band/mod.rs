@@ -198,11 +198,6 @@ impl<'h> Band<'h> {
         self.held[k] = true;
     }
 
-    /// Image k is a saddle, and stays.
-    pub fn hold_here(&mut self, k: usize) {
-        self.held[k] = true;
-    }
-
     /// Whether image k is a saddle that stays.
     pub fn is_held(&self, k: usize) -> bool {
         self.held[k]
@@ -310,7 +305,7 @@ mod tests {
         let h = hamiltonian(&lattice, &[r#"{"exchange": {"J": ["1 meV"]}}"#, easy]);
         let images: Vec<Spins> = (0..5).map(|k| Spins::random(lattice.sites, k)).collect();
         let mut band = Band::new(&h, Path::new(&images));
-        band.hold_here(2);
+        band.hold(2, images[2].as_slice());
         band.evaluate();
         let told = |band: &Band| {
             let fields = (0..5).flat_map(|k| [band.gradient(k), band.tangent(k), band.perpendicular(k)].concat());

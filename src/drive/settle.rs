@@ -9,10 +9,14 @@ use super::settled::Settled;
 use crate::band::Band;
 use crate::error::Result;
 use crate::landscape::{Assembled, Connector, Doubt, Minimum, Pass, PathEnd, Saddle, assemble, peaks};
-use crate::path::{FINER, MOST_IMAGES, RESOLVED, distance, is_within};
+use crate::path::{RESOLVED, distance, is_within};
 use crate::sphere::SAME;
 use crate::stationary::LOWER;
 
+/// Most images of an automatic path.
+const MOST_IMAGES: usize = 2001;
+/// More images are of use where they bring neighbours nearer, to this part of how far they were.
+const FINER: f64 = 0.8;
 /// Maxima within this part of the path's height of the highest are refined.
 const WINDOW: f64 = 0.1;
 
@@ -143,7 +147,9 @@ impl<'a> Run<'a, '_> {
     /// over its saddles; says whether it took the place.
     fn follow(&mut self, c: &mut FirstPath<'a>, way: &Assembled, links: &[Pass]) -> Result<bool> {
         let mut band = Band::continued(self.problem.evaluator(), way.path.clone(), c.band.evaluations());
-        way.stops.iter().for_each(|k| band.hold_here(*k));
+        for &k in &way.stops {
+            band.hold(k, way.path.image(k));
+        }
         let before = std::mem::replace(&mut c.band, band);
         let stop = c.stop;
         self.relax(c, Goal::Tight, c.band.evaluations() + TIGHTLY)?;

@@ -70,6 +70,11 @@ impl StandIn {
         self.levels[level].get_or_init(|| Multigrid::of(self.shifted(level))).solve(v, out, room);
     }
 
+    /// (M + c)⁻¹ in the tangent space of a basis.
+    pub fn at<'a>(&'a self, basis: &'a TangentBasis) -> StandInAt<'a> {
+        StandInAt { stand_in: self, basis }
+    }
+
     /// k.
     fn level(&self, s: f64) -> usize {
         libm::round(libm::log2(1.0 + s.max(0.0) / self.c)).min((LEVELS - 1) as f64) as usize
@@ -85,13 +90,6 @@ impl StandIn {
 pub struct StandInAt<'a> {
     stand_in: &'a StandIn,
     basis: &'a TangentBasis,
-}
-
-impl StandIn {
-    /// In the tangent space of a basis.
-    pub fn at<'a>(&'a self, basis: &'a TangentBasis) -> StandInAt<'a> {
-        StandInAt { stand_in: self, basis }
-    }
 }
 
 impl Inverse for StandInAt<'_> {
@@ -127,6 +125,8 @@ mod tests {
     use super::*;
     use crate::energy::test_terms::{hamiltonian, lattice};
     use crate::geometry::Direction;
+    use crate::hessian::assemble;
+    use crate::linalg::{orthonormal, softest};
     use crate::spins::Spins;
 
     #[test]
@@ -167,5 +167,26 @@ mod tests {
             let error = off(&x, &|k| v[k]);
             assert!((1e-3..most).contains(&error), "{s}: {error:e}");
         }
+    }
+
+    #[test]
+    fn where_all_spins_point_along_a_hard_axis_it_still_leads_to_the_lowest_mode() {
+        // M alone is the Laplacian there, which has no inverse; the lowest mode turns all spins to the easy axis: −2K
+        let lattice = lattice(r#"{"square": {"cells": [14, 12]}}"#);
+        let easy = r#"{"anisotropy": {"K": "0.1 meV", "axis": [0, 0, 1]}}"#;
+        let h = hamiltonian(&lattice, &[r#"{"exchange": {"J": ["1 meV"]}}"#, easy]);
+        let m = Spins::uniform(h.sites(), Direction::X);
+        let mut g = vec![0.0; 3 * h.sites()];
+        h.energy_gradient(m.as_slice(), &mut g);
+        let (basis, mut turn) = (TangentBasis::at(m.as_slice()), Vec::new());
+        basis.write_rotation([0.0, 0.0, 1.0], &mut turn);
+        let (hessian, turns) = (assemble(&h, m.as_slice(), &g, &basis), orthonormal(vec![turn], 0.5));
+        let stand_in = StandIn::about(&h, m.as_slice(), &g);
+        assert!((stand_in.c - 0.1).abs() < 1e-12, "{}", stand_in.c);
+        let modes = softest(&hessian, 2, &turns, &stand_in.at(&basis), &|| false).expect("they are found");
+        let told = modes.iter().map(|mode| mode.value);
+        // the next is the longest wave along the longer side
+        let wave = -0.2 + 2.0 * (1.0 - libm::cos(std::f64::consts::PI / 14.0));
+        assert!(told.zip([-0.2, wave]).all(|(value, exact)| (value - exact).abs() < 1e-11), "{modes:?}");
     }
 }

@@ -92,12 +92,11 @@ struct Space<'a> {
 
 impl Space<'_> {
     /// Takes in what is new of a vector, if there is any, with its image, if that is known.
-    fn add(&mut self, mut v: Vec<f64>, image: Option<Vec<f64>>) {
+    fn add(&mut self, mut v: Vec<f64>, mut image: Option<Vec<f64>>) {
         let size = slab::norm(&v);
         if !(size > 0.0 && size.is_finite()) {
             return;
         }
-        let mut image = image;
         let scale = |v: &mut Vec<f64>, image: &mut Option<Vec<f64>>, by: f64| {
             slab::scale(v, by);
             image.iter_mut().for_each(|image| slab::scale(image, by));

@@ -19,10 +19,6 @@ use serde::{Deserialize, Serialize, Serializer};
 
 /// Neighbouring images that are no further apart (rad, any spin) resolve a path.
 pub const RESOLVED: f64 = 1.0;
-/// More images are of use where they bring neighbours nearer, to this part of how far they were.
-pub const FINER: f64 = 0.8;
-/// Most images of a path that has as many as it needs.
-pub const MOST_IMAGES: usize = 2001;
 
 /// Images of a path that is only to be looked at.
 pub const COARSE: usize = 9;

@@ -2,6 +2,7 @@
 
 use super::panels::{self, WIDTH};
 use crate::linalg::pivot::guarded;
+use crate::threads::{READ, apiece};
 use multiversion::multiversion;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -12,9 +13,8 @@ const BLOCK: usize = 16;
 const ROWS: usize = 36;
 /// Rows of a tile in registers.
 const TILE: usize = 12;
-/// Multiplications that are worth waking a thread for, and numbers that are only scaled.
-const WORTH_A_THREAD: usize = 1 << 20;
-const WORTH: usize = 1 << 16;
+/// Multiplications that are worth waking a thread for.
+const WORTH: usize = 1 << 20;
 
 /// Numbers of a square of a panel.
 const SQUARE: usize = WIDTH * WIDTH;
@@ -90,7 +90,7 @@ impl Sources<'_> {
         }
         let above = self.rows - rows;
         work.resize(depth * columns, 0.0);
-        let scaled = work.par_chunks_exact_mut(depth).enumerate().with_min_len(WORTH.div_ceil(depth));
+        let scaled = work.par_chunks_exact_mut(depth).enumerate().with_min_len(apiece(depth, READ));
         scaled.for_each(|(q, scaled)| self.scale(above + WIDTH * q, scaled));
         self.subtract_panels(target, rows, 0..columns, work);
     }
@@ -98,7 +98,7 @@ impl Sources<'_> {
     /// The same of some of the panels, where the columns of all are scaled; several at a time where they are long.
     fn subtract_panels(&self, target: &mut [f64], rows: usize, columns: Range<usize>, scaled: &[f64]) {
         let depth = SQUARE * (self.end - self.first);
-        if target.len() * depth / WIDTH > WORTH_A_THREAD && columns.len() > 1 {
+        if target.len() * depth / WIDTH > WORTH && columns.len() > 1 {
             let middle = columns.start.midpoint(columns.end);
             let (before, after) = target.split_at_mut(panels::first(rows, middle) - panels::first(rows, columns.start));
             rayon::join(
