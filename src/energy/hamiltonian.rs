@@ -1,5 +1,6 @@
 //! The sum of the terms, on a lattice.
 
+use super::exchange_matrix::ExchangeMatrix;
 use super::{Blocks, Coupling, EnergyTerm, symmetry_axes};
 use crate::error::{Error, Result};
 use crate::field::{Components, ComponentsMut, TILE, project_row, tiles};
@@ -10,7 +11,7 @@ use crate::spins::Spins;
 use multiversion::multiversion;
 use rayon::prelude::*;
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// From this many sites on, the tiles of one image are shared among threads.
 pub const LONG: usize = 32 * 1024;
@@ -34,6 +35,7 @@ pub struct Hamiltonian {
     /// Which terms are asked for all sites together.
     whole: Vec<bool>,
     blocks: Blocks,
+    exchange: OnceLock<ExchangeMatrix>,
     layout: Layout,
     reach: usize,
     stiffness: f64,
@@ -62,6 +64,7 @@ impl Hamiltonian {
             axes: symmetry_axes(&terms, sites),
             layout: lattice.layout(&blocks.bond.iter().map(|bonds| &bonds.family).collect::<Vec<_>>()),
             blocks,
+            exchange: OnceLock::new(),
             whole: terms.iter().map(|t| t.is_whole()).collect(),
             terms,
             long,
@@ -96,6 +99,11 @@ impl Hamiltonian {
     /// In a row, how many sites away the furthest partner with a block is, where a long-ranged term goes on; 0 in other lattices.
     pub fn reach(&self) -> usize {
         self.reach
+    }
+
+    /// The couplings between spins, of one unknown a site.
+    pub fn exchange_matrix(&self) -> &ExchangeMatrix {
+        self.exchange.get_or_init(|| ExchangeMatrix::of(&self.blocks, &self.frozen))
     }
 
     /// How a matrix of its bonds is kept, a long-ranged term apart.

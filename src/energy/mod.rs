@@ -21,6 +21,7 @@ mod dipolar;
 mod dmi;
 mod evaluator;
 mod exchange;
+mod exchange_matrix;
 mod four_spin;
 mod hamiltonian;
 pub mod magnetostatics;

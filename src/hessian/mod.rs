@@ -16,12 +16,14 @@ mod basis;
 mod complement;
 mod far;
 mod free;
+mod resolvent;
 mod stand_in;
 
 pub use assembly::{Assembly, assemble, assemble_into, assemble_shifted};
 pub use basis::{BasisTile, TangentBasis};
 pub use complement::{Complement, Place};
 pub use free::Free;
+pub use resolvent::Resolvent;
 pub use stand_in::StandIn;
 
 use crate::energy::Hamiltonian;

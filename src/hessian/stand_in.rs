@@ -9,22 +9,20 @@
 //! of the images are met to a factor √2: c + s is rounded to c 2^k. (Preconditioning by the exchange operator: Packwood et al.,
 //! J. Chem. Phys. 144, 164109 (2016), doi:10.1063/1.4947024.)
 
-use super::TangentBasis;
 use crate::energy::Hamiltonian;
 use crate::field::Components;
 use crate::geometry::vector;
-use crate::linalg::{Inverse, Multigrid, Rows, multigrid, slab};
+use crate::linalg::{Multigrid, multigrid};
 use std::sync::OnceLock;
 
 /// Most k.
 const LEVELS: usize = 48;
-/// The least of what spins feel beside their neighbours, in parts of the largest stiffness.
-const LEAST: f64 = 1e-9;
 
 /// M + s for all s that are wanted.
 #[derive(Debug)]
 pub struct StandIn {
-    matrix: Rows,
+    /// M.
+    matrix: Multigrid,
     /// The stiffness scale (meV).
     pub c: f64,
     levels: Vec<OnceLock<Multigrid>>,
@@ -37,42 +35,26 @@ impl StandIn {
         for (m, g) in ends {
             stiffness.iter_mut().zip(on_their_own(h, m, g)).for_each(|(most, own)| *most = most.max(own));
         }
-        let mut rows: Vec<Vec<(usize, f64)>> = vec![Vec::new(); h.sites()];
-        for bonds in &h.constant_blocks().bond {
-            for [i, next] in bonds.family.bonds().filter(|bond| !bond.iter().any(|i| h.is_frozen(*i))) {
-                rows[i].push((next, bonds.mean(i)));
-                rows[next].push((i, bonds.mean(i)));
-            }
-        }
-        for (i, row) in rows.iter_mut().enumerate() {
-            let among_equals = row.iter().map(|(_, a)| a).sum::<f64>().abs();
-            row.push((i, if h.is_frozen(i) { h.stiffness_mev() } else { stiffness[i].max(among_equals) }));
-        }
-        let levels = (0..LEVELS).map(|_| OnceLock::new()).collect();
-        StandIn { matrix: Rows::new(h.sites(), rows), c, levels }
+        let among_equals = &h.exchange_matrix().among_equals;
+        stiffness.iter_mut().zip(among_equals).for_each(|(own, among)| *own = own.max(*among));
+        StandIn::of(h, stiffness, c)
     }
 
-    /// For the configuration m with gradient g alone, and with it in c what its spins feel beside their neighbours, on the average.
-    pub fn about(h: &Hamiltonian, m: &[f64], g: &[f64]) -> StandIn {
-        let mut stand_in = StandIn::between(h, &[(m, g)], 0.0);
-        let alone = |(i, own): (usize, f64)| {
-            let others: f64 = stand_in.matrix.row(i).filter(|(j, _)| *j != i).map(|(_, a)| a).sum();
-            (own - others.abs()).abs()
-        };
-        let sum: f64 = on_their_own(h, m, g).into_iter().enumerate().map(alone).sum();
-        stand_in.c = (sum / h.sites() as f64).max(LEAST * h.stiffness_mev());
-        stand_in
+    /// With the stiffness of each spin on its own.
+    pub(super) fn of(h: &Hamiltonian, mut own: Vec<f64>, c: f64) -> StandIn {
+        let frozen = (0..h.sites()).filter(|i| h.is_frozen(*i));
+        frozen.for_each(|i| own[i] = h.stiffness_mev());
+        let exchange = h.exchange_matrix();
+        let matrix = Multigrid::of(exchange.rows.with_diagonal(&own), exchange.coarsening.clone());
+        StandIn { matrix, c, levels: (0..LEVELS).map(|_| OnceLock::new()).collect() }
     }
 
     /// (M + s)⁻¹ v, nearly, of a field of 3N numbers; `room` is memory.
     pub fn solve(&self, s: f64, v: &[f64], out: &mut [f64], room: &mut multigrid::Room) {
         let level = self.level(s);
-        self.levels[level].get_or_init(|| Multigrid::of(self.shifted(level))).solve(v, out, room);
-    }
-
-    /// (M + c)⁻¹ in the tangent space of a basis.
-    pub fn at<'a>(&'a self, basis: &'a TangentBasis) -> StandInAt<'a> {
-        StandInAt { stand_in: self, basis }
+        let shifted = || self.shifted(level);
+        let here = if level == 0 { &self.matrix } else { self.levels[level].get_or_init(shifted) };
+        here.solve(v, out, room);
     }
 
     /// k.
@@ -81,35 +63,13 @@ impl StandIn {
     }
 
     /// M + c (2ᵏ − 1).
-    fn shifted(&self, level: usize) -> Rows {
+    fn shifted(&self, level: usize) -> Multigrid {
         self.matrix.shifted(self.c * (libm::exp2(level as f64) - 1.0))
     }
 }
 
-/// (M + c)⁻¹ in the tangent coordinates of one configuration.
-pub struct StandInAt<'a> {
-    stand_in: &'a StandIn,
-    basis: &'a TangentBasis,
-}
-
-impl Inverse for StandInAt<'_> {
-    fn order(&self) -> usize {
-        2 * self.stand_in.matrix.order()
-    }
-
-    fn solve(&self, x: &mut [f64], columns: usize) {
-        slab::one_by_one(x, columns, |x| {
-            let mut field = vec![0.0; x.len() / 2 * 3];
-            let mut out = field.clone();
-            self.basis.field(x, &mut field);
-            self.stand_in.solve(self.stand_in.c, &field, &mut out, &mut multigrid::Room::default());
-            x.copy_from_slice(&self.basis.coordinates(&out));
-        });
-    }
-}
-
 /// ½ Tr P (A − m·g) P of every spin.
-fn on_their_own(h: &Hamiltonian, m: &[f64], g: &[f64]) -> Vec<f64> {
+pub(super) fn on_their_own(h: &Hamiltonian, m: &[f64], g: &[f64]) -> Vec<f64> {
     let (m, g) = (Components::new(m), Components::new(g));
     let own = h.varying_blocks(m);
     let stiffness = |(i, block): (usize, [[f64; 3]; 3])| {
@@ -125,8 +85,7 @@ mod tests {
     use super::*;
     use crate::energy::test_terms::{hamiltonian, lattice};
     use crate::geometry::Direction;
-    use crate::hessian::assemble;
-    use crate::linalg::{orthonormal, softest};
+    use crate::linalg::slab;
     use crate::spins::Spins;
 
     #[test]
@@ -148,7 +107,8 @@ mod tests {
         v[2 * h.sites()..].fill(0.0);
         // 0.6 is 0.2 (2² − 1), 0.7 is none of these
         for (s, exact, most) in [(0.0, true, 0.3), (0.6, true, 0.2), (0.7, false, 0.3)] {
-            let matrix = stand_in.shifted(stand_in.level(s));
+            let shifted = stand_in.shifted(stand_in.level(s));
+            let matrix = shifted.matrix();
             let product = |x: &[f64], k: usize| -> f64 {
                 let (i, field) = (k % h.sites(), k / h.sites() * h.sites());
                 matrix.row(i).map(|(j, a)| a * x[field + j]).sum()
@@ -167,26 +127,5 @@ mod tests {
             let error = off(&x, &|k| v[k]);
             assert!((1e-3..most).contains(&error), "{s}: {error:e}");
         }
-    }
-
-    #[test]
-    fn where_all_spins_point_along_a_hard_axis_it_still_leads_to_the_lowest_mode() {
-        // M alone is the Laplacian there, which has no inverse; the lowest mode turns all spins to the easy axis: −2K
-        let lattice = lattice(r#"{"square": {"cells": [14, 12]}}"#);
-        let easy = r#"{"anisotropy": {"K": "0.1 meV", "axis": [0, 0, 1]}}"#;
-        let h = hamiltonian(&lattice, &[r#"{"exchange": {"J": ["1 meV"]}}"#, easy]);
-        let m = Spins::uniform(h.sites(), Direction::X);
-        let mut g = vec![0.0; 3 * h.sites()];
-        h.energy_gradient(m.as_slice(), &mut g);
-        let (basis, mut turn) = (TangentBasis::at(m.as_slice()), Vec::new());
-        basis.write_rotation([0.0, 0.0, 1.0], &mut turn);
-        let (hessian, turns) = (assemble(&h, m.as_slice(), &g, &basis), orthonormal(vec![turn], 0.5));
-        let stand_in = StandIn::about(&h, m.as_slice(), &g);
-        assert!((stand_in.c - 0.1).abs() < 1e-12, "{}", stand_in.c);
-        let modes = softest(&hessian, 2, &turns, &stand_in.at(&basis), &|| false).expect("they are found");
-        let told = modes.iter().map(|mode| mode.value);
-        // the next is the longest wave along the longer side
-        let wave = -0.2 + 2.0 * (1.0 - libm::cos(std::f64::consts::PI / 14.0));
-        assert!(told.zip([-0.2, wave]).all(|(value, exact)| (value - exact).abs() < 1e-11), "{modes:?}");
     }
 }

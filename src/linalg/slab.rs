@@ -73,12 +73,25 @@ pub fn overlaps(vectors: &[Vec<f64>], v: &[f64]) -> Vec<f64> {
     sums
 }
 
-/// v ← v + Σ w_k v_k, tile by tile.
+/// v ← v + Σ w_k v_k, tile by tile, four vectors at a time.
 pub fn add_all(v: &mut [f64], weights: &[f64], vectors: &[Vec<f64>]) {
     for (k, tile) in v.chunks_mut(WORK).enumerate() {
-        for (w, b) in weights.iter().zip(vectors) {
-            add_scaled(tile, *w, &b[k * WORK..k * WORK + tile.len()]);
+        let here = k * WORK..k * WORK + tile.len();
+        let (fours, rest) = (weights.chunks_exact(4), weights.chunks_exact(4).remainder());
+        for (w, b) in fours.zip(vectors.chunks_exact(4)) {
+            add_four(tile, [w[0], w[1], w[2], w[3]], [0, 1, 2, 3].map(|j| &b[j][here.clone()]));
         }
+        for (w, b) in rest.iter().zip(&vectors[weights.len() - rest.len()..]) {
+            add_scaled(tile, *w, &b[here.clone()]);
+        }
+    }
+}
+
+/// y ← (((y + s_0 x_0) + s_1 x_1) + s_2 x_2) + s_3 x_3.
+#[multiversion(targets("x86_64+avx2"))]
+fn add_four(y: &mut [f64], s: [f64; 4], [a, b, c, d]: [&[f64]; 4]) {
+    for ((((y, a), b), c), d) in y.iter_mut().zip(a).zip(b).zip(c).zip(d) {
+        *y = *y + s[0] * a + s[1] * b + s[2] * c + s[3] * d;
     }
 }
 

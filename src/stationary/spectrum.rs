@@ -66,8 +66,7 @@ impl Spectrum {
 pub fn lowest_eigenvalues_mev(h: Evaluator, state: &State, count: usize) -> Vec<f64> {
     let frozen = (0..h.sites()).filter(|&i| h.is_frozen(i)).count();
     let free = (state.hessian.order() - 2 * frozen).saturating_sub(state.zeros.len());
-    let modes = state.lowest_modes(h, count.min(free));
-    modes.into_iter().map(|m| m.value).collect()
+    state.lowest_eigenvalues_mev(h, count.min(free))
 }
 
 /// The factors of a Hessian + shift·1 whose zero modes are pinned.

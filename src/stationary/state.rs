@@ -2,14 +2,14 @@
 
 use super::point::Point;
 use crate::energy::Evaluator;
-use crate::hessian::StandIn;
-use crate::linalg::{Matrix, Mode, lowest_modes, softest};
+use crate::hessian::Resolvent;
+use crate::linalg::{Matrix, Mode, Wanted, lowest_modes, softest};
 use crate::sphere::move_points;
 use serde::{Deserialize, Serialize};
 use std::ops::Deref;
 
-/// Modes are found sooner without factors where those take so many solutions' arithmetic: from films of some 100² sites on, cubes of 12³.
-const DEAR: f64 = 24.0;
+/// Modes are found sooner without factors where those take so many solutions' arithmetic: from films of some 130² sites on, cubes of 12³.
+const DEAR: f64 = 36.0;
 
 /// Everything a Newton step needs, at one configuration: all that a [`Point`] has, and the Hessian.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -49,9 +49,19 @@ impl State {
 
     /// The lowest modes, so many if there are, zero modes apart; where factors take long, without them if that can be had.
     pub fn lowest_modes(&self, h: Evaluator, count: usize) -> Vec<Mode> {
+        self.modes(h, count, Wanted::Vectors)
+    }
+
+    /// Their eigenvalues (meV) alone.
+    pub fn lowest_eigenvalues_mev(&self, h: Evaluator, count: usize) -> Vec<f64> {
+        self.modes(h, count, Wanted::Values).into_iter().map(|mode| mode.value).collect()
+    }
+
+    fn modes(&self, h: Evaluator, count: usize, wanted: Wanted) -> Vec<Mode> {
         let iterated = || {
-            let stand_in = StandIn::about(&h, &self.m, &self.gradient);
-            softest(&self.hessian, count, &self.zeros, &stand_in.at(&self.basis), &|| h.is_stopped())
+            let nearly = Resolvent::at(&h, &self.m, &self.gradient, &self.basis);
+            let apply = |x: &mut [f64], theta: f64| nearly.apply(x, theta);
+            softest(&self.hessian, count, &self.zeros, wanted, &apply, &|| h.is_stopped())
         };
         let found = (h.solutions_a_factor() > DEAR).then(iterated).flatten();
         found.unwrap_or_else(|| lowest_modes(&self.hessian, count, &self.zeros))

@@ -1,11 +1,58 @@
 //! Which unknowns stay on the next level, and how the others follow from them.
 
-use super::Rows;
+use super::{FEW, Rows};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 /// An entry couples strongly that is at least this part of the largest of its row.
 const STRONG: f64 = 0.25;
+/// Fewer unknowns are not gained by a level that leaves more than this part of them.
+const GAIN: f64 = 0.9;
+
+/// How the unknowns of every level follow from those of the next, for all matrices that couple them alike.
+#[derive(Debug)]
+pub struct Coarsening(Vec<Step>);
+
+/// From one level to the next.
+#[derive(Debug)]
+pub(super) struct Step {
+    /// P.
+    pub p: Rows,
+    /// Pᵀ.
+    pub back: Rows,
+    /// What the unit matrix of the first level is on the next.
+    pub square: Rows,
+}
+
+impl Coarsening {
+    /// Of a symmetric positive semidefinite matrix, every row with an entry of its own.
+    pub fn of(matrix: &Rows) -> Coarsening {
+        let mut steps: Vec<Step> = Vec::new();
+        let mut next: Option<Rows> = None;
+        loop {
+            let matrix = next.as_ref().unwrap_or(matrix);
+            if matrix.order() <= FEW {
+                break;
+            }
+            let p = interpolation(matrix);
+            if p.columns() == 0 || p.columns() as f64 >= GAIN * matrix.order() as f64 {
+                break;
+            }
+            let back = p.transposed();
+            let square = match steps.last() {
+                None => back.product(&p),
+                Some(before) => back.product(&before.square).product(&p),
+            };
+            next = Some(back.product(matrix).product(&p));
+            steps.push(Step { p, back, square });
+        }
+        Coarsening(steps)
+    }
+
+    pub(super) fn steps(&self) -> &[Step] {
+        &self.0
+    }
+}
 
 /// What an unknown is to the next level.
 #[derive(Clone, Copy, PartialEq)]
@@ -22,7 +69,7 @@ enum Kind {
 /// follows   P_ij = −α A_ij / A_ii,   α = Σ_k A_ik / Σ_j A_ij over entries of the sign of A_ij, all of them and those that stay and
 ///                                    couple strongly; where none of a sign does, entries of this sign count for A_ii
 /// ```
-pub fn interpolation(matrix: &Rows) -> Rows {
+fn interpolation(matrix: &Rows) -> Rows {
     let strong = strong(matrix);
     let kinds = split(&strong);
     let mut number = vec![0; kinds.len()];

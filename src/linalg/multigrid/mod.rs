@@ -14,34 +14,40 @@
 mod coarse;
 mod rows;
 
+pub use coarse::Coarsening;
 pub use rows::Rows;
 
 use super::solve_dense;
+use coarse::Step;
 use multiversion::multiversion;
+use std::sync::Arc;
 
 /// Numbers of an unknown that are worked on together: a field has three components, and four fill a register.
 type Wide = [f64; 4];
 /// So few unknowns are solved for at once.
 const FEW: usize = 40;
-/// Fewer unknowns are not gained by a level that leaves more than this part of them.
-const GAIN: f64 = 0.9;
 
 /// A matrix, level after level.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Multigrid {
     levels: Vec<Level>,
+    coarsening: Arc<Coarsening>,
     /// The inverse of the last matrix, row after row, if it has few unknowns.
     inverse: Vec<f64>,
 }
 
-/// One matrix, and how its unknowns follow from those of the next.
-#[derive(Debug)]
+/// One matrix.
+#[derive(Clone, Debug)]
 struct Level {
     matrix: Rows,
     /// ω / A_ii.
     damped: Vec<f64>,
-    /// Pᵀ and P, where there is a next.
-    down: Option<(Rows, Rows)>,
+}
+
+impl Level {
+    fn of(matrix: Rows) -> Level {
+        Level { damped: damped(&matrix), matrix }
+    }
 }
 
 /// Memory of a solution: right-hand sides, solutions and residuals of every level.
@@ -49,20 +55,33 @@ struct Level {
 pub struct Room(Vec<[Vec<Wide>; 3]>);
 
 impl Multigrid {
-    /// Of a symmetric positive definite matrix.
-    pub fn of(matrix: Rows) -> Multigrid {
-        let mut levels = Vec::new();
-        let mut next = Some(matrix);
-        while let Some(matrix) = next.take() {
-            let n = matrix.order();
-            let down = (n > FEW).then(|| coarse::interpolation(&matrix));
-            let down = down.filter(|p| p.columns() > 0 && (p.columns() as f64) < GAIN * n as f64);
-            let down = down.map(|p| (p.transposed(), p));
-            next = down.as_ref().map(|(back, p)| back.product(&matrix).product(p));
-            levels.push(Level { damped: damped(&matrix), matrix, down });
+    /// Of a symmetric positive definite matrix with entries where the one has them of which this is the coarsening.
+    pub fn of(matrix: Rows, coarsening: Arc<Coarsening>) -> Multigrid {
+        let mut levels = vec![Level::of(matrix)];
+        for step in coarsening.steps() {
+            let fine = &levels.last().expect("a level").matrix;
+            levels.push(Level::of(step.back.product(fine).product(&step.p)));
         }
+        Multigrid::new(levels, coarsening)
+    }
+
+    /// Of the matrix + s·1.
+    pub fn shifted(&self, s: f64) -> Multigrid {
+        let squares = self.coarsening.steps().iter().map(|step| &step.square);
+        let mut levels = vec![Level::of(self.levels[0].matrix.shifted(s))];
+        levels.extend(self.levels[1..].iter().zip(squares).map(|(l, square)| Level::of(l.matrix.plus(s, square))));
+        Multigrid::new(levels, self.coarsening.clone())
+    }
+
+    fn new(levels: Vec<Level>, coarsening: Arc<Coarsening>) -> Multigrid {
         let inverse = levels.last().map(|level| inverse(&level.matrix)).unwrap_or_default();
-        Multigrid { levels, inverse }
+        Multigrid { levels, coarsening, inverse }
+    }
+
+    /// The matrix.
+    #[cfg(test)]
+    pub fn matrix(&self) -> &Rows {
+        &self.levels[0].matrix
     }
 
     /// Number of unknowns.
@@ -90,8 +109,8 @@ impl Multigrid {
     fn cycle(&self, k: usize, room: &mut [[Vec<Wide>; 3]]) {
         let level = &self.levels[k];
         let ([b, x, rest], below) = room.split_first_mut().expect("a room a level");
-        match &level.down {
-            Some((back, p)) => {
+        match self.coarsening.steps().get(k) {
+            Some(Step { back, p, .. }) => {
                 first(&level.damped, b, x);
                 residual(&level.matrix, b, x, rest);
                 multiply(back, rest, &mut below[0][0]);
@@ -202,6 +221,26 @@ mod tests {
         Rows::new(n, rows)
     }
 
+    fn alone(matrix: Rows) -> Multigrid {
+        let coarsening = Arc::new(Coarsening::of(&matrix));
+        Multigrid::of(matrix, coarsening)
+    }
+
+    #[test]
+    fn what_is_shifted_is_what_is_made_of_the_shifted_matrix() {
+        let matrix = lattice([20, 15, 1], -1.0, 0.3, 0.1, 0.01);
+        let grid = alone(matrix.clone());
+        let [one, other] = [grid.shifted(0.7), Multigrid::of(matrix.shifted(0.7), grid.coarsening.clone())];
+        assert!(one.levels.len() > 2);
+        for (p, q) in one.levels.iter().zip(&other.levels) {
+            for i in 0..q.matrix.order() {
+                for ((j, a), (k, b)) in p.matrix.row(i).zip(q.matrix.row(i)) {
+                    assert!(j == k && (a - b).abs() < 1e-14, "{i} {j} {k} {a} {b}");
+                }
+            }
+        }
+    }
+
     fn product(matrix: &Rows, x: &[f64]) -> Vec<f64> {
         let n = matrix.order();
         (0..3 * n).map(|k| matrix.row(k % n).map(|(j, a)| a * x[k / n * n + j]).sum()).collect()
@@ -209,7 +248,7 @@ mod tests {
 
     /// Steps of conjugate gradients to a part 1e-8 of the residual.
     fn steps(matrix: &Rows) -> usize {
-        let grid = Multigrid::of(matrix.clone());
+        let grid = alone(matrix.clone());
         let mut r = ChaCha8Rng::seed_from_u64(4);
         let exact: Vec<f64> = (0..3 * matrix.order()).map(|_| r.random_range(-1.0..1.0)).collect();
         let mut rest = product(matrix, &exact);
@@ -248,7 +287,7 @@ mod tests {
 
     #[test]
     fn what_neighbours_do_not_couple_is_inverted_by_itself() {
-        let grid = Multigrid::of(lattice([60, 2, 1], -1.0, 0.0, 1.0, 0.5));
+        let grid = alone(lattice([60, 2, 1], -1.0, 0.0, 1.0, 0.5));
         let v: Vec<f64> = (0..360).map(f64::from).collect();
         let mut x = vec![0.0; 360];
         grid.solve(&v, &mut x, &mut Room::default());
@@ -260,7 +299,7 @@ mod tests {
         let mut r = ChaCha8Rng::seed_from_u64(5);
         for size in [[5, 4, 2], [30, 31, 1]] {
             let matrix = lattice(size, -1.0, 0.3, 0.1, 0.01);
-            let grid = Multigrid::of(matrix.clone());
+            let grid = alone(matrix.clone());
             let [v, w]: [Vec<f64>; 2] =
                 [(); 2].map(|()| (0..3 * matrix.order()).map(|_| r.random_range(-1.0..1.0)).collect());
             let [bv, bw] = [&v, &w].map(|v| {

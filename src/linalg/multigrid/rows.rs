@@ -90,6 +90,28 @@ impl Rows {
         shifted
     }
 
+    /// The same with other entries (i, i), which must be there.
+    pub fn with_diagonal(&self, own: &[f64]) -> Rows {
+        let mut changed = self.clone();
+        for (i, own) in own.iter().enumerate() {
+            self.own(i).into_iter().for_each(|place| changed.entries[place] = *own);
+        }
+        changed
+    }
+
+    /// The same + s times a matrix that has entries only where this has some.
+    pub(super) fn plus(&self, s: f64, other: &Rows) -> Rows {
+        let mut sum = self.clone();
+        for i in 0..self.order() {
+            let mut places = self.starts[i] as usize..self.starts[i + 1] as usize;
+            for (j, a) in other.row(i) {
+                let place = places.find(|place| self.at[*place] as usize == j);
+                sum.entries[place.expect("an entry there")] += s * a;
+            }
+        }
+        sum
+    }
+
     /// Row i times a vector of columns.
     #[inline(always)]
     pub(super) fn times(&self, i: usize, x: &[Wide]) -> Wide {
