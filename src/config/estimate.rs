@@ -9,8 +9,9 @@
 //! to each. The search for lower passes takes some
 //! 480, and as much as the path for each of the d domains that its ends consist of, through which it may lead; 0 for both where there
 //! is none. The gradient is measured; eigenvalues and proofs are in the factor 2.5, and figures take what the constants say on a usual
-//! machine. With these the shipped configs take what is said within a factor of 3 (`cargo bench --bench estimate`); paths through many
-//! minima, and ends that are far from their minima, take longer.
+//! machine. Where factors are very dear few are made, and a gradient goes with solutions by iteration. With these the shipped configs
+//! take what is said within a factor of 3 (`cargo bench --bench estimate`); paths through many minima, and ends that are far from their
+//! minima, take longer.
 
 use super::{Loaded, expected_images};
 use crate::drive::{Images, Problem, Scales, third_states};
@@ -18,6 +19,7 @@ use crate::hessian::{TangentBasis, assemble_shifted};
 use crate::landscape::Effort;
 use crate::linalg::Matrix;
 use crate::path::guess::moving_sites;
+use crate::stationary::is_very_dear;
 use std::time::Instant;
 
 /// Gradients of each image until the band has converged.
@@ -33,6 +35,9 @@ const PINNED: f64 = 2.0;
 const IMAGES_A_SADDLE: usize = 4;
 /// What a gradient of a run takes beside itself, as a factor.
 const PROOFS: f64 = 2.5;
+/// Where factors are very dear, so many are made, each by all threads, and a gradient takes the time of so many solutions by them.
+const FACTORS: f64 = 16.0;
+const SOLUTIONS: f64 = 16.0;
 /// Figures as pixels and as vectors, and what each image adds to either (s).
 const PIXELS_S: f64 = 0.2;
 const VECTORS_S: f64 = 0.03;
@@ -81,7 +86,15 @@ impl Estimate {
         let images = AN_IMAGE_S * self.images as f64;
         let figures = |name: &str, own: f64| if plots.iter().any(|plot| plot == name) { own + images } else { 0.0 };
         let drawn = figures("png", PIXELS_S) + figures("svg", VECTORS_S);
-        drawn + PROOFS * self.evaluations as f64 * gradient_seconds(problem, scales)
+        let (h, gradient) = (&problem.hamiltonian, gradient_seconds(problem, scales));
+        let evaluations = self.evaluations as f64;
+        drawn
+            + if is_very_dear(h) {
+                let factors = FACTORS * rayon::current_num_threads() as f64;
+                gradient * (factors + SOLUTIONS * evaluations / h.solutions_a_factor())
+            } else {
+                gradient * PROOFS * evaluations
+            }
     }
 }
 

@@ -17,8 +17,7 @@ use crate::path::guess::{FirstGuess, GuessContext, Rotation};
 use crate::path::is_within;
 use crate::sphere::SAME;
 use crate::spins::Spins;
-use crate::stationary::{ALIKE, LOWER, RELAXED, Relaxed, relax_to_minimum};
-use crate::threads::both;
+use crate::stationary::{ALIKE, LOWER, RELAXED, Relaxed, both_by_factors, relax_to_minimum};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -228,6 +227,6 @@ impl<'a, 'o> Run<'a, 'o> {
 /// The minima that two states relax to.
 fn relaxed_ends(h: Evaluator, given: [&Spins; 2]) -> Result<[Relaxed; 2]> {
     let relax = |spins: &Spins| relax_to_minimum(h, spins, RELAXED * h.stiffness_mev());
-    let (a, b) = both(3 * h.sites(), || relax(given[0]), || relax(given[1]));
+    let (a, b) = both_by_factors(&h, || relax(given[0]), || relax(given[1]));
     Ok([a?, b?])
 }

@@ -4,9 +4,9 @@
 //! (M + s)⁻¹,   s = c̄ − θ where that is positive, at least the stiffness of the longest wave
 //! ```
 //! M is the stiffness between spins (see [`StandIn`]), each held by the others with |Σ_j J_ij| at least and Σ_j |J_ij| at most, and with
-//! what it feels beside them more than the average c̄: H − c̄ where all spins point one way. A mode that is bound at a wall or a core has θ far below c̄, and s is its distance from the waves of the rest; the
-//! lowest of those have θ near c̄, a long wave's stiffness apart. (Preconditioned eigenvalue problems: Y. Notay, Numer. Linear Algebra
-//! Appl. 9, 21 (2002), doi:10.1002/nla.246.)
+//! what it feels beside them more than the average c̄: H − c̄ where all spins point one way. A mode that is bound at a wall or a core has
+//! θ far below c̄, and s is its distance from the waves of the rest; the lowest of those have θ near c̄, a long wave's stiffness apart.
+//! (Preconditioned eigenvalue problems: Y. Notay, Numer. Linear Algebra Appl. 9, 21 (2002), doi:10.1002/nla.246.)
 
 use super::TangentBasis;
 use super::stand_in::{StandIn, on_their_own};
@@ -69,7 +69,7 @@ mod tests {
     use crate::energy::test_terms::{hamiltonian, lattice};
     use crate::geometry::Direction;
     use crate::hessian::assemble;
-    use crate::linalg::{Wanted, orthonormal, softest};
+    use crate::linalg::{Wanted, lowest_modes, orthonormal, softest};
     use crate::spins::Spins;
 
     #[test]
@@ -92,5 +92,35 @@ mod tests {
         // the next is the longest wave along the longer side
         let wave = -0.2 + 2.0 * (1.0 - libm::cos(std::f64::consts::PI / 14.0));
         assert!(told.zip([-0.2, wave]).all(|(value, exact)| (value - exact).abs() < 1e-11), "{modes:?}");
+    }
+    /// A spin, of any length, at a place.
+    type Spin = fn([f64; 3]) -> [f64; 3];
+
+    #[test]
+    fn it_leads_to_the_modes_of_antiferromagnets_spirals_and_walls() {
+        let square = lattice(r#"{"square": {"cells": [24, 16]}}"#);
+        let easy = r#"{"anisotropy": {"K": "0.1 meV", "axis": [0, 0, 1]}}"#;
+        let states: [(&str, Spin); 3] = [
+            ("-1 meV", |p| [0.0, 0.0, if (p[0] + p[1]).round() as i64 % 2 == 0 { 1.0 } else { -1.0 }]),
+            ("1 meV\", \"0.1 meV\", \"-0.5 meV", |p| [(1.0 * p[0]).cos(), (1.0 * p[0]).sin(), 0.2]),
+            ("1 meV", |p| [1.0 / (0.4 * (p[0] - 9.3)).cosh(), 0.0, (0.4 * (p[0] - 9.3)).tanh()]),
+        ];
+        for (j, spin) in states {
+            let h = hamiltonian(&square, &[&format!(r#"{{"exchange": {{"J": ["{j}"]}}}}"#), easy]);
+            let vectors: Vec<[f64; 3]> = (0..h.sites()).map(|i| spin(square.position(i))).collect();
+            let flat: Vec<f64> = (0..3).flat_map(|c| vectors.iter().map(move |v| v[c])).collect();
+            let m = Spins::from_components(&flat).expect("unit vectors");
+            let mut g = vec![0.0; 3 * h.sites()];
+            h.energy_gradient(m.as_slice(), &mut g);
+            let basis = TangentBasis::at(m.as_slice());
+            let hessian = assemble(&h, m.as_slice(), &g, &basis);
+            let nearly = Resolvent::at(&h, m.as_slice(), &g, &basis);
+            let apply = |x: &mut [f64], theta: f64| nearly.apply(x, theta);
+            let exact = lowest_modes(&hessian, 3, &[]);
+            let modes = softest(&hessian, 3, &[], Wanted::Values, &apply, &|| false).expect("they are found");
+            for (mode, exact) in modes.iter().zip(&exact) {
+                assert!((mode.value - exact.value).abs() < 1e-10, "{j}: {} {}", mode.value, exact.value);
+            }
+        }
     }
 }

@@ -40,6 +40,14 @@ impl StandIn {
         StandIn::of(h, stiffness, c)
     }
 
+    /// For configurations like the one m with gradient g, whose spins are held by c (meV) at least beside their neighbours.
+    pub fn about(h: &Hamiltonian, m: &[f64], g: &[f64], c: f64) -> StandIn {
+        let mut stiffness = on_their_own(h, m, g);
+        let among_equals = &h.exchange_matrix().among_equals;
+        stiffness.iter_mut().zip(among_equals).for_each(|(own, among)| *own = own.max(among + c));
+        StandIn::of(h, stiffness, c)
+    }
+
     /// With the stiffness of each spin on its own.
     pub(super) fn of(h: &Hamiltonian, mut own: Vec<f64>, c: f64) -> StandIn {
         let frozen = (0..h.sites()).filter(|i| h.is_frozen(*i));

@@ -7,9 +7,8 @@ use crate::geometry::vector;
 use crate::path::{is_within, largest_angle};
 use crate::sphere::SAME;
 use crate::spins::Spins;
-use crate::stationary::{FLAT, Spectrum, State};
+use crate::stationary::{FLAT, Spectrum, State, both_by_factors};
 use crate::symmetry::Operation;
-use crate::threads::both;
 use serde::{Deserialize, Serialize};
 
 /// A stationary state with its spectrum.
@@ -34,7 +33,7 @@ impl Minimum {
     /// Two of them.
     pub fn examine_both(h: Evaluator, spins: [&Spins; 2]) -> [Minimum; 2] {
         let [a, b] = spins;
-        both(3 * h.sites(), || Minimum::examine(h, a), || Minimum::examine(h, b)).into()
+        both_by_factors(&h, || Minimum::examine(h, a), || Minimum::examine(h, b)).into()
     }
 
     /// The same with so many of its lowest eigenvalues.

@@ -14,6 +14,7 @@ use super::spectrum::Spectrum;
 use super::state::State;
 use super::tolerances::{ALIKE, LARGER, LAST_SHIFT, RELAXED, SHARP, STEP};
 use super::trail::Trail;
+use super::unfactored::Unfactored;
 use crate::energy::Evaluator;
 use crate::field::project;
 use crate::linalg::{Factors, Matrix, slab};
@@ -32,6 +33,8 @@ const GROWTH: f64 = 1.4;
 /// are taken more where the slope is not the valley's.
 const CORRECTIONS: usize = 3;
 const ON_THE_WAY: f64 = 0.1;
+/// What is added to the Hessian across the valley, in parts of the stiffness scale.
+const SHIFT: f64 = 1e-6;
 /// A step that ends by a correction larger than this part of it, or falls by another amount than the slopes at its ends tell,
 /// to this factor, may have left its valley for the next: a shorter one is taken.
 const ASTRAY: f64 = 0.5;
@@ -84,6 +87,7 @@ pub fn descend(h: Evaluator, saddle: &State, valley: &[f64], c: f64, beside: &[&
         last: None,
         trail: Trail::from(&saddle.m),
         room: Room::default(),
+        unfactored: Unfactored::below(&h, &saddle.point, c),
     };
     let arrived = h.has_dear_factors() && walk.roll() || walk.down();
     Descent { fallen_mev: saddle.above_mev(&walk.here), arrived, m: walk.here.m, way: walk.trail.into_points() }
@@ -103,6 +107,8 @@ struct Walk<'a> {
     last: Option<(Vec<f64>, f64)>,
     trail: Trail,
     room: Room,
+    /// In place of factors.
+    unfactored: Option<Unfactored>,
 }
 
 /// Memory for the linear algebra.
@@ -336,10 +342,27 @@ impl Walk<'_> {
     /// One Newton step across the valley, which bends away from any step along it, and the valley's direction there; its size
     /// (rad, any spin). None where the valley is lost: straight on, the descent will find the way.
     fn correct(&mut self) -> Option<f64> {
+        if self.unfactored.is_some() {
+            self.iterate_across()?
+        } else {
+            self.solve_across()?
+        }
+        let v = &mut self.room.v;
+        let rotation = rotation_of(v);
+        if rotation > STEP {
+            slab::scale(v, STEP / rotation);
+        }
+        self.next.move_by(self.h, v);
+        project(&self.next.m, &mut self.tau);
+        Some(rotation)
+    }
+
+    /// Newton's step across the valley, in `v`, and its direction, in `tau`, by factors.
+    fn solve_across(&mut self) -> Option<()> {
         let Room { pinned: p, x, v, .. } = &mut self.room;
         let kappa = Pinned::strength_mev(self.h, self.c);
         let mut matrix = p.take_memory();
-        self.next.write_hessian(self.h, 1e-6 * self.c, &mut matrix);
+        self.next.write_hessian(self.h, SHIFT * self.c, &mut matrix);
         self.next.basis.write_coordinates(&self.tau, x);
         p.factor(matrix, &self.next.zeros, x, kappa);
         p.write_valley(x);
@@ -350,13 +373,25 @@ impl Walk<'_> {
         self.next.write_downhill(x);
         p.solve_in_place(x);
         self.next.write_field(x, v);
-        let rotation = rotation_of(v);
-        if rotation > STEP {
-            slab::scale(v, STEP / rotation);
+        Some(())
+    }
+
+    /// The same without.
+    fn iterate_across(&mut self) -> Option<()> {
+        let Room { x, v, .. } = &mut self.room;
+        let unfactored = self.unfactored.as_mut()?;
+        let size = slab::norm(&self.tau);
+        slab::scale(&mut self.tau, 1.0 / size);
+        let valley = unfactored.valley(&self.h, &self.next, SHIFT * self.c, &self.tau)?;
+        if 1.0 < ON_THE_WAY * slab::norm(&valley) {
+            return None;
         }
-        self.next.move_by(self.h, v);
-        project(&self.next.m, &mut self.tau);
-        Some(rotation)
+        self.next.write_downhill(x);
+        self.next.write_field(x, v);
+        let across = unfactored.solve(&self.h, &self.next, SHIFT * self.c, &[&self.tau], v)?;
+        v.copy_from_slice(across);
+        self.tau = valley;
+        Some(())
     }
 
     /// Implicit Euler down the gradient, to a point where it vanishes; `near` such a point 1/Δt is no larger than the torque.
@@ -423,15 +458,22 @@ impl Walk<'_> {
     /// H + rate is not positive definite.
     fn leap(&mut self, rate: f64) -> Option<f64> {
         let Room { matrix, x, v, .. } = &mut self.room;
-        self.here.write_hessian(self.h, rate, matrix);
         self.here.write_downhill(x);
-        let factors = Factors::solving(take(matrix), x, 1);
-        let positive = factors.negatives() == 0;
-        *matrix = factors.into_memory();
-        if !positive {
-            return None;
+        if let Some(unfactored) = &mut self.unfactored {
+            self.here.write_field(x, v);
+            let down = unfactored.solve(&self.h, &self.here, rate, &[], v)?;
+            v.copy_from_slice(down);
+            self.here.basis.write_coordinates(v, x);
+        } else {
+            self.here.write_hessian(self.h, rate, matrix);
+            let factors = Factors::solving(take(matrix), x, 1);
+            let positive = factors.negatives() == 0;
+            *matrix = factors.into_memory();
+            if !positive {
+                return None;
+            }
+            self.here.write_field(x, v);
         }
-        self.here.write_field(x, v);
         let rotation = rotation_of(v);
         let part = if rotation > STEP { STEP / rotation } else { 1.0 };
         slab::scale(v, part);

@@ -20,6 +20,7 @@ mod state;
 mod step;
 mod tolerances;
 mod trail;
+mod unfactored;
 mod valley;
 
 pub(crate) use border::{Border, Pin, pin};
@@ -30,6 +31,6 @@ pub use point::Point;
 pub use relax::{Relaxed, WayDown, relax_to_minimum};
 pub use search::{Climb, GaveUp, Limits, STEPS, Saddle, climb};
 pub use spectrum::{Spectrum, lowest_eigenvalues_mev};
-pub use state::State;
+pub use state::{State, both_by_factors, is_very_dear};
 pub use tolerances::{ALIKE, FLAT, LOWER, RELAXED, STATIONARY, STRIDE};
 pub use valley::{Refined, refine};

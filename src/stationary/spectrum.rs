@@ -30,13 +30,16 @@ pub struct Spectrum {
 }
 
 impl Spectrum {
-    /// Of a state, with `count` of its eigenvalues. The counts of signs cost two factorisations; eigenvalues cost far more.
+    /// Of a state, with `count` of its eigenvalues. The counts of signs cost two factorisations, one where none is
+    /// negative; eigenvalues cost far more.
     pub fn of(h: Evaluator, state: &State, count: usize) -> Spectrum {
         let norm_mev = state.hessian.norm1();
         let floor_mev = floor_mev(h, norm_mev);
         let below = |shift: f64| pinned(h, state.hessian.clone(), &state.zeros, shift).negatives();
-        let negative = below(floor_mev);
-        let flat = below(-floor_mev).saturating_sub(negative);
+        let below_floor = below(-floor_mev);
+        // most states that are looked at are minima, and need no more
+        let negative = if below_floor == 0 { 0 } else { below(floor_mev) };
+        let flat = below_floor.saturating_sub(negative);
         let lowest_mev = lowest_eigenvalues_mev(h, state, count);
         Spectrum { negative, flat, zero: state.zeros.len(), floor_mev, norm_mev, lowest_mev }
     }

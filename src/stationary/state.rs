@@ -1,15 +1,32 @@
 //! A configuration with its Hessian.
 
 use super::point::Point;
-use crate::energy::Evaluator;
+use crate::energy::{Evaluator, Hamiltonian};
 use crate::hessian::Resolvent;
 use crate::linalg::{Matrix, Mode, Wanted, lowest_modes, softest};
 use crate::sphere::move_points;
+use crate::threads::both;
 use serde::{Deserialize, Serialize};
 use std::ops::Deref;
 
-/// Modes are found sooner without factors where those take so many solutions' arithmetic: from films of some 130² sites on, cubes of 12³.
-const DEAR: f64 = 36.0;
+/// Factors are very dear where they take the arithmetic of so many solutions by them: in films of some 130² sites and more, cubes of
+/// 12³.
+const DEAR: f64 = 30.0;
+
+/// Whether factors of a Hessian take so long that modes and descents are found sooner without.
+pub fn is_very_dear(h: &Hamiltonian) -> bool {
+    h.solutions_a_factor() > DEAR
+}
+
+/// Two computations with factors of `h`, side by side; one after the other where all threads share the work of one factor, whose memory
+/// two would take twice.
+pub fn both_by_factors<A: Send, B: Send>(
+    h: &Hamiltonian,
+    a: impl FnOnce() -> A + Send,
+    b: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    if is_very_dear(h) { (a(), b()) } else { both(3 * h.sites(), a, b) }
+}
 
 /// Everything a Newton step needs, at one configuration: all that a [`Point`] has, and the Hessian.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -63,7 +80,7 @@ impl State {
             let apply = |x: &mut [f64], theta: f64| nearly.apply(x, theta);
             softest(&self.hessian, count, &self.zeros, wanted, &apply, &|| h.is_stopped())
         };
-        let found = (h.solutions_a_factor() > DEAR).then(iterated).flatten();
+        let found = is_very_dear(&h).then(iterated).flatten();
         found.unwrap_or_else(|| lowest_modes(&self.hessian, count, &self.zeros))
     }
 
