@@ -321,6 +321,20 @@ fn a_descent_ends_at_a_minimum_beside_it_where_it_has_reached_that_and_nowhere_e
 }
 
 #[test]
+fn a_cube_whose_descents_go_without_factors_takes_the_way_and_the_work_of_one_with_them() {
+    let k = 0.1;
+    let found = by_default(problem(&format!(
+        r#"{{"material": {{"name": "cube", "moment": "1 mu_B", "energy": [{{"exchange": {{"J": ["1 meV"]}}}},
+            {{"anisotropy": {{"K": "{k} meV", "axis": [0, 0, 1]}}}}]}},
+            "lattice": {{"cubic": {{"cells": [16, 16, 16]}}}}, "initial": {UP}, "final": {DOWN}}}"#
+    )));
+    assert!(found.certified, "{:?}", found.warnings);
+    // with factors: 226.2930114606627 meV in 4 evaluations and 698 gradients
+    assert!((found.barrier.unwrap().forward_mev - 226.29301146066).abs() < 1e-9, "{:?}", found.barrier);
+    assert!(found.work.iterations <= 8 && found.work.force_evaluations < 900, "{:?}", found.work);
+}
+
+#[test]
 fn a_search_that_slides_down_the_path_to_the_hop_of_a_skyrmion_finds_no_saddle() {
     let problem = skyrmion(20, 1.0, 10.0);
     let h = &problem.hamiltonian;

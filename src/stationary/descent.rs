@@ -388,7 +388,7 @@ impl Walk<'_> {
         }
         self.next.write_downhill(x);
         self.next.write_field(x, v);
-        let across = unfactored.solve(&self.h, &self.next, SHIFT * self.c, &[&self.tau], v)?;
+        let across = unfactored.solve(&self.h, &self.next, SHIFT * self.c, Some(&self.tau), v)?;
         v.copy_from_slice(across);
         self.tau = valley;
         Some(())
@@ -461,7 +461,7 @@ impl Walk<'_> {
         self.here.write_downhill(x);
         if let Some(unfactored) = &mut self.unfactored {
             self.here.write_field(x, v);
-            let down = unfactored.solve(&self.h, &self.here, rate, &[], v)?;
+            let down = unfactored.solve(&self.h, &self.here, rate, None, v)?;
             v.copy_from_slice(down);
             self.here.basis.write_coordinates(v, x);
         } else {

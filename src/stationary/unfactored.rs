@@ -3,13 +3,18 @@
 //! film may tilt to either side, and what tells the sides apart grows on the way.
 
 use super::point::Point;
-use super::state::is_very_dear;
 use crate::energy::Hamiltonian;
 use crate::hessian::{Complement, Place, StandIn};
 use crate::linalg::{orthonormal, slab};
 
-/// The residual that is left.
-const TOLERANCE: f64 = 1e-8;
+/// Factors that take the arithmetic of so many solutions by them are not made on the way: in films of some 300² sites and more, cubes of
+/// 16³. In smaller films a skyrmion that slides to rest between two places of its lattice is held there by factors, and often not without:
+/// its descent then takes more steps than are saved.
+const DEAR: f64 = 60.0;
+/// The part of the residual that is left across a valley, and down the gradient, where it grows along a direction that is negative: so a
+/// skyrmion stays between two places of its lattice, to which its slope leads, as it does with factors.
+const ACROSS: f64 = 1e-8;
+const DOWN: f64 = 1e-12;
 /// Unit fields that differ by less than this are the same.
 const INDEPENDENT: f64 = 1e-6;
 
@@ -24,19 +29,26 @@ impl Unfactored {
     pub fn below(h: &Hamiltonian, from: &Point, c: f64) -> Option<Unfactored> {
         let made =
             || Unfactored { stand_in: StandIn::about(h, &from.m, &from.gradient, c), equations: Complement::default() };
-        is_very_dear(h).then(made)
+        (h.solutions_a_factor() > DEAR).then(made)
     }
 
-    /// Solves P (H + shift) P x = P b for tangent fields (3N), P without zero modes and the direction `along`; |b| may be of any size.
-    /// None where a direction of negative curvature is met.
-    pub fn solve(&mut self, h: &Hamiltonian, at: &Point, shift: f64, along: &[&[f64]], b: &[f64]) -> Option<&[f64]> {
+    /// Solves P (H + shift) P x = P b for tangent fields (3N), P without zero modes and, across a valley, the direction `along` it; |b|
+    /// may be of any size. None where a direction of negative curvature is met.
+    pub fn solve(
+        &mut self,
+        h: &Hamiltonian,
+        at: &Point,
+        shift: f64,
+        along: Option<&[f64]>,
+        b: &[f64],
+    ) -> Option<&[f64]> {
         let zeros = at.zeros.iter().map(|z| at.field(z));
-        let border = zeros.chain(along.iter().map(|along| along.to_vec())).collect();
+        let border = zeros.chain(along.map(<[f64]>::to_vec)).collect();
         self.equations.border = orthonormal(border, INDEPENDENT);
         self.equations.right.clear();
         self.equations.right.extend_from_slice(b);
         let place = Place { h, m: &at.m, g: &at.gradient, shift };
-        self.equations.solve(place, &self.stand_in, TOLERANCE).ok()?;
+        self.equations.solve(place, &self.stand_in, if along.is_some() { ACROSS } else { DOWN }).ok()?;
         Some(&self.equations.x)
     }
 
@@ -46,7 +58,7 @@ impl Unfactored {
         let mut image = vec![0.0; t.len()];
         h.hessian_product(&at.m, &at.gradient, t, &mut image);
         slab::scale(&mut image, -1.0);
-        let mut valley = self.solve(h, at, shift, &[t], &image)?.to_vec();
+        let mut valley = self.solve(h, at, shift, Some(t), &image)?.to_vec();
         slab::add_scaled(&mut valley, 1.0, t);
         Some(valley)
     }
@@ -104,7 +116,7 @@ mod tests {
             slab::norm(&difference) / slab::norm(exact)
         };
         assert!(off(&found, &valley) < 1e-6, "{:e}", off(&found, &valley));
-        let step = without.solve(&h, &at, 0.0, &[&t], &at.field(&at.downhill())).expect("no direction is negative");
+        let step = without.solve(&h, &at, 0.0, Some(&t), &at.field(&at.downhill())).expect("no direction is negative");
         assert!(off(step, &across) < 1e-6, "{:e}", off(step, &across));
         assert!(slab::dot(step, &t).abs() < 1e-9);
     }
