@@ -87,7 +87,8 @@ pub fn descend(h: Evaluator, saddle: &State, valley: &[f64], c: f64, beside: &[&
         last: None,
         trail: Trail::from(&saddle.m),
         room: Room::default(),
-        unfactored: Unfactored::below(&h, &saddle.point, c),
+        // where a state that came to rest is left, with no minimum beside it, the fall may be of 1e-9 meV, less than the noise without factors
+        unfactored: if beside.is_empty() { None } else { Unfactored::below(&h, &saddle.point, c) },
     };
     let arrived = h.has_dear_factors() && walk.roll() || walk.down();
     Descent { fallen_mev: saddle.above_mev(&walk.here), arrived, m: walk.here.m, way: walk.trail.into_points() }
