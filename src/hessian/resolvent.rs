@@ -93,6 +93,7 @@ mod tests {
         let wave = -0.2 + 2.0 * (1.0 - libm::cos(std::f64::consts::PI / 14.0));
         assert!(told.zip([-0.2, wave]).all(|(value, exact)| (value - exact).abs() < 1e-11), "{modes:?}");
     }
+
     /// A spin, of any length, at a place.
     type Spin = fn([f64; 3]) -> [f64; 3];
 

@@ -13,7 +13,7 @@ use std::ops::Deref;
 /// 12³.
 const DEAR: f64 = 30.0;
 
-/// Whether factors of a Hessian take so long that modes and descents are found sooner without.
+/// Whether factors of a Hessian take so long that modes are found sooner without.
 pub fn is_very_dear(h: &Hamiltonian) -> bool {
     h.solutions_a_factor() > DEAR
 }

@@ -3,6 +3,7 @@
 //! film may tilt to either side, and what tells the sides apart grows on the way.
 
 use super::point::Point;
+use super::tolerances::INDEPENDENT;
 use crate::energy::Hamiltonian;
 use crate::hessian::{Complement, Place, StandIn};
 use crate::linalg::{orthonormal, slab};
@@ -15,8 +16,6 @@ const DEAR: f64 = 60.0;
 /// skyrmion stays between two places of its lattice, to which its slope leads, as it does with factors.
 const ACROSS: f64 = 1e-8;
 const DOWN: f64 = 1e-12;
-/// Unit fields that differ by less than this are the same.
-const INDEPENDENT: f64 = 1e-6;
 
 /// The equations at one point after the other.
 pub struct Unfactored {

@@ -28,7 +28,7 @@ type Wide = [f64; 4];
 const FEW: usize = 40;
 
 /// A matrix, level after level.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Multigrid {
     levels: Vec<Level>,
     coarsening: Arc<Coarsening>,
@@ -37,7 +37,7 @@ pub struct Multigrid {
 }
 
 /// One matrix.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 struct Level {
     matrix: Rows,
     /// ω / A_ii.
