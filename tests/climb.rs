@@ -72,7 +72,7 @@ fn a_spin_with_two_axes_climbs_to_the_intermediate_one() {
     let start = rotate([0.0, 0.0, 1.0], Direction::new([0.6, 0.8, 0.0]).unwrap(), 2.0);
     let s = saddle(&h, &[start]);
     // E = −K z² + K' x²: 0 along y, falling as −K θ² along z
-    assert!((h.energy_mev(&s.point.m)).abs() < 1e-14 && s.point.m[1].abs() > 1.0 - 1e-14, "{:?}", s.point.m);
+    assert!((h.energy_mev(&s.state.m)).abs() < 1e-14 && s.state.m[1].abs() > 1.0 - 1e-14, "{:?}", s.state.m);
     assert!((s.curvature_mev + 1.4).abs() < 1e-13 && s.mode[2].abs() > 1.0 - 1e-13, "{} {:?}", s.curvature_mev, s.mode);
 }
 
@@ -84,8 +84,8 @@ fn two_spins_turn_together_or_one_after_the_other() {
         let [axis, other] = [[1.0, 0.2, 0.0], [0.9, 0.5, 0.1]].map(|a| Direction::new(a).unwrap());
         let spins = [rotate([0.0, 0.0, 1.0], axis, 1.2), rotate([0.0, 0.0, 1.0], other, 0.8)];
         let s = saddle(&h, &spins);
-        assert!((h.energy_mev(&s.point.m) + 1.0 + 2.0 * k - height).abs() < 1e-13, "{k}: {}", h.energy_mev(&s.point.m));
-        assert_eq!(Spectrum::of((&h).into(), &State::at((&h).into(), s.point.m), 0).zero, 1);
+        assert!((h.energy_mev(&s.state.m) + 1.0 + 2.0 * k - height).abs() < 1e-13, "{k}: {}", h.energy_mev(&s.state.m));
+        assert_eq!(Spectrum::of((&h).into(), &s.state, 0).zero, 1);
     }
 }
 
@@ -102,20 +102,20 @@ fn what_a_climb_ends_in_has_one_negative_direction_and_no_torque() {
         steps += taken;
         let Ok(s) = saddle else { continue };
         found += 1;
-        let values = eigenvalues(&h, &s.point.m);
+        let values = eigenvalues(&h, &s.state.m);
         assert!(values[0] < 0.0 && values[1] > 0.0, "{seed}: {values:?}");
         assert!(
             (values[0] - s.curvature_mev).abs() < 1e-12 * h.stiffness_mev(),
             "{seed}: {values:?} {}",
             s.curvature_mev
         );
-        assert!(s.point.max_torque_mev() < 1e-14 * h.stiffness_mev(), "{seed}: {:e}", s.point.max_torque_mev());
+        assert!(s.state.max_torque_mev() < 1e-14 * h.stiffness_mev(), "{seed}: {:e}", s.state.max_torque_mev());
         assert!((slab::norm(&s.mode) - 1.0).abs() < 1e-13);
         // the curvature as the energy has it
         let energy = |step: f64| {
-            let mut m = s.point.m.clone();
+            let mut m = s.state.m.clone();
             move_points(&mut m, &s.mode, s.mode.len(), step);
-            h.difference_mev(&m, &s.point.m)
+            h.difference_mev(&m, &s.state.m)
         };
         let difference = (energy(1e-3) + energy(-1e-3)) * 1e6;
         assert!((difference - s.curvature_mev).abs() < 1e-4 * h.stiffness_mev(), "{seed}: {difference}");
@@ -134,7 +134,7 @@ fn a_turned_frame_turns_the_saddle() {
         let other: Vec<Vector> = spins.iter().map(|s| rotate(*s, turn.0, turn.1)).collect();
         let ends =
             [(&h, spins), (&turned, other)].map(|(h, s)| climb(h.into(), &component_major(&s), &limits()).saddle.ok());
-        let [Some(a), Some(b)] = ends.map(|s| s.map(|s| s.point)) else { continue };
+        let [Some(a), Some(b)] = ends.map(|s| s.map(|s| s.state)) else { continue };
         let apart = a.m.iter().zip(rotated(&b.m, turn)).fold(0.0f64, |d, (x, y)| d.max((x - y).abs()));
         assert!(apart < 1e-9, "{seed}: {apart:e}, {} {}", a.energy_mev, b.energy_mev);
     }
@@ -153,7 +153,7 @@ fn a_climb_gives_up_where_its_limits_say_so() {
     let e: Evaluator = (&h).into();
     let mut r = ChaCha8Rng::seed_from_u64(4);
     let start = component_major(&random_spins(6, &mut r));
-    let s = climb(e, &start, &limits()).saddle.expect("a saddle").point;
+    let s = climb(e, &start, &limits()).saddle.expect("a saddle").state;
     let why = |limits: Limits| climb(e, &start, &limits).saddle.map(|_| ()).unwrap_err();
     assert_eq!(why(Limits { ceiling_mev: s.energy_mev - 0.5, ..limits() }), GaveUp::TooHigh);
     assert!(climb(e, &start, &Limits { ceiling_mev: s.energy_mev + 0.01, ..limits() }).saddle.is_ok());
@@ -174,8 +174,8 @@ fn a_symmetric_start_is_left_for_a_saddle_of_index_one() {
     let coherent = State::at((&h).into(), component_major(&across));
     assert!(Spectrum::of((&h).into(), &coherent, 0).negative > 1);
     let s = saddle(&h, &across);
-    let negative = eigenvalues(&h, &s.point.m).iter().filter(|l| **l < -1e-12).count();
-    assert!(negative == 1 && s.point.energy_mev < coherent.energy_mev - 0.01, "{negative} {}", s.point.energy_mev);
+    let negative = eigenvalues(&h, &s.state.m).iter().filter(|l| **l < -1e-12).count();
+    assert!(negative == 1 && s.state.energy_mev < coherent.energy_mev - 0.01, "{negative} {}", s.state.energy_mev);
 }
 
 #[test]
@@ -188,7 +188,7 @@ fn frozen_spins_stay_where_they_are() {
         let start = component_major(&random_spins(6, &mut r));
         let Ok(top) = climb((&h).into(), &start, &limits()).saddle else { continue };
         found += 1;
-        let m = top.point.m;
+        let m = top.state.m.clone();
         assert!([0, 3].iter().all(|i| (0..3).all(|c| m[6 * c + i] == start[6 * c + i])));
     }
     assert!(found > 5, "{found}");

@@ -277,7 +277,7 @@ fn a_band_takes_as_many_evaluations_on_a_finer_and_on_a_larger_film() {
 fn a_large_skyrmion_that_slides_freely_has_a_certified_barrier_on_a_narrow_peak() {
     // translational eigenvalues of 2.7e-10 meV beside a gap of 0.02; the peak is a few images wide
     let (count, barrier) = evaluations(skyrmion(40, 0.5, 20.0), "round");
-    assert!((barrier - 6.289025321835).abs() < 1e-9 && count <= 40, "{count} {barrier}");
+    assert!((barrier - 6.289025321835).abs() < 1e-9 && count <= 45, "{count} {barrier}");
 }
 
 #[test]

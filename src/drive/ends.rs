@@ -14,6 +14,7 @@ pub fn kept(h: Evaluator, spins: &Spins) -> Relaxed {
         largest_rotation_rad: 0.0,
         left: None,
         converged: true,
+        spectrum: None,
     }
 }
 

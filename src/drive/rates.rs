@@ -183,7 +183,7 @@ fn stored_link(h: Evaluator, saddle: &SaddlePoint, beside: &[Minimum]) -> Pass {
     let (s, image) = (saddle.reaction_coordinate_rad, saddle.image);
     let top = Peak { m: state.m.clone(), tau, energy_mev: state.energy_mev, s, image, floor_mev: f64::NEG_INFINITY };
     let index = spectrum.negative;
-    let refined = Refined { arrived: true, state, valley, factorisations: 0, index };
+    let refined = Refined { arrived: true, state, valley, factorisations: 0, index, spectrum: Some(spectrum.clone()) };
     Pass {
         saddle: Saddle { top, refined },
         spectrum,

@@ -150,7 +150,7 @@ fn highest_climb(
 pub fn same_minimum(run: Prepared) -> Outcome {
     let h = run.problem.evaluator();
     let path = Path::new(&[run.ends[0].spins.clone(), run.ends[1].spins.clone()]);
-    let ends = Minimum::examine_both(h, run.ends.each_ref().map(|end| &end.spins));
+    let ends = Minimum::of_both(h, run.ends);
     let course = Course {
         images: image_table(h, &Band::new(h, path.clone())),
         path,

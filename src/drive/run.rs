@@ -95,7 +95,7 @@ impl<'a, 'o> Run<'a, 'o> {
         let laplacian =
             needs_laplacian(&problem.neb.optimiser).then(|| Arc::new(Laplacian::new(&h, scales.stiffness_mev)));
         let mut land = Landscape::new(h, a);
-        let examined = Minimum::examine_both(h, ends.each_ref().map(|end| &end.spins));
+        let examined = Minimum::of_both(h, &ends);
         problem.control.check()?;
         let minima = examined.each_ref().map(|minimum| land.add_minimum(minimum));
         let mut run = Run {
@@ -204,7 +204,7 @@ impl<'a, 'o> Run<'a, 'o> {
             return Ok(None);
         }
         // the landscape keeps one of them for both
-        let ends = Minimum::examine_both(h, [a, b]);
+        let ends = Minimum::of_both(h, &self.ends);
         let images = self.problem.images.asked_for().unwrap_or(FEWEST_IMAGES);
         // about an axis of symmetry the way is as long as it is; the shortest way between two states of a cone leads across it
         let axis = match self.axes[..] {

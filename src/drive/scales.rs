@@ -69,7 +69,7 @@ impl Scales {
 
 /// Lowest eigenvalue of the Riemannian Hessian (meV), rotations about symmetry axes apart.
 fn softest_mode(h: Evaluator, m: &[f64]) -> f64 {
-    State::at(h, m.to_vec()).lowest_eigenvalues_mev(h, 1).first().copied().unwrap_or(0.0)
+    State::at(h, m.to_vec()).stiffness_mev(h).unwrap_or(0.0)
 }
 
 /// Median over sites of the gap between the two lowest on-site curvatures: 2K of an easy axis. Magnetostatics count as between

@@ -106,7 +106,7 @@ impl<'a> Run<'a, '_> {
                 continue;
             }
             let relaxed = relax_to_minimum(h, &domain, RELAXED * h.stiffness_mev())?;
-            let third = Minimum::examine(h, &relaxed.spins);
+            let third = Minimum::of(h, &relaxed);
             if !third.is_proven() || self.land.height_mev(third.spins.as_slice()) >= top {
                 continue;
             }
@@ -165,6 +165,7 @@ fn at_rest(minimum: &Minimum) -> Relaxed {
         largest_rotation_rad: 0.0,
         left: None,
         converged: true,
+        spectrum: Some(minimum.spectrum.clone()),
     }
 }
 

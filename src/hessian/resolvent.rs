@@ -87,7 +87,7 @@ mod tests {
         let nearly = Resolvent::at(&h, m.as_slice(), &g, &basis);
         assert!((nearly.average + 0.1).abs() < 1e-12, "{}", nearly.average);
         let apply = |x: &mut [f64], theta: f64| nearly.apply(x, theta);
-        let modes = softest(&hessian, 2, &turns, Wanted::Vectors, &apply, &|| false).expect("they are found");
+        let modes = softest(&hessian, 2, &turns, (Wanted::Vectors, &[]), &apply, &|| false).expect("they are found");
         let told = modes.iter().map(|mode| mode.value);
         // the next is the longest wave along the longer side
         let wave = -0.2 + 2.0 * (1.0 - libm::cos(std::f64::consts::PI / 14.0));
@@ -118,7 +118,7 @@ mod tests {
             let nearly = Resolvent::at(&h, m.as_slice(), &g, &basis);
             let apply = |x: &mut [f64], theta: f64| nearly.apply(x, theta);
             let exact = lowest_modes(&hessian, 3, &[]);
-            let modes = softest(&hessian, 3, &[], Wanted::Values, &apply, &|| false).expect("they are found");
+            let modes = softest(&hessian, 3, &[], (Wanted::Values, &[]), &apply, &|| false).expect("they are found");
             for (mode, exact) in modes.iter().zip(&exact) {
                 assert!((mode.value - exact.value).abs() < 1e-10, "{j}: {} {}", mode.value, exact.value);
             }

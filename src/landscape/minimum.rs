@@ -7,7 +7,7 @@ use crate::geometry::vector;
 use crate::path::{is_within, largest_angle};
 use crate::sphere::SAME;
 use crate::spins::Spins;
-use crate::stationary::{FLAT, Spectrum, State, both_by_factors};
+use crate::stationary::{FLAT, Relaxed, Spectrum, State, both_by_factors};
 use crate::symmetry::Operation;
 use serde::{Deserialize, Serialize};
 
@@ -30,10 +30,17 @@ impl Minimum {
         Minimum::with_modes(h, spins, 0)
     }
 
+    /// What a relaxation ended in, its modes counted if they were not.
+    pub fn of(h: Evaluator, relaxed: &Relaxed) -> Minimum {
+        let Relaxed { spins, max_torque_mev, spectrum, .. } = relaxed;
+        let Some(spectrum) = spectrum.clone() else { return Minimum::examine(h, spins) };
+        let (energy_mev, max_torque_mev) = (h.energy_mev(spins.as_slice()), *max_torque_mev);
+        Minimum { energy_mev, max_torque_mev, spectrum, spins: spins.clone() }
+    }
+
     /// Two of them.
-    pub fn examine_both(h: Evaluator, spins: [&Spins; 2]) -> [Minimum; 2] {
-        let [a, b] = spins;
-        both_by_factors(&h, || Minimum::examine(h, a), || Minimum::examine(h, b)).into()
+    pub fn of_both(h: Evaluator, [a, b]: &[Relaxed; 2]) -> [Minimum; 2] {
+        both_by_factors(&h, || Minimum::of(h, a), || Minimum::of(h, b)).into()
     }
 
     /// The same with so many of its lowest eigenvalues.

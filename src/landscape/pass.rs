@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::linalg::slab;
 use crate::rates::Crossing;
 use crate::spins::Spins;
-use crate::stationary::{FLAT, RELAXED, Spectrum, descend, lowest_eigenvalues_mev, relax_to_minimum};
+use crate::stationary::{FLAT, RELAXED, Refined, Spectrum, descend, lowest_eigenvalues_mev, relax_to_minimum};
 use crate::symmetry::{Group, Operation};
 use serde::{Deserialize, Serialize};
 
@@ -69,9 +69,9 @@ impl Pass {
                 return Ok((Minimum::clone(known), d.fallen_mev, way));
             }
             let relaxed = relax_to_minimum(h, &Spins::from_unit_components(&d.m), RELAXED * h.stiffness_mev())?;
-            Ok((Minimum::examine(h, &relaxed.spins), d.fallen_mev, way))
+            Ok((Minimum::of(h, &relaxed), d.fallen_mev, way))
         };
-        let spectrum = Spectrum::of(h, state, 0);
+        let spectrum = saddle.refined.spectrum.clone().unwrap_or_else(|| Spectrum::of(h, state, 0));
         let sides = rayon::join(|| side(-1.0), || side(1.0));
         let ((before, f, back), (after, g, on)) = (sides.0?, sides.1?);
         Ok(Pass { spectrum, before, after, fallen_mev: [f, g], ways: [back, on], saddle, given: false })
@@ -81,7 +81,7 @@ impl Pass {
     /// descending direction is too flat for that.
     pub fn between(h: Evaluator, saddle: Saddle, [before, after]: [Minimum; 2]) -> Option<Pass> {
         let state = &saddle.refined.state;
-        let spectrum = Spectrum::of(h, state, 0);
+        let spectrum = saddle.refined.spectrum.clone().unwrap_or_else(|| Spectrum::of(h, state, 0));
         if spectrum.negative == 0 {
             return None;
         }
@@ -101,7 +101,10 @@ impl Pass {
     /// The saddle's lowest eigenvalues (meV), ascending, as many as are reported: what takes longest to find of all that is told of
     /// it, and no search asks for it.
     pub fn lowest_eigenvalues_mev(&self, h: Evaluator) -> Vec<f64> {
-        lowest_eigenvalues_mev(h, &self.saddle.refined.state, REPORTED)
+        let Refined { state, valley, spectrum, .. } = &self.saddle.refined;
+        // the direction in which it falls is a mode where a search found it as one
+        let lowest = spectrum.as_ref().map(|_| state.basis.coordinates(valley));
+        lowest_eigenvalues_mev(h, state, REPORTED, lowest.as_slice())
     }
 
     /// As the theories of rates take it. `doubt`: what stands against its certificate.

@@ -39,16 +39,17 @@ impl Saddle {
     /// The saddle of index one that a climb from any state leads to, if it leads to one within the limits.
     pub fn climbed(h: Evaluator, start: &[f64], limits: &Limits) -> Option<Saddle> {
         let Climb { saddle, steps: factorisations } = climb(h, start, limits);
-        let stationary::Saddle { point, mode, .. } = saddle.ok()?;
+        let stationary::Saddle { state, mode, spectrum, .. } = saddle.ok()?;
         let top = Peak {
             m: start.to_vec(),
             tau: mode.clone(),
-            energy_mev: point.energy_mev,
+            energy_mev: state.energy_mev,
             s: 0.0,
             image: 0,
             floor_mev: f64::NEG_INFINITY,
         };
-        let refined = Refined { arrived: true, valley: mode, factorisations, index: 1, state: State::of(h, point) };
+        let refined =
+            Refined { arrived: true, valley: mode, factorisations, index: 1, spectrum: Some(spectrum), state };
         Some(Saddle { top, refined })
     }
 
@@ -63,7 +64,10 @@ impl Saddle {
         let (m, tau) = (operation.apply(&top.m), operation.apply_field(&top.tau));
         let state = State::at(h, operation.apply(self.spins()));
         let valley = operation.apply_field(&refined.valley);
-        Saddle { top: Peak { m, tau, ..*top }, refined: Refined { state, valley, ..*refined } }
+        Saddle {
+            top: Peak { m, tau, ..*top },
+            refined: Refined { state, valley, spectrum: refined.spectrum.clone(), ..*refined },
+        }
     }
 
     /// Follows the modes of a saddle that the valley's search left where sliding over the lattice still has a torque.

@@ -38,7 +38,7 @@ fn is_tangent(h: Evaluator, v: &[f64]) -> bool {
 impl Stored for Saddle {
     fn restored(mut self, h: Evaluator) -> Option<Self> {
         let Saddle { top: Peak { m, tau, energy_mev, s, image, floor_mev }, refined } = &mut self;
-        let Refined { state, valley, factorisations, index, .. } = refined;
+        let Refined { state, valley, factorisations, index, spectrum, .. } = refined;
         let is_sound = are_spins(h, m)
             && are_spins(h, &state.m)
             && is_tangent(h, tau)
@@ -48,6 +48,9 @@ impl Stored for Saddle {
             && are_counts(&[*image, *factorisations, *index]);
         is_sound.then_some(())?;
         *state = State::at(h, std::mem::take(&mut state.point.m));
+        if let Some(counted) = spectrum.take() {
+            *spectrum = Some(counted.restored(h)?);
+        }
         Some(self)
     }
 }

@@ -71,10 +71,10 @@ impl Lattice {
     }
 
     /// Once round along each periodic direction, in spacings.
-    pub fn periods(&self) -> Vec<Vector> {
+    pub fn periods(&self) -> Periods {
         let cells = self.cell_vectors();
         let round = |d: usize| vector::scale(self.grid.size[d] as f64, cells[d]);
-        (0..3).filter(|d| self.grid.periodic[*d]).map(round).collect()
+        Periods::new((0..3).filter(|d| self.grid.periodic[*d]).map(round).collect())
     }
 
     /// The corners of the box of all sites, of least and of greatest coordinates, in spacings.
@@ -149,25 +149,46 @@ impl Lattice {
     }
 }
 
-/// The way by the shortest of all images, where space repeats itself after each of these periods.
-pub fn shortest(way: Vector, periods: &[Vector]) -> Vector {
-    let images = 3usize.pow(periods.len() as u32);
-    let shift = |k: usize| {
-        let turns = (0..periods.len()).map(|d| vector::scale((k / 3usize.pow(d as u32) % 3) as f64 - 1.0, periods[d]));
-        turns.fold([0.0; 3], vector::add)
-    };
-    let mut way = by_whole_turns(way, periods);
-    loop {
-        let mut best = way;
-        for image in (0..images).map(|k| vector::add(way, shift(k))) {
-            if vector::norm(image) < vector::norm(best) * (1.0 - SHORTER) {
-                best = image;
-            }
-        }
-        if best == way {
+/// Space repeats itself after each of these.
+#[derive(Clone, Debug)]
+pub struct Periods {
+    once: Vec<Vector>,
+    /// Sums of at most one each, there or back.
+    turns: Vec<Vector>,
+    /// Ways no longer than this are shortest: half of the least of these sums.
+    short: f64,
+}
+
+impl Periods {
+    /// Of none, one, two or three directions.
+    pub fn new(once: Vec<Vector>) -> Periods {
+        let turn = |k: usize| {
+            let turns = (0..once.len()).map(|d| vector::scale((k / 3usize.pow(d as u32) % 3) as f64 - 1.0, once[d]));
+            turns.fold([0.0; 3], vector::add)
+        };
+        let turns: Vec<Vector> = (0..3usize.pow(once.len() as u32)).map(turn).collect();
+        let least = turns.iter().map(|t| vector::norm(*t)).filter(|t| *t > 0.0).fold(f64::INFINITY, f64::min);
+        Periods { once, turns, short: 0.5 * least }
+    }
+
+    /// The way by the shortest of all images.
+    pub fn shortest(&self, way: Vector) -> Vector {
+        if vector::norm(way) <= self.short {
             return way;
         }
-        way = best;
+        let mut way = by_whole_turns(way, &self.once);
+        loop {
+            let mut best = way;
+            for image in self.turns.iter().map(|turn| vector::add(way, *turn)) {
+                if vector::norm(image) < vector::norm(best) * (1.0 - SHORTER) {
+                    best = image;
+                }
+            }
+            if best == way {
+                return way;
+            }
+            way = best;
+        }
     }
 }
 
@@ -218,25 +239,26 @@ mod tests {
     fn a_place_any_number_of_times_round_is_found_at_once() {
         let periods = oblique(true).periods();
         for far in [1e3, 1e9, 1e15, 1e200, -1e300] {
-            let way = shortest([far, 0.7 * far, 0.0], &periods);
+            let way = periods.shortest([far, 0.7 * far, 0.0]);
             assert!(vector::norm(way) < 6.0, "{far}: {way:?}");
         }
-        let far = vector::add([0.5, 0.25, 0.0], vector::scale(1e6, vector::add(periods[0], periods[1])));
-        assert!(vector::norm(vector::sub(shortest(far, &periods), [0.5, 0.25, 0.0])) < 1e-8);
+        let far = vector::add([0.5, 0.25, 0.0], vector::scale(1e6, vector::add(periods.once[0], periods.once[1])));
+        assert!(vector::norm(vector::sub(periods.shortest(far), [0.5, 0.25, 0.0])) < 1e-8);
     }
 
     #[test]
     fn the_shortest_way_is_the_least_over_all_images() {
         let periods = oblique(true).periods();
-        assert_eq!(periods.len(), 2);
+        assert_eq!(periods.once.len(), 2);
         for i in 0..30 {
             let way = vector::sub(oblique(true).place(i), [3.1, 7.7, 0.2]);
-            let far = vector::norm(shortest(way, &periods));
+            let far = vector::norm(periods.shortest(way));
             for (m, n) in (-4..5).flat_map(|m| (-4..5).map(move |n| (m, n))) {
-                let by = vector::add(vector::scale(m as f64, periods[0]), vector::scale(n as f64, periods[1]));
+                let by =
+                    vector::add(vector::scale(m as f64, periods.once[0]), vector::scale(n as f64, periods.once[1]));
                 assert!(vector::norm(vector::add(way, by)) >= far * (1.0 - 1e-8), "{way:?}");
             }
         }
-        assert_eq!(shortest([9.0, 1.0, 2.0], &[]), [9.0, 1.0, 2.0]);
+        assert_eq!(Periods::new(vec![]).shortest([9.0, 1.0, 2.0]), [9.0, 1.0, 2.0]);
     }
 }

@@ -56,7 +56,7 @@ pub use grid::{Grid, Shift};
 pub use hcp::Hcp;
 pub use honeycomb::Honeycomb;
 pub use kagome::Kagome;
-pub use measure::shortest;
+pub use measure::Periods;
 pub use mesh::Mesh;
 pub use picture::{DATA, Picture};
 pub use selection::Selection;

@@ -7,8 +7,10 @@ use super::{Factors, eigen_symmetric, slab};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// A vector with |A⁻¹v − θv| ≤ this part of θ is an eigenvector: its eigenvalue is right to the square of it.
-const RESIDUAL: f64 = 1e-6;
+/// A vector with |A⁻¹v − θv| ≤ this part of θ is an eigenvector; where its eigenvalue alone is wanted, the other: that is right to the
+/// square of it.
+pub(super) const SHARP: f64 = 1e-8;
+pub(super) const BY_VALUE: f64 = 1e-6;
 /// Most vectors.
 pub(super) const MOST: usize = 160;
 
@@ -19,6 +21,8 @@ pub(super) struct Modes {
     pub count: usize,
     /// But for the first only those with lower eigenvalues.
     pub below: f64,
+    /// How sharp their vectors are: |A⁻¹v − θv| in parts of θ.
+    pub part: f64,
 }
 
 /// What a symmetric matrix is inverted by, in all of its space or in a part of it.
@@ -164,7 +168,7 @@ impl<'a> Krylov<'a> {
                 break;
             }
             let v = combination(w, &self.basis);
-            if !last && !self.is_eigenvector(*theta, w, &v, RESIDUAL) {
+            if !last && !self.is_eigenvector(*theta, w, &v, wanted.part) {
                 return None;
             }
             vectors.push(v);
@@ -188,10 +192,9 @@ impl<'a> Krylov<'a> {
     }
 
     /// How many of the first `count` vectors of [`largest`](Self::largest) are eigenvectors, one after the other.
-    pub fn converged(&self, count: usize) -> usize {
+    pub fn converged(&self, count: usize, part: f64) -> usize {
         let (values, weights) = eigen_symmetric(&self.projected(), self.basis.len());
-        let is_one =
-            |(theta, w): (&f64, &Vec<f64>)| self.is_eigenvector(*theta, w, &combination(w, &self.basis), RESIDUAL);
+        let is_one = |(theta, w): (&f64, &Vec<f64>)| self.is_eigenvector(*theta, w, &combination(w, &self.basis), part);
         values.iter().zip(&weights).rev().take(count).take_while(|pair| is_one(*pair)).count()
     }
 

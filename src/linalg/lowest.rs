@@ -1,12 +1,12 @@
 //! The lowest eigenvalues of a matrix: slice by slice, or by block Lanczos on the inverse; those of a matrix that is factorised
 //! already by the latter alone.
 
-use super::krylov::{Krylov, MOST, Modes};
+use super::krylov::{BY_VALUE, Krylov, MOST, Modes, SHARP};
 use super::orthonormal::orthonormal;
 use super::ritz::{Mode, none_is_missed, rayleigh_ritz};
 use super::slices::sliced;
 use super::together::together;
-use super::{Factors, Inverse, Matrix};
+use super::{Factors, Inverse, Matrix, Wanted};
 
 /// Vectors in a block: as many as modes are often degenerate, and for the rare case in which that was too few.
 const BLOCKS: [usize; 2] = [2, 4];
@@ -22,28 +22,50 @@ const MOST_AS_IT_IS: usize = 60;
 /// than solutions by them, block Lanczos on (A − s)⁻¹ (see `together`). The inertia tells whether one was missed. Either way takes the other's place where that does not
 /// arrive.
 pub fn lowest_modes(matrix: &Matrix, count: usize, known: &[Vec<f64>]) -> Vec<Mode> {
-    soft_modes(matrix, count, known, f64::INFINITY, &|| false)
+    lowest_modes_beside(matrix, count, known, (Wanted::Vectors, &[]))
+}
+
+/// What is wanted of the lowest modes, where the vectors of the first of them are given, perhaps roughly: of sparse matrices these are
+/// not looked for anew.
+pub fn lowest_modes_beside(
+    matrix: &Matrix,
+    count: usize,
+    known: &[Vec<f64>],
+    (wanted, given): (Wanted, &[Vec<f64>]),
+) -> Vec<Mode> {
+    let part = if wanted == Wanted::Vectors { SHARP } else { BY_VALUE };
+    those_below(matrix, Modes { count, below: f64::INFINITY, part }, known, given, &|| false)
 }
 
 /// The modes among the `count` lowest that are below a limit, but one at least; as [`lowest_modes`], without the time that the
 /// modes above the limit take, which on long chains are close together. Where it is to `stop`, some of them, to be thrown away.
 pub fn soft_modes(matrix: &Matrix, count: usize, known: &[Vec<f64>], below: f64, stop: &dyn Fn() -> bool) -> Vec<Mode> {
+    those_below(matrix, Modes { count, below, part: BY_VALUE }, known, &[], stop)
+}
+
+fn those_below(
+    matrix: &Matrix,
+    wanted: Modes,
+    known: &[Vec<f64>],
+    given: &[Vec<f64>],
+    stop: &dyn Fn() -> bool,
+) -> Vec<Mode> {
     let n = matrix.order();
     let room = n.saturating_sub(known.len());
-    let count = count.min(room);
-    if count == 0 {
+    let wanted = Modes { count: wanted.count.min(room), ..wanted };
+    if wanted.count == 0 {
         return Vec::new();
     }
-    let slices = || sliced(matrix, count, known, below);
+    let slices = || sliced(matrix, wanted.count, known, wanted.below);
     let found = match matrix {
         Matrix::Tail(_) => None,
         Matrix::Sparse(_) => {
-            let (modes, complete) = together(matrix, known, Modes { count, below });
+            let (modes, complete) = together(matrix, known, given, wanted);
             if complete { Some(modes) } else { slices().or(Some(modes)) }
         }
         _ => slices(),
     };
-    found.unwrap_or_else(|| lanczos(matrix, Modes { count, below }, known, stop).0)
+    found.unwrap_or_else(|| lanczos(matrix, wanted, known, stop).0)
 }
 
 /// The vectors of all negative modes of a factorised matrix, or, where there are none, of the lowest mode; ascending, in the space
@@ -81,7 +103,7 @@ pub fn soft_space(
     below: f64,
 ) -> Option<Vec<Vec<f64>>> {
     let mut krylov = Krylov::new(inverse, known, BLOCKS[0]);
-    let (mut space, mut found) = krylov.largest(Modes { count, below }, MOST_AS_IT_IS);
+    let (mut space, mut found) = krylov.largest(Modes { count, below, part: BY_VALUE }, MOST_AS_IT_IS);
     while found && negatives > 0 {
         if let Some(below) = krylov.negative(negatives, BY_THEIR_SIGN) {
             space.extend(below);
@@ -149,6 +171,7 @@ fn shift_below(matrix: &Matrix, scale: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linalg::sparse::samples::Lattice;
     use crate::linalg::{Banded, slab};
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
@@ -156,14 +179,10 @@ mod tests {
     /// By slices and by Lanczos, far from the modes and near them, with and without the other's help.
     fn all_ways(matrix: &Matrix, count: usize, known: &[Vec<f64>]) -> [Vec<Mode>; 4] {
         let slices = sliced(matrix, count, known, f64::INFINITY).expect("slices converge");
-        let (near, complete) = together(matrix, known, Modes { count, below: f64::INFINITY });
+        let all = Modes { count, below: f64::INFINITY, part: BY_VALUE };
+        let (near, complete) = together(matrix, known, &[], all);
         assert!(complete);
-        [
-            slices,
-            lanczos(matrix, Modes { count, below: f64::INFINITY }, known, &|| false).0,
-            near,
-            lowest_modes(matrix, count, known),
-        ]
+        [slices, lanczos(matrix, all, known, &|| false).0, near, lowest_modes(matrix, count, known)]
     }
 
     #[test]
@@ -208,6 +227,34 @@ mod tests {
                 assert!((mode.value - exact(1 + k / copies)).abs() < 1e-12, "{k}: {}", mode.value);
             }
             assert_eq!(modes.len(), 6);
+        }
+    }
+
+    #[test]
+    fn modes_beside_given_ones_are_those_that_are_found_without_whatever_is_given() {
+        let mut r = ChaCha8Rng::seed_from_u64(22);
+        let lattice = Lattice::grid([12, 10, 1], [true, false, false], 1.0, &mut r);
+        let mut sparse = lattice.random(&mut r);
+        sparse.shift(1.0);
+        let a = Matrix::Sparse(sparse);
+        let exact = lowest_modes(&a, 5, &[]);
+        assert!(exact[1].value < 0.0 && exact[4].value > exact[3].value);
+        let mut stirred = exact[0].vector.clone();
+        slab::stir(&mut stirred, 0.2);
+        let size = slab::norm(&stirred);
+        slab::scale(&mut stirred, 1.0 / size);
+        let vector = |k: usize| exact[k].vector.clone();
+        // the lowest two, roughly the lowest, and modes of which lower ones are not given
+        for given in [vec![vector(0), vector(1)], vec![stirred], vec![vector(3)], vec![vector(2), vector(4)]] {
+            for wanted in [Wanted::Vectors, Wanted::Values] {
+                let found = lowest_modes_beside(&a, 5, &[], (wanted, &given));
+                assert_eq!(found.len(), 5);
+                for (mode, exact) in found.iter().zip(&exact) {
+                    assert!((mode.value - exact.value).abs() < 1e-10, "{wanted:?}: {} {}", mode.value, exact.value);
+                    let along = slab::dot(&mode.vector, &exact.vector).abs();
+                    assert!((along - 1.0).abs() < 1e-7, "{wanted:?} {}: {along}", mode.value);
+                }
+            }
         }
     }
 

@@ -40,7 +40,7 @@ pub use krylov::Inverse;
 pub use layout::{Layout, Places};
 pub use ldl::Ldl;
 pub use logarithms::log_sum;
-pub use lowest::{lowest_modes, modes_by_factors, soft_modes, soft_space};
+pub use lowest::{lowest_modes, lowest_modes_beside, modes_by_factors, soft_modes, soft_space};
 pub use matrix::Matrix;
 pub use multigrid::{Coarsening, Multigrid, Rows};
 pub use orthonormal::{orthonormal, remove};

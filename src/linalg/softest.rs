@@ -23,6 +23,7 @@ const ROUNDS: usize = 48;
 const SHARP: f64 = 1e-10;
 /// An eigenvalue as exact as this part of it, where no more is wanted: |Ax − θx|² over the distance to the others is its error.
 const EXACT: f64 = 1e-12;
+const ROUGH: f64 = 1e-3;
 /// A residual of so many roundings of the matrix's size is as small as it becomes.
 const NOISE: f64 = 32.0;
 /// Vectors of which no more is left beside others than this part depend on them.
@@ -37,16 +38,29 @@ pub enum Wanted {
     Vectors,
     /// Their eigenvalues alone.
     Values,
+    /// How large these are.
+    Size,
+}
+
+impl Wanted {
+    /// The part of an eigenvalue by which it may be wrong.
+    fn part(self) -> f64 {
+        match self {
+            Wanted::Vectors => 0.0,
+            Wanted::Values => EXACT,
+            Wanted::Size => ROUGH,
+        }
+    }
 }
 
 /// The `count` lowest modes of `matrix` in the space orthogonal to `known` (orthonormal, invariant), ascending, none missed; by what
-/// `nearly` makes of a residual and its θ, a symmetric positive map. Nothing where they are not found soon. Where it is to `stop`,
-/// some vectors, to be thrown away.
+/// `nearly` makes of a residual and its θ, a symmetric positive map. The vectors of some may be given. Nothing where they are not found
+/// soon. Where it is to `stop`, some vectors, to be thrown away.
 pub fn softest(
     matrix: &Matrix,
     count: usize,
     known: &[Vec<f64>],
-    wanted: Wanted,
+    (wanted, given): (Wanted, &[Vec<f64>]),
     nearly: &(dyn Fn(&mut [f64], f64) + Sync),
     stop: &dyn Fn() -> bool,
 ) -> Option<Vec<Mode>> {
@@ -57,6 +71,7 @@ pub fn softest(
     let noise = NOISE * f64::EPSILON * matrix.norm1();
     let mut space = Space { matrix, known, vectors: Vec::new(), images: Vec::new() };
     let mut random = ChaCha8Rng::seed_from_u64(0x50f7);
+    given.iter().take(count).for_each(|v| space.add(v.clone()));
     for _ in 0..2 * block {
         if space.vectors.len() == block {
             break;
@@ -77,7 +92,7 @@ pub fn softest(
         let highest = residuals.last().map_or(0.0, |(_, theta)| *theta);
         let is_sharp = |(r, theta): &(Vec<f64>, f64)| {
             let (r, size) = (slab::norm(r), theta.abs());
-            let by_value = wanted == Wanted::Values && r * r <= EXACT * size * (highest - theta);
+            let by_value = r * r <= wanted.part() * size * (highest - theta);
             by_value || r <= (SHARP * size).max(noise)
         };
         settled = residuals.iter().take_while(|r| is_sharp(r)).count();
@@ -188,7 +203,7 @@ mod tests {
         let direct = lowest_modes(&a, 4, &[]);
         for (count, known) in [(1, vec![]), (3, vec![]), (2, vec![direct[0].vector.clone(), direct[1].vector.clone()])]
         {
-            let modes = softest(&a, count, &known, Wanted::Vectors, &nearly, &|| false).expect("they are found");
+            let modes = softest(&a, count, &known, (Wanted::Vectors, &[]), &nearly, &|| false).expect("they are found");
             assert_eq!(modes.len(), count);
             for (mode, exact) in modes.iter().zip(&direct[known.len()..]) {
                 assert!((mode.value - exact.value).abs() < 1e-10 * exact.value.abs(), "{mode:?}");

@@ -23,17 +23,31 @@ const SPARE: usize = 2;
 /// Blocks before a nearer s is looked for, and how much nearer it must be.
 const BLOCKS: usize = 4;
 const NEARER: f64 = 0.5;
+/// What is given is a mode if |Av − θv| is less than this part of |θ|.
+const GIVEN: f64 = 1e-6;
 
-/// The wanted modes of `matrix` in the space orthogonal to `known` (orthonormal, invariant); and whether they are those, none missed.
-pub(super) fn together(matrix: &Matrix, known: &[Vec<f64>], wanted: Modes) -> (Vec<Mode>, bool) {
+/// The wanted modes of `matrix` in the space orthogonal to `known` (orthonormal, invariant), of which the lowest may be `given`,
+/// orthonormal too, as vectors or roughly; and whether they are those, none missed.
+pub(super) fn together(matrix: &Matrix, known: &[Vec<f64>], given: &[Vec<f64>], wanted: Modes) -> (Vec<Mode>, bool) {
     let scale = matrix.norm1().max(1e-280);
     let known_values: Vec<f64> = known.iter().map(|k| quotient(matrix, k, &[]).0).collect();
-    let mut modes: Vec<Mode> = Vec::new();
+    let given = &given[..given.len().min(wanted.count)];
+    let mut modes: Vec<Mode> = rayleigh_ritz(matrix, given);
+    let is_sharp = |v: &&Vec<f64>| {
+        let (theta, rest) = quotient(matrix, v, known);
+        rest <= GIVEN * theta.abs()
+    };
     // the lowest ones that are found, and with them all that is known
-    let (mut sure, mut apart) = (0, known.to_vec());
+    let mut sure = given.iter().take_while(is_sharp).count();
+    let mut apart = [known, &given[..sure]].concat();
     // no other eigenvalue below the one, some below the other
     let (mut low, mut high, mut down) = (f64::NEG_INFINITY, f64::INFINITY, FAR * scale);
     let (mut shift, mut memory) = (-down, Matrix::default());
+    if sure == 0
+        && let Some(near) = nearer(matrix, &modes, 0, known, low, scale)
+    {
+        shift = near;
+    }
     for _ in 0..ROUNDS {
         memory.copy_from(matrix);
         memory.shift(-shift);
@@ -53,7 +67,7 @@ pub(super) fn together(matrix: &Matrix, known: &[Vec<f64>], wanted: Modes) -> (V
         low = shift;
         let mut krylov = Krylov::new(&factors, &apart, SPARE + modes.len() - sure);
         krylov.starts = modes[sure..].iter().map(|mode| mode.vector.clone()).collect();
-        let rest = Modes { count: wanted.count - sure, below: wanted.below - low };
+        let rest = Modes { count: wanted.count - sure, below: wanted.below - low, ..wanted };
         let mut most = (BLOCKS + 1) * (SPARE + wanted.count);
         loop {
             let (space, settled) = krylov.largest(rest, most);
@@ -70,7 +84,7 @@ pub(super) fn together(matrix: &Matrix, known: &[Vec<f64>], wanted: Modes) -> (V
                 shift = low;
                 break;
             }
-            let here = krylov.converged(space.len());
+            let here = krylov.converged(space.len(), wanted.part);
             let next = nearer(matrix, &modes, sure, known, low, scale).filter(|s| *s < high);
             let beyond = nearer(matrix, &modes, sure + here, known, low, scale).filter(|_| here > 0);
             if let Some(nearer) = beyond {

@@ -10,7 +10,7 @@ use super::StateContext;
 use super::sense::Sense;
 use crate::error::{Error, Result};
 use crate::geometry::{Direction, Quaternion, Vector, vector};
-use crate::lattice::{Lattice, shortest};
+use crate::lattice::Lattice;
 use crate::units::{Angle, Place};
 use serde::de::{self, Deserialize, Deserializer, IntoDeserializer, Visitor};
 use std::fmt;
@@ -45,7 +45,7 @@ impl Texture<'_> {
         };
         let periods = lattice.periods();
         let of = |i: usize| {
-            let [x, y, _] = shortest(vector::sub(lattice.place(i), center), &periods);
+            let [x, y, _] = periods.shortest(vector::sub(lattice.place(i), center));
             let r = (x * x + y * y).sqrt();
             let phi = if r > ON_THE_LINE { libm::atan2(y, x) } else { 0.0 };
             let (sin, cos) = libm::sincos(f64::from(self.vorticity) * phi);

@@ -4,8 +4,7 @@
 //! through a start may lead to a maximum. What this search ends in has index one.
 
 use super::point::Point;
-use super::search::{GaveUp, STEPS, Search};
-use super::state::State;
+use super::search::{GaveUp, STEPS, Saddle, Search};
 use super::tolerances::STEP;
 use super::valley::Refined;
 use crate::energy::Evaluator;
@@ -22,5 +21,6 @@ pub fn follow_modes(h: Evaluator, m: &[f64], floor_mev: f64) -> Option<Refined> 
     let found = search.run(STEPS, |here, _| left(here).then_some(GaveUp::Stuck));
     let factorisations = search.steps;
     let saddle = found.and_then(|()| search.saddle()).ok()?;
-    Some(Refined { arrived: true, state: State::of(h, saddle.point), valley: saddle.mode, factorisations, index: 1 })
+    let Saddle { state, mode: valley, spectrum, .. } = saddle;
+    Some(Refined { arrived: true, state, valley, factorisations, index: 1, spectrum: Some(spectrum) })
 }

@@ -33,6 +33,8 @@ pub struct Relaxed {
     pub left: Option<WayDown>,
     /// The force fell below the tolerance.
     pub converged: bool,
+    /// The signs of its modes, if they were counted.
+    pub spectrum: Option<Spectrum>,
 }
 
 /// How a saddle was left for a minimum.
@@ -53,17 +55,23 @@ pub fn relax_to_minimum(h: Evaluator, start: &Spins, tolerance_mev: f64) -> Resu
     let mut left = None;
     let mut steps = 0;
     let mut memory = Matrix::default();
+    let mut spectrum;
     loop {
         p = stationary(h, p, tolerance_mev, &mut steps, &mut memory)?;
-        let Some((below, way)) = way_down(h, &p, &mut memory) else { break };
-        if way.fallen_mev <= 0.0 {
+        let state = State::of(h, p);
+        let here = Spectrum::of(h, &state, 0);
+        let down = if here.negative > 0 { way_down(h, &state) } else { None };
+        spectrum = here;
+        let Some((below, way)) = down.filter(|(_, way)| way.fallen_mev > 0.0) else {
+            p = state.point;
             break;
-        }
+        };
         left.get_or_insert(way);
         steps += 1;
         p = below;
     }
     Ok(Relaxed {
+        spectrum: Some(spectrum),
         max_torque_mev: p.max_torque_mev(),
         steps,
         largest_rotation_rad: largest_angle(start.as_slice(), &p.m),
@@ -138,17 +146,14 @@ fn newton_step(h: Evaluator, p: &Point, shift: &mut f64, memory: &mut Matrix) ->
     None
 }
 
-/// From a state with a negative direction, stationary or nearly so: the minimum below it; nothing if there is no such direction.
-fn way_down(h: Evaluator, p: &Point, memory: &mut Matrix) -> Option<(Point, WayDown)> {
-    if Spectrum::negatives(h, p, memory) == 0 {
-        return None;
-    }
-    let state = State::of(h, p.clone());
+/// From a state with a negative direction, stationary or nearly so: the minimum below it.
+fn way_down(h: Evaluator, state: &State) -> Option<(Point, WayDown)> {
     let mode = state.field(&state.lowest_mode(h)?.vector);
-    let below = Point::at(h, descend(h, &state, &mode, h.stiffness_mev(), &[]).m);
+    let below = Point::at(h, descend(h, state, &mode, h.stiffness_mev(), &[]).m);
     let turns = Components::new(&mode);
     let largest = (0..h.sites()).max_by(|i, j| vector::norm(turns.get(*i)).total_cmp(&vector::norm(turns.get(*j))));
     let site = largest.unwrap_or(0);
-    let way = WayDown { site, direction: vector::unit_or(turns.get(site), [0.0; 3]), fallen_mev: p.above_mev(&below) };
+    let way =
+        WayDown { site, direction: vector::unit_or(turns.get(site), [0.0; 3]), fallen_mev: state.above_mev(&below) };
     Some((below, way))
 }

@@ -6,7 +6,6 @@ use super::state::State;
 use super::step::{Region, Step};
 use super::tolerances::{FLAT, ROUGHLY, SHARP, STEP};
 use crate::energy::Evaluator;
-use crate::linalg::Matrix;
 use std::mem::swap;
 
 /// How far a stationary state of too many negative directions is left along the lowest of the wrong ones (rad, any spin).
@@ -58,8 +57,10 @@ pub struct Climb {
 /// A saddle of index one.
 #[derive(Debug)]
 pub struct Saddle {
-    /// Spins, energy and torque.
-    pub point: Point,
+    /// Spins, energy, torque and Hessian.
+    pub state: State,
+    /// The signs of its modes.
+    pub spectrum: Spectrum,
     /// The descending mode: a unit field of 3N numbers.
     pub mode: Vec<f64>,
     /// Its curvature (meV), negative.
@@ -166,14 +167,11 @@ impl<'a> Search<'a> {
 
     /// Where it is, if that is a saddle of index one.
     pub fn saddle(self) -> Result<Saddle, GaveUp> {
-        let mut room = Matrix::default();
-        if Spectrum::negatives(self.h, &self.here, &mut room) != 1 {
-            return Err(GaveUp::Stuck);
-        }
         let state = State::of(self.h, self.here);
-        let lowest = state.lowest_mode(self.h).ok_or(GaveUp::Stuck)?;
-        let (mut mode, curvature_mev) = (state.field(&lowest.vector), lowest.value);
+        let (spectrum, lowest) = Spectrum::of_saddle(self.h, &state);
+        let lowest = lowest.filter(|_| spectrum.negative == 1).ok_or(GaveUp::Stuck)?;
+        let (mut mode, curvature_mev) = (state.field(&lowest), state.curvature_mev(&lowest));
         self.h.hold_frozen(&mut mode);
-        Ok(Saddle { point: state.point, mode, curvature_mev })
+        Ok(Saddle { state, mode, curvature_mev, spectrum })
     }
 }

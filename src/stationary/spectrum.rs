@@ -6,9 +6,9 @@
 use super::border::pin;
 use super::point::Point;
 use super::state::State;
-use super::tolerances::STATIONARY;
+use super::tolerances::{ROUGHLY, STATIONARY};
 use crate::energy::Evaluator;
-use crate::linalg::{Factors, Matrix};
+use crate::linalg::{Factors, Matrix, modes_by_factors};
 use serde::{Deserialize, Serialize};
 use std::mem::take;
 
@@ -33,15 +33,47 @@ impl Spectrum {
     /// Of a state, with `count` of its eigenvalues. The counts of signs cost two factorisations, one where none is
     /// negative; eigenvalues cost far more.
     pub fn of(h: Evaluator, state: &State, count: usize) -> Spectrum {
+        let (spectrum, _) = Spectrum::counted(h, state, |_| None);
+        Spectrum { lowest_mev: lowest_eigenvalues_mev(h, state, count, &[]), ..spectrum }
+    }
+
+    /// Of a state, without eigenvalues, and the vector of its negative mode (in tangent coordinates) where it has one alone. Where
+    /// no other eigenvalue is below the floor that mode's own value tells the counts, by one factorisation.
+    pub fn of_saddle(h: Evaluator, state: &State) -> (Spectrum, Option<Vec<f64>>) {
+        Spectrum::counted(h, state, |factors| {
+            let roughly = modes_by_factors(factors, &state.zeros, Vec::new(), ROUGHLY).unwrap_or_default();
+            state.lowest_modes_beside(h, 1, &roughly).into_iter().next().map(|mode| mode.vector)
+        })
+    }
+
+    /// The counts, and what `lone` makes of factors with one negative direction, if the Hessian is negative along that.
+    fn counted(
+        h: Evaluator,
+        state: &State,
+        lone: impl Fn(&Factors) -> Option<Vec<f64>>,
+    ) -> (Spectrum, Option<Vec<f64>>) {
         let norm_mev = state.hessian.norm1();
         let floor_mev = floor_mev(h, norm_mev);
-        let below = |shift: f64| pinned(h, state.hessian.clone(), &state.zeros, shift).negatives();
-        let below_floor = below(-floor_mev);
+        let falling = |factors: &Factors| {
+            let mode = if factors.negatives() == 1 { lone(factors) } else { None };
+            mode.filter(|v| state.curvature_mev(v) < -floor_mev)
+        };
+        let mut factors = pinned(h, state.hessian.clone(), &state.zeros, -floor_mev);
+        let below_floor = factors.negatives();
+        let mut mode = falling(&factors);
         // most states that are looked at are minima, and need no more
-        let negative = if below_floor == 0 { 0 } else { below(floor_mev) };
+        let negative = if below_floor == 0 || mode.is_some() {
+            below_floor
+        } else {
+            let mut matrix = factors.into_memory();
+            matrix.copy_from(&state.hessian);
+            factors = pinned(h, matrix, &state.zeros, floor_mev);
+            mode = falling(&factors);
+            factors.negatives()
+        };
         let flat = below_floor.saturating_sub(negative);
-        let lowest_mev = lowest_eigenvalues_mev(h, state, count);
-        Spectrum { negative, flat, zero: state.zeros.len(), floor_mev, norm_mev, lowest_mev }
+        let zero = state.zeros.len();
+        (Spectrum { negative, flat, zero, floor_mev, norm_mev, lowest_mev: Vec::new() }, mode)
     }
 
     /// Negative directions at a point, zero modes apart: one factorisation, in the memory of `matrix`.
@@ -65,11 +97,12 @@ impl Spectrum {
     }
 }
 
-/// The lowest eigenvalues of a state's Hessian (meV), so many if there are, ascending, zero modes and frozen spins apart.
-pub fn lowest_eigenvalues_mev(h: Evaluator, state: &State, count: usize) -> Vec<f64> {
+/// The lowest eigenvalues of a state's Hessian (meV), so many if there are, ascending, zero modes and frozen spins apart; `known` are
+/// the vectors of the lowest of them, as far as these are known.
+pub fn lowest_eigenvalues_mev(h: Evaluator, state: &State, count: usize, known: &[Vec<f64>]) -> Vec<f64> {
     let frozen = (0..h.sites()).filter(|&i| h.is_frozen(i)).count();
     let free = (state.hessian.order() - 2 * frozen).saturating_sub(state.zeros.len());
-    state.lowest_eigenvalues_mev(h, count.min(free))
+    state.lowest_eigenvalues_mev(h, count.min(free), known)
 }
 
 /// The factors of a Hessian + shift·1 whose zero modes are pinned.

@@ -3,7 +3,7 @@
 use super::point::Point;
 use crate::energy::{Evaluator, Hamiltonian};
 use crate::hessian::Resolvent;
-use crate::linalg::{Matrix, Mode, Wanted, lowest_modes, softest};
+use crate::linalg::{Matrix, Mode, Wanted, lowest_modes_beside, slab, softest};
 use crate::sphere::move_points;
 use crate::threads::both;
 use serde::{Deserialize, Serialize};
@@ -66,22 +66,39 @@ impl State {
 
     /// The lowest modes, so many if there are, zero modes apart; where factors take long, without them if that can be had.
     pub fn lowest_modes(&self, h: Evaluator, count: usize) -> Vec<Mode> {
-        self.modes(h, count, Wanted::Vectors)
+        self.modes(h, count, Wanted::Vectors, &[])
     }
 
-    /// Their eigenvalues (meV) alone.
-    pub fn lowest_eigenvalues_mev(&self, h: Evaluator, count: usize) -> Vec<f64> {
-        self.modes(h, count, Wanted::Values).into_iter().map(|mode| mode.value).collect()
+    /// The same where the vectors of the lowest are known roughly.
+    pub fn lowest_modes_beside(&self, h: Evaluator, count: usize, roughly: &[Vec<f64>]) -> Vec<Mode> {
+        self.modes(h, count, Wanted::Vectors, roughly)
     }
 
-    fn modes(&self, h: Evaluator, count: usize, wanted: Wanted) -> Vec<Mode> {
+    /// Their eigenvalues (meV) alone; `known` are the vectors of the lowest, as far as these are known.
+    pub fn lowest_eigenvalues_mev(&self, h: Evaluator, count: usize, known: &[Vec<f64>]) -> Vec<f64> {
+        self.modes(h, count, Wanted::Values, known).into_iter().map(|mode| mode.value).collect()
+    }
+
+    /// The lowest eigenvalue (meV), to a thousandth where more takes long.
+    pub fn stiffness_mev(&self, h: Evaluator) -> Option<f64> {
+        self.modes(h, 1, Wanted::Size, &[]).first().map(|mode| mode.value)
+    }
+
+    /// vᵀHv/v² (meV) of a vector in tangent coordinates.
+    pub fn curvature_mev(&self, v: &[f64]) -> f64 {
+        let mut image = vec![0.0; v.len()];
+        self.hessian.multiply(v, &mut image);
+        slab::dot(v, &image) / slab::dot(v, v)
+    }
+
+    fn modes(&self, h: Evaluator, count: usize, wanted: Wanted, known: &[Vec<f64>]) -> Vec<Mode> {
         let iterated = || {
             let nearly = Resolvent::at(&h, &self.m, &self.gradient, &self.basis);
             let apply = |x: &mut [f64], theta: f64| nearly.apply(x, theta);
-            softest(&self.hessian, count, &self.zeros, wanted, &apply, &|| h.is_stopped())
+            softest(&self.hessian, count, &self.zeros, (wanted, known), &apply, &|| h.is_stopped())
         };
         let found = is_very_dear(&h).then(iterated).flatten();
-        found.unwrap_or_else(|| lowest_modes(&self.hessian, count, &self.zeros))
+        found.unwrap_or_else(|| lowest_modes_beside(&self.hessian, count, &self.zeros, (wanted, known)))
     }
 
     /// The spins after a move along a vector field.

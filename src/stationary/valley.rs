@@ -12,6 +12,7 @@
 use super::pinned::Pinned;
 use super::polish::polish;
 use super::search::STEPS;
+use super::spectrum::Spectrum;
 use super::state::State;
 use super::tolerances::{ALIKE, LARGER, NEARLY, ROUNDING, SHARP, STEP};
 use crate::energy::Evaluator;
@@ -55,6 +56,8 @@ pub struct Refined {
     pub factorisations: usize,
     /// Negative directions, zero modes apart.
     pub index: usize,
+    /// The signs of its modes, if they were counted.
+    pub spectrum: Option<Spectrum>,
 }
 
 /// The search's memory.
@@ -375,6 +378,7 @@ impl Search<'_> {
             valley: self.state.field(p.soft()),
             factorisations: self.factorisations,
             index: p.index,
+            spectrum: None,
             state: self.state,
         }
     }

@@ -162,7 +162,7 @@ impl Run<'_, '_> {
         let input: Vec<&[f64]> = starts.iter().map(Spins::as_slice).collect();
         let relaxed = |k: usize| -> Result<Minimum> {
             let relaxed = relax_to_minimum(h, &starts[k], RELAXED * h.stiffness_mev())?;
-            Ok(Minimum::examine(h, &relaxed.spins))
+            Ok(Minimum::of(h, &relaxed))
         };
         let minima: Vec<Minimum> = recorded_each(h, "seeds", &input, relaxed)?;
         let heights: Vec<f64> = minima.iter().map(|m| self.land.height_mev(m.spins.as_slice())).collect();

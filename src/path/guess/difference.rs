@@ -2,7 +2,7 @@
 
 use super::outline::orthonormal;
 use crate::geometry::{Vector, angle, vector};
-use crate::lattice::{Lattice, shortest};
+use crate::lattice::Lattice;
 use crate::linalg::solve_dense;
 use crate::spins::Spins;
 use std::f64::consts::TAU;
@@ -62,7 +62,7 @@ impl Difference {
         let (through, periods) =
             (if self.across.is_empty() { Vec::new() } else { self.through.clone() }, lattice.periods());
         move |i| {
-            let way = shortest(vector::sub(lattice.place(i), place), &periods);
+            let way = periods.shortest(vector::sub(lattice.place(i), place));
             through.iter().fold(way, |v, e| vector::normal_part(v, *e))
         }
     }
@@ -120,7 +120,7 @@ fn middle(lattice: &Lattice, sites: &[usize], a: &Spins, b: &Spins) -> Vector {
         let angle = libm::atan2(turn[d][1], turn[d][0]);
         vector::add(sum, vector::scale(angle / TAU * size[d] as f64, cells[d]))
     });
-    let way = |i: usize| shortest(vector::sub(lattice.place(i), first), &periods);
+    let way = |i: usize| periods.shortest(vector::sub(lattice.place(i), first));
     let total: f64 = sites.iter().map(|i| weight(*i)).sum();
     let sum = sites.iter().fold([0.0; 3], |sum, i| vector::add(sum, vector::scale(weight(*i) / total, way(*i))));
     vector::add(first, sum)
@@ -195,7 +195,7 @@ mod tests {
     fn spot(lattice: &Lattice, center: Vector, radius: f64) -> [Spins; 2] {
         let periods = lattice.periods();
         let down = |i: usize| {
-            let [x, y, _] = shortest(vector::sub(lattice.place(i), center), &periods);
+            let [x, y, _] = periods.shortest(vector::sub(lattice.place(i), center));
             [0.0, 0.0, if x * x + y * y < radius * radius { -1.0 } else { 1.0 }]
         };
         let vectors: Vec<Vector> = (0..lattice.sites).map(down).collect();
@@ -213,7 +213,7 @@ mod tests {
                     let [a, b] = spot(&lattice, center, 2.1);
                     let found = Difference::between(&a, &b, &lattice);
                     assert!(found.is_spot() && found.across.len() == 2 && found.through.len() == usize::from(nz > 1));
-                    let way = shortest(vector::sub(found.middle, center), &lattice.periods());
+                    let way = lattice.periods().shortest(vector::sub(found.middle, center));
                     assert!(vector::norm([way[0], way[1], 0.0]) < 1e-9, "{way:?}");
                     let beside = vector::sub(found.hollow(found.middle, &lattice), found.middle);
                     assert!((vector::norm(beside) - hollow).abs() < 1e-9, "{beside:?}");

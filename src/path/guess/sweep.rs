@@ -8,7 +8,7 @@ use super::outline::Outline;
 use super::{FirstGuess, GuessContext};
 use crate::error::{Error, Result};
 use crate::geometry::{Direction, Vector, angle, vector};
-use crate::lattice::{Lattice, shortest};
+use crate::lattice::Lattice;
 use crate::path::Path;
 use crate::registry::Described;
 use crate::spins::Spins;
@@ -197,7 +197,7 @@ impl Sweep {
                 let corners: Vec<Vector> = outline()?.corners.into_iter().map(|i| lattice.place(i)).collect();
                 let periods = lattice.periods();
                 let nearest = move |i: usize| {
-                    let from = corners.iter().map(|c| shortest(vector::sub(lattice.place(i), *c), &periods));
+                    let from = corners.iter().map(|c| periods.shortest(vector::sub(lattice.place(i), *c)));
                     from.fold([f64::INFINITY; 3], |a, b| if vector::norm(b) < vector::norm(a) { b } else { a })
                 };
                 Front::round(nearest, false, sites)
