@@ -52,6 +52,7 @@ mod states;
 mod structure;
 mod sweep;
 mod symmetry;
+mod without_factors;
 
 #[test]
 fn every_file_of_tests_is_among_them() {

@@ -59,6 +59,7 @@ fn outcome(path: Path, length: f64, energy: impl Fn(f64) -> f64) -> Outcome {
         moved_rad: Some(0.125),
     };
     Outcome {
+        certificate: None,
         converged: true,
         certified: true,
         stop_code: StopCode::Converged,

@@ -75,8 +75,12 @@ pub fn report_of(loaded: &Loaded, problem: &Problem) -> Vec<(&'static str, Strin
     let estimate = Estimate::of(problem, &scales);
     let seconds = estimate.processor_seconds(loaded, problem, &scales);
     row("time", format!("about {} of one processor, by a measured step", duration(seconds)));
-    for warning in physics.warnings.iter().chain(&loaded.warnings) {
-        row("warning", warning.clone());
+    let mut said: Vec<&String> = Vec::new();
+    for warning in physics.warnings.iter().chain(&loaded.warnings).chain(&problem.warnings) {
+        if !said.contains(&warning) {
+            said.push(warning);
+            row("warning", warning.clone());
+        }
     }
     rows
 }

@@ -8,7 +8,7 @@ use super::{Interval, Run, UNFINISHED, USAGE, note, report, worse};
 use crate::config::{Loaded, VERSION, discard_leftovers, load};
 use crate::drive;
 use crate::error::Error;
-use crate::output::{StoppedRun, Summary, partial_files, write_partial};
+use crate::output::{StoppedRun, Summary, Told, partial_files, write_partial};
 use crate::record::Checkpoint;
 use anyhow::Result;
 use serde_json::{Value, json};
@@ -241,7 +241,8 @@ fn in_words(summary: &Summary) -> String {
         }
         _ => String::new(),
     };
-    format!("{}{climb}; {}", certainty.barrier_words(barrier), summary.stop_reason)
+    let by = if summary.certificate == Some(Told::Bounded) { " (bounded, not counted)" } else { "" };
+    format!("{}{by}{climb}; {}", certainty.barrier_words(barrier), summary.stop_reason)
 }
 
 fn json_line(summary: &Summary, name: &str, directory: &Path, code: u8) -> Value {
@@ -251,6 +252,7 @@ fn json_line(summary: &Summary, name: &str, directory: &Path, code: u8) -> Value
         "highest_climb_meV": summary.highest_climb_meV,
         "converged": summary.head.converged,
         "certified": summary.head.certified,
+        "certificate": summary.certificate,
         "stop_code": summary.stop_code,
         "warnings": summary.warnings,
         "exit_code": code,

@@ -14,6 +14,7 @@ use crate::rates::RateSettings;
 use crate::sphere::{IDENTICAL, SAME};
 use crate::spins::Spins;
 use crate::state::{Sense, StateContext, StateSpec};
+use crate::stationary::is_very_dear;
 use crate::words::quoted;
 use std::sync::Arc;
 use std::time::Instant;
@@ -65,10 +66,12 @@ impl Loaded {
         problem.search = config.effort().map_err(here)?;
         problem.neb = config.neb.settings();
         problem.rates = self.rates(problem.hamiltonian.lattice(), config.rates.as_ref())?;
+        forgo_factors(&mut problem, &scales);
         self.affordable(needed_bytes(&problem, &scales), Some(expected_images(&problem, &scales)))?;
         guess(&problem, &scales).map_err(here)?;
         let of_physics = physics::warnings(self, &problem.hamiltonian, &scales);
-        problem.warnings = self.warnings.iter().cloned().chain(of_physics).collect();
+        let of_memory = std::mem::take(&mut problem.warnings);
+        problem.warnings = self.warnings.iter().cloned().chain(of_physics).chain(of_memory).collect();
         problem.made_in_s = started.elapsed().as_secs_f64();
         Ok(problem)
     }
@@ -118,8 +121,9 @@ impl Loaded {
         let mut problem = Problem::new(hamiltonian, initial.clone(), initial);
         problem.sense = sense;
         problem.neb = self.config.neb.settings();
-        self.affordable(needed_bytes(&problem, &scales), None)?;
         problem.warnings = self.warnings.clone();
+        forgo_factors(&mut problem, &scales);
+        self.affordable(needed_bytes(&problem, &scales), None)?;
         Ok((problem, seeds, rates))
     }
 
@@ -276,7 +280,29 @@ pub fn needed_bytes(problem: &Problem, scales: &Scales) -> f64 {
     let bonds = h.constant_blocks().bond.len();
     let images = expected_images(problem, scales);
     far + memory::hamiltonian_bytes(h.sites(), bonds, h.terms().len())
-        + memory::band_bytes(images, h.sites(), h.layout(), rayon::current_num_threads())
+        + memory::band_bytes(images, h.sites(), h.layout(), factors_at_a_time(h), rayon::current_num_threads())
+}
+
+/// Factors of blocks whose memory is held at a time: where they are very dear one is made after the other, in the memory of one that was
+/// made before, beside that of a search.
+fn factors_at_a_time(h: &Hamiltonian) -> usize {
+    match (h.forgoes_factors(), is_very_dear(h)) {
+        (true, _) => 0,
+        (false, true) => 3,
+        (false, false) => 2 * rayon::current_num_threads(),
+    }
+}
+
+/// Where no memory would hold factors they are done without; what is to be said of it.
+fn forgo_factors(problem: &mut Problem, scales: &Scales) {
+    let Some(whose) = memory::exceeded(needed_bytes(problem, scales)) else { return };
+    problem.hamiltonian.forgo_factors();
+    if problem.hamiltonian.forgoes_factors() {
+        problem.warnings.push(format!(
+            "factors of its Hessians need more memory than {whose}: equations are solved by iteration, negative directions are bounded, not \
+             counted, and there are no prefactors"
+        ));
+    }
 }
 
 /// Largest derivative of a term by a component (meV) in a state of no order; an error where it is absurd.

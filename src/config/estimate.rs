@@ -38,6 +38,8 @@ const PROOFS: f64 = 2.5;
 /// Where factors are very dear, so many are made, each by all threads, and a gradient takes the time of so many solutions by them.
 const FACTORS: f64 = 16.0;
 const SOLUTIONS: f64 = 16.0;
+/// Gradients with Hessians, in whose time an image moves where nothing is factorised.
+const ITERATIONS: f64 = 10.0;
 /// Figures as pixels and as vectors, and what each image adds to either (s).
 const PIXELS_S: f64 = 0.2;
 const VECTORS_S: f64 = 0.03;
@@ -89,7 +91,9 @@ impl Estimate {
         let (h, gradient) = (&problem.hamiltonian, gradient_seconds(problem, scales));
         let evaluations = self.evaluations as f64;
         drawn
-            + if is_very_dear(h) {
+            + if h.forgoes_factors() {
+                gradient * ITERATIONS * evaluations
+            } else if is_very_dear(h) {
                 let factors = FACTORS * rayon::current_num_threads() as f64;
                 gradient * (factors + SOLUTIONS * evaluations / h.solutions_a_factor())
             } else {
@@ -109,7 +113,9 @@ fn gradient_seconds(problem: &Problem, scales: &Scales) -> f64 {
         let start = Instant::now();
         let _ = h.energy_gradient(m, &mut g);
         assemble_shifted(h, m, &g, &basis, scales.stiffness_mev, &mut matrix);
-        matrix = std::mem::take(&mut matrix).factor().into_memory();
+        if !h.forgoes_factors() {
+            matrix = std::mem::take(&mut matrix).factor().into_memory();
+        }
         shortest = shortest.min(start.elapsed().as_secs_f64());
         if begin.elapsed().as_secs_f64() > MEASURED_S {
             break;

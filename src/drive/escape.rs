@@ -15,6 +15,9 @@ const PUSH: f64 = 0.8;
 pub fn escapes(band: &Band, found: &Saddle, c: f64) -> Vec<Path> {
     let state = &found.refined.state;
     let enough = -ALIKE * c;
+    if band.hamiltonian().forgoes_factors() {
+        return Vec::new();
+    }
     let modes = soft_modes(&state.hessian, 8, &state.zeros, enough, &|| false);
     let negative: Vec<_> = modes.into_iter().filter(|m| m.value < enough).collect();
     if negative.len() < 2 {

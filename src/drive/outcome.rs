@@ -1,10 +1,12 @@
 //! What a run found: everything that is written to disk is a function of an [`Outcome`].
 
 use super::{Problem, StopCode, is_said_of_rates, rates_warnings, stored_rates};
+use crate::hessian::Bound;
 use crate::landscape::Effort;
 use crate::path::Path;
 use crate::rates::Rates;
 use crate::spins::Spins;
+use crate::stationary::Spectrum;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 
@@ -15,6 +17,8 @@ pub struct Outcome {
     pub converged: bool,
     /// Saddles and ends were proven to be what they are said to be.
     pub certified: bool,
+    /// By what the negative directions of ends and saddles are told; nothing of what is not certified.
+    pub certificate: Option<Certificate>,
     /// Why the run stopped, from a closed list.
     pub stop_code: StopCode,
     /// Why the run stopped, in words.
@@ -56,6 +60,23 @@ pub struct Outcome {
     pub max_perpendicular_torque_mev: f64,
     /// Largest rotation that the relaxation still predicted (rad).
     pub largest_predicted_rotation_rad: f64,
+}
+
+/// By what the negative directions of a state are told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Certificate {
+    /// All of them, by the inertia of a factorised Hessian.
+    Counted,
+    /// Those that were found; that there is no other, by this bound, where memory would not hold the factors.
+    Bounded(Bound),
+}
+
+impl Certificate {
+    /// Of all these states.
+    pub fn of<'a>(spectra: impl Iterator<Item = &'a Spectrum>) -> Certificate {
+        let weakest = spectra.filter_map(|spectrum| spectrum.bound).max_by(|p, q| p.part.total_cmp(&q.part));
+        weakest.map_or(Certificate::Counted, Certificate::Bounded)
+    }
 }
 
 impl Outcome {

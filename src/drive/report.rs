@@ -108,9 +108,13 @@ pub fn outcome(
     let of_rates = rates.iter().flat_map(rates::warnings);
     let warnings = run.warnings(doubts.iter().map(Doubt::warning).chain(flat).chain(of_rates));
     let (certified, iterations) = (doubts.is_empty() && barrier.is_some(), band.evaluations());
+    let beside = links.iter().flat_map(|link| [&link.before, &link.after]).chain(&proof.ends);
+    let spectra = links.iter().map(|link| &link.spectrum).chain(beside.map(|minimum| &minimum.spectrum));
+    let certificate = certified.then(|| Certificate::of(spectra));
     let course = Course::of(c.band, c.history);
     Outcome {
         certified,
+        certificate,
         warnings,
         barrier,
         highest_climb,
@@ -203,6 +207,7 @@ impl Course {
         Outcome {
             converged: verdict.is_converged(),
             certified: false,
+            certificate: None,
             stop_code: verdict.code(),
             stop_reason: verdict.to_string(),
             warnings: Vec::new(),

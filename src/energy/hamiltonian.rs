@@ -37,6 +37,7 @@ pub struct Hamiltonian {
     blocks: Blocks,
     exchange: OnceLock<ExchangeMatrix>,
     layout: Layout,
+    forgoes_factors: bool,
     reach: usize,
     stiffness: f64,
     axes: Vec<Vector>,
@@ -64,6 +65,7 @@ impl Hamiltonian {
             axes: symmetry_axes(&terms, sites),
             layout: lattice.layout(&blocks.bond.iter().map(|bonds| &bonds.family).collect::<Vec<_>>()),
             blocks,
+            forgoes_factors: false,
             exchange: OnceLock::new(),
             whole: terms.iter().map(|t| t.is_whole()).collect(),
             terms,
@@ -109,6 +111,17 @@ impl Hamiltonian {
     /// How a matrix of its bonds is kept, a long-ranged term apart.
     pub fn layout(&self) -> &Layout {
         &self.layout
+    }
+
+    /// From now on no matrix of its bonds is factorised, as where memory would not hold the factors: equations are solved and modes
+    /// found by iteration, and negative directions are bounded, not counted. Only of lattices whose factors are sparse.
+    pub fn forgo_factors(&mut self) {
+        self.forgoes_factors = self.has_dear_factors();
+    }
+
+    /// Whether it does.
+    pub fn forgoes_factors(&self) -> bool {
+        self.forgoes_factors
     }
 
     /// Whether factors of a matrix of its bonds take so long that solutions by iteration are quicker.

@@ -13,6 +13,7 @@
 mod any_lattice;
 mod assembly;
 mod basis;
+mod bound;
 mod complement;
 mod far;
 mod free;
@@ -21,6 +22,7 @@ mod stand_in;
 
 pub use assembly::{Assembly, assemble, assemble_into, assemble_shifted};
 pub use basis::{BasisTile, TangentBasis};
+pub use bound::{Bound, bound};
 pub use complement::{Complement, Place};
 pub use free::Free;
 pub use resolvent::Resolvent;

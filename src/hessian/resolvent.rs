@@ -69,7 +69,7 @@ mod tests {
     use crate::energy::test_terms::{hamiltonian, lattice};
     use crate::geometry::Direction;
     use crate::hessian::assemble;
-    use crate::linalg::{Wanted, lowest_modes, orthonormal, softest};
+    use crate::linalg::{Asked, Wanted, lowest_modes, orthonormal, softest};
     use crate::spins::Spins;
 
     #[test]
@@ -87,7 +87,15 @@ mod tests {
         let nearly = Resolvent::at(&h, m.as_slice(), &g, &basis);
         assert!((nearly.average + 0.1).abs() < 1e-12, "{}", nearly.average);
         let apply = |x: &mut [f64], theta: f64| nearly.apply(x, theta);
-        let modes = softest(&hessian, 2, &turns, (Wanted::Vectors, &[]), &apply, &|| false).expect("they are found");
+        let modes = softest(
+            &hessian,
+            2,
+            &turns,
+            Asked { wanted: Wanted::Vectors, given: &[], by_factors: true },
+            &apply,
+            &|| false,
+        )
+        .expect("they are found");
         let told = modes.iter().map(|mode| mode.value);
         // the next is the longest wave along the longer side
         let wave = -0.2 + 2.0 * (1.0 - libm::cos(std::f64::consts::PI / 14.0));
@@ -118,7 +126,15 @@ mod tests {
             let nearly = Resolvent::at(&h, m.as_slice(), &g, &basis);
             let apply = |x: &mut [f64], theta: f64| nearly.apply(x, theta);
             let exact = lowest_modes(&hessian, 3, &[]);
-            let modes = softest(&hessian, 3, &[], (Wanted::Values, &[]), &apply, &|| false).expect("they are found");
+            let modes = softest(
+                &hessian,
+                3,
+                &[],
+                Asked { wanted: Wanted::Values, given: &[], by_factors: true },
+                &apply,
+                &|| false,
+            )
+            .expect("they are found");
             for (mode, exact) in modes.iter().zip(&exact) {
                 assert!((mode.value - exact.value).abs() < 1e-10, "{j}: {} {}", mode.value, exact.value);
             }

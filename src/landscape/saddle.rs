@@ -98,6 +98,9 @@ impl Saddle {
                 return found;
             }
         }
+        if h.forgoes_factors() {
+            return Saddle { refined: Refined::not_found(h, &top.m, &top.tau), top };
+        }
         let refined = refine(h, &top.m, &top.tau, c, top.floor_mev);
         let mut found = Saddle { top, refined };
         if !found.is_stationary(c) {
@@ -140,7 +143,8 @@ impl Saddle {
             better.then_some(found)
         };
         let floor = self.top.floor_mev;
-        better(refine(h, &start, &self.refined.valley, c, floor)).or_else(|| better(follow_modes(h, &start, floor)?))
+        let valley = (!h.forgoes_factors()).then(|| refine(h, &start, &self.refined.valley, c, floor));
+        valley.and_then(better).or_else(|| better(follow_modes(h, &start, floor)?))
     }
 
     /// Stationary to machine precision, and near the start's height.

@@ -57,9 +57,11 @@ impl Stored for Saddle {
 
 impl Stored for Spectrum {
     fn restored(self, _: Evaluator) -> Option<Self> {
-        let Spectrum { negative, flat, zero, floor_mev, norm_mev, lowest_mev } = &self;
-        let is_sound =
-            are_counts(&[*negative, *flat, *zero]) && are_finite(&[*floor_mev, *norm_mev]) && are_finite(lowest_mev);
+        let Spectrum { negative, flat, zero, floor_mev, norm_mev, lowest_mev, bound } = &self;
+        let is_sound = are_counts(&[*negative, *flat, *zero])
+            && are_finite(&[*floor_mev, *norm_mev])
+            && are_finite(lowest_mev)
+            && bound.is_none_or(|bound| bound.part.is_finite());
         is_sound.then_some(self)
     }
 }

@@ -47,7 +47,7 @@ pub use orthonormal::{orthonormal, remove};
 pub use ritz::{Mode, combination, rayleigh_ritz};
 pub use secants::Secants;
 pub use small::{eigen_symmetric, eigenvalues_symmetric, solve_dense};
-pub use softest::{Wanted, softest};
+pub use softest::{Asked, Wanted, softest};
 pub use sparse::{Graph, SparseLdl, SparseMatrix, Symbolic, nested_dissection};
 pub use tail::{Decays, Tail, TailedBand};
 pub use tail_ldl::TailLdl;

@@ -18,6 +18,8 @@ const SPARE: usize = 2;
 const PATIENCE: usize = 12;
 /// Most rounds.
 const ROUNDS: usize = 48;
+/// So many times as many where there are no factors.
+const LONGER: usize = 6;
 /// A vector with |Ax − θx| ≤ this part of θ is an eigenvector. A descent begins along one, and what else is in it may grow on the way: a
 /// wall that leaves a film may tilt.
 const SHARP: f64 = 1e-10;
@@ -53,6 +55,17 @@ impl Wanted {
     }
 }
 
+/// What is known before, and what is done for it.
+#[derive(Clone, Copy, Debug)]
+pub struct Asked<'a> {
+    /// What is wanted.
+    pub wanted: Wanted,
+    /// Vectors of some of the lowest modes, perhaps roughly.
+    pub given: &'a [Vec<f64>],
+    /// Whether factors may tell that no mode is missed, and take over where the modes are not found soon.
+    pub by_factors: bool,
+}
+
 /// The `count` lowest modes of `matrix` in the space orthogonal to `known` (orthonormal, invariant), ascending, none missed; by what
 /// `nearly` makes of a residual and its θ, a symmetric positive map. The vectors of some may be given. Nothing where they are not found
 /// soon. Where it is to `stop`, some vectors, to be thrown away.
@@ -60,7 +73,7 @@ pub fn softest(
     matrix: &Matrix,
     count: usize,
     known: &[Vec<f64>],
-    (wanted, given): (Wanted, &[Vec<f64>]),
+    Asked { wanted, given, by_factors }: Asked,
     nearly: &(dyn Fn(&mut [f64], f64) + Sync),
     stop: &dyn Fn() -> bool,
 ) -> Option<Vec<Mode>> {
@@ -84,9 +97,9 @@ pub fn softest(
         return None;
     }
     let mut settled = 0;
-    for round in 0..ROUNDS {
+    for round in 0..if by_factors { ROUNDS } else { LONGER * ROUNDS } {
         let before = block;
-        block = (count * (1 + round / PATIENCE) + SPARE).min(space.vectors.len());
+        block = (count * (1 + round.min(ROUNDS - 1) / PATIENCE) + SPARE).min(space.vectors.len());
         space.settle(block, if round == 0 { None } else { Some((before, settled)) });
         let mut residuals = space.residuals(block);
         let highest = residuals.last().map_or(0.0, |(_, theta)| *theta);
@@ -98,7 +111,8 @@ pub fn softest(
         settled = residuals.iter().take_while(|r| is_sharp(r)).count();
         if settled >= count || stop() {
             let modes = rayleigh_ritz(matrix, &space.vectors[..count]);
-            return (stop() || none_is_missed(matrix, &modes, known, matrix.norm1())).then_some(modes);
+            let complete = stop() || !by_factors || none_is_missed(matrix, &modes, known, matrix.norm1());
+            return complete.then_some(modes);
         }
         residuals.drain(..settled);
         residuals.par_iter_mut().for_each(|(r, theta)| nearly(r, *theta));
@@ -203,7 +217,8 @@ mod tests {
         let direct = lowest_modes(&a, 4, &[]);
         for (count, known) in [(1, vec![]), (3, vec![]), (2, vec![direct[0].vector.clone(), direct[1].vector.clone()])]
         {
-            let modes = softest(&a, count, &known, (Wanted::Vectors, &[]), &nearly, &|| false).expect("they are found");
+            let asked = Asked { wanted: Wanted::Vectors, given: &[], by_factors: true };
+            let modes = softest(&a, count, &known, asked, &nearly, &|| false).expect("they are found");
             assert_eq!(modes.len(), count);
             for (mode, exact) in modes.iter().zip(&direct[known.len()..]) {
                 assert!((mode.value - exact.value).abs() < 1e-10 * exact.value.abs(), "{mode:?}");

@@ -63,7 +63,7 @@ pub use spin_maps::{SitePlaces, draw_spin_maps};
 pub use spins_plot::{SpinsPlot, draw_spins};
 pub use stored_outcome::StoredOutcome;
 pub use stored_run::StoredRun;
-pub use summary::{BothWays, Summary, SummaryJson};
+pub use summary::{BothWays, Summary, SummaryJson, Told};
 
 use crate::drive::Outcome;
 use crate::error::Result;

@@ -59,6 +59,7 @@ impl StoredOutcome {
         let outcome = Outcome {
             converged: summary.head.converged,
             certified: summary.head.certified,
+            certificate: summary.told(),
             stop_code,
             stop_reason: summary.stop_reason,
             warnings: summary.warnings,

@@ -12,9 +12,11 @@ use super::rates_summary::{self, RateEntry, TransitionEntry};
 use super::read::{shown, text};
 use super::{Certainty, Format, RunReport};
 use crate::drive::{
-    Barrier, EndPoint, IntermediateMinimum, Outcome, RejectedPath, SaddlePoint, SearchReport, StopCode, Work,
+    Barrier, Certificate, EndPoint, IntermediateMinimum, Outcome, RejectedPath, SaddlePoint, SearchReport, StopCode,
+    Work,
 };
 use crate::error::{Error, Result};
+use crate::hessian::Bound;
 use crate::landscape::Effort;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -55,6 +57,12 @@ pub struct Summary {
     /// Which result it is.
     #[serde(flatten)]
     pub head: Head,
+    /// By what the negative directions of what is certified were told: "counted" or "bounded".
+    #[serde(default)]
+    pub certificate: Option<Told>,
+    /// The bound, where they were bounded.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    certificate_bound: Option<CertificateBound>,
     /// Why the run stopped, from a closed list; nothing of version 0.1.0.
     pub stop_code: Option<StopCode>,
     /// Why the run stopped, in words.
@@ -177,6 +185,31 @@ pub(super) struct Band {
     pub largest_predicted_rotation_rad: Number,
 }
 
+/// By what negative directions are told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Told {
+    /// By the inertia of factors.
+    Counted,
+    /// By Lanczos.
+    Bounded,
+}
+
+/// No direction is more negative than this part of its stiffness between spins, but for the negative ones that were found.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct CertificateBound {
+    part_of_stiffness: Number,
+    lanczos_steps: usize,
+    probability_of_error: Number,
+}
+
+impl From<Bound> for CertificateBound {
+    fn from(Bound { part, steps, probability }: Bound) -> CertificateBound {
+        let [part_of_stiffness, probability_of_error] = [part, probability].map(Number);
+        CertificateBound { part_of_stiffness, lanczos_steps: steps, probability_of_error }
+    }
+}
+
 impl Summary {
     fn of(run: &RunReport) -> Summary {
         let outcome = run.outcome;
@@ -190,6 +223,14 @@ impl Summary {
                 converged: outcome.converged,
                 certified: outcome.certified,
             },
+            certificate: outcome.certificate.map(|by| match by {
+                Certificate::Counted => Told::Counted,
+                Certificate::Bounded(_) => Told::Bounded,
+            }),
+            certificate_bound: outcome.certificate.and_then(|by| match by {
+                Certificate::Counted => None,
+                Certificate::Bounded(bound) => Some(bound.into()),
+            }),
             stop_code: Some(outcome.stop_code),
             stop_reason: outcome.stop_reason.clone(),
             warnings: outcome.warnings.clone(),
@@ -216,6 +257,17 @@ impl Summary {
         let wrong = |words: String| Error::invalid(shown(dir, MARK), format!("{words}: {WAY_OUT}"));
         let text = text(dir, MARK)?.ok_or_else(|| wrong("is not there".into()))?;
         serde_json::from_str(&text).map_err(|e| wrong(format!("is damaged: {e}")))
+    }
+
+    /// By what negative directions were told, with the bound.
+    pub(super) fn told(&self) -> Option<Certificate> {
+        let bound = |b: &CertificateBound| Bound {
+            part: b.part_of_stiffness.0,
+            steps: b.lanczos_steps,
+            probability: b.probability_of_error.0,
+        };
+        let by = self.certificate_bound.as_ref().map_or(Certificate::Counted, |b| Certificate::Bounded(bound(b)));
+        self.head.certified.then_some(by)
     }
 
     /// How certain its barrier is; results of earlier versions do not say how much of it is unknown.

@@ -47,6 +47,11 @@ pub enum Refusal {
          made of is not known; a shorter chain, a field or a defect gives the top of the path a shape"
     )]
     FlatMode(f64),
+    /// Memory does not hold the factors of a Hessian that a prefactor is made of.
+    #[error(
+        "the memory that may be used does not hold the factors of its Hessian, of whose determinant a prefactor is made"
+    )]
+    NoFactors,
     /// The descending mode of the saddle was not computed.
     #[error("the saddle has a descending mode that could not be computed")]
     LostMode,
@@ -110,6 +115,7 @@ pub fn unfit(crossing: &Crossing) -> Option<Refusal> {
     let s = crossing.spectrum;
     match s.negative {
         0 => Some(Refusal::FlatMode(s.floor_mev)),
+        1 if s.bound.is_some() && crossing.doubt.is_none() => Some(Refusal::NoFactors),
         1 => crossing.doubt.map(|doubt| Refusal::Doubted(doubt.into())),
         n => Some(Refusal::NegativeModes(n)),
     }

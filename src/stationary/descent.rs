@@ -88,7 +88,10 @@ pub fn descend(h: Evaluator, saddle: &State, valley: &[f64], c: f64, beside: &[&
         trail: Trail::from(&saddle.m),
         room: Room::default(),
         // where a state that came to rest is left, with no minimum beside it, the fall may be of 1e-9 meV, less than the noise without factors
-        unfactored: if beside.is_empty() { None } else { Unfactored::below(&h, &saddle.point, c) },
+        unfactored: match beside {
+            [] if !h.forgoes_factors() => None,
+            _ => Unfactored::below(&h, &saddle.point, c),
+        },
     };
     let arrived = h.has_dear_factors() && walk.roll() || walk.down();
     Descent { fallen_mev: saddle.above_mev(&walk.here), arrived, m: walk.here.m, way: walk.trail.into_points() }
@@ -389,7 +392,7 @@ impl Walk<'_> {
         }
         self.next.write_downhill(x);
         self.next.write_field(x, v);
-        let across = unfactored.solve(&self.h, &self.next, SHIFT * self.c, Some(&self.tau), v)?;
+        let across = unfactored.solve(&self.h, &self.next, SHIFT * self.c, &[&self.tau], v)?;
         v.copy_from_slice(across);
         self.tau = valley;
         Some(())
@@ -462,7 +465,7 @@ impl Walk<'_> {
         self.here.write_downhill(x);
         if let Some(unfactored) = &mut self.unfactored {
             self.here.write_field(x, v);
-            let down = unfactored.solve(&self.h, &self.here, rate, None, v)?;
+            let down = unfactored.solve(&self.h, &self.here, rate, &[], v)?;
             v.copy_from_slice(down);
             self.here.basis.write_coordinates(v, x);
         } else {

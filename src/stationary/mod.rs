@@ -8,6 +8,7 @@
 
 mod border;
 mod descent;
+mod iterated;
 mod modes;
 mod pinned;
 mod point;

@@ -1,6 +1,7 @@
 //! Relaxing a state to its minimum: Newton's method with a shift that keeps the Hessian positive, and descent checked.
 
 use super::tolerances::{ALIKE, FIRST_SHIFT, LARGER, LAST_SHIFT, NEARLY, ROUNDING, STATIONARY, STRIDE};
+use super::unfactored::Unfactored;
 use super::{Point, Spectrum, State, descend};
 use crate::energy::Evaluator;
 use crate::error::{Error, Result};
@@ -118,14 +119,7 @@ fn newton_step(h: Evaluator, p: &Point, shift: &mut f64, memory: &mut Matrix) ->
     let [first, least, small] = [FIRST_SHIFT, ALIKE, SMALL].map(|part| part * scale);
     let mut trial = if *shift > small { *shift } else { 0.0 };
     while trial < LAST_SHIFT * scale && !h.is_stopped() {
-        let mut matrix = take(memory);
-        p.write_hessian(h, trial + STATIONARY * scale, &mut matrix);
-        let mut x = p.downhill();
-        let factors = Factors::solving(matrix, &mut x, 1);
-        let positive = factors.negatives() == 0;
-        *memory = factors.into_memory();
-        if positive {
-            let mut v = p.field(&x);
+        if let Some(mut v) = newton(h, p, trial + STATIONARY * scale, memory) {
             let rotation = rotation_of(&v);
             if rotation > STRIDE {
                 slab::scale(&mut v, STRIDE / rotation);
@@ -144,6 +138,21 @@ fn newton_step(h: Evaluator, p: &Point, shift: &mut f64, memory: &mut Matrix) ->
         };
     }
     None
+}
+
+/// The solution v of (H + shift) v = F, a field; none where H + shift is not positive definite.
+fn newton(h: Evaluator, p: &Point, shift: f64, memory: &mut Matrix) -> Option<Vec<f64>> {
+    let mut x = p.downhill();
+    if h.forgoes_factors() {
+        let force = p.field(&x);
+        return Unfactored::about(&h, p, shift).solve(&h, p, shift, &[], &force).map(<[f64]>::to_vec);
+    }
+    let mut matrix = take(memory);
+    p.write_hessian(h, shift, &mut matrix);
+    let factors = Factors::solving(matrix, &mut x, 1);
+    let positive = factors.negatives() == 0;
+    *memory = factors.into_memory();
+    positive.then(|| p.field(&x))
 }
 
 /// From a state with a negative direction, stationary or nearly so: the minimum below it.

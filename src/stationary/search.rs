@@ -158,11 +158,11 @@ impl<'a> Search<'a> {
 
     /// Leaves a stationary state along the lowest of its wrong modes; not one that has none too many.
     fn leave(&mut self, step: &Step) -> bool {
-        if step.negative > 1 {
-            self.region.along_second(&self.here, LEAVE);
+        let leads_away = step.negative > 1 && self.region.along_second(&self.here, LEAVE);
+        if leads_away {
             self.here.move_by(self.h, &self.region.v);
         }
-        step.negative > 1
+        leads_away
     }
 
     /// Where it is, if that is a saddle of index one.

@@ -6,11 +6,15 @@
 use super::border::pin;
 use super::point::Point;
 use super::state::State;
-use super::tolerances::{ROUGHLY, STATIONARY};
+use super::tolerances::{INDEPENDENT, ROUGHLY, STATIONARY};
 use crate::energy::Evaluator;
-use crate::linalg::{Factors, Matrix, modes_by_factors};
+use crate::hessian::{Bound, Place, StandIn, bound};
+use crate::linalg::{Factors, Matrix, modes_by_factors, orthonormal};
 use serde::{Deserialize, Serialize};
 use std::mem::take;
+
+/// Most negative directions that are looked for without factors.
+const MOST: usize = 4;
 
 /// What kind of stationary point a state is.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -27,11 +31,15 @@ pub struct Spectrum {
     pub norm_mev: f64,
     /// The lowest eigenvalues (meV), as many as were asked for, ascending, zero modes and frozen spins apart.
     pub lowest_mev: Vec<f64>,
+    /// Where there are no factors: how negative a direction may be beside the negative ones, and none is flat to the floor. Nothing
+    /// where they were counted, or where there are more negative ones than were looked for.
+    #[serde(default)]
+    pub bound: Option<Bound>,
 }
 
 impl Spectrum {
     /// Of a state, with `count` of its eigenvalues. The counts of signs cost two factorisations, one where none is
-    /// negative; eigenvalues cost far more.
+    /// negative; eigenvalues cost far more. Where there are no factors, see `bound`.
     pub fn of(h: Evaluator, state: &State, count: usize) -> Spectrum {
         let (spectrum, _) = Spectrum::counted(h, state, |_| None);
         Spectrum { lowest_mev: lowest_eigenvalues_mev(h, state, count, &[]), ..spectrum }
@@ -54,6 +62,9 @@ impl Spectrum {
     ) -> (Spectrum, Option<Vec<f64>>) {
         let norm_mev = state.hessian.norm1();
         let floor_mev = floor_mev(h, norm_mev);
+        if h.forgoes_factors() {
+            return Spectrum::bounded(h, state, norm_mev, floor_mev);
+        }
         let falling = |factors: &Factors| {
             let mode = if factors.negatives() == 1 { lone(factors) } else { None };
             mode.filter(|v| state.curvature_mev(v) < -floor_mev)
@@ -73,11 +84,42 @@ impl Spectrum {
         };
         let flat = below_floor.saturating_sub(negative);
         let zero = state.zeros.len();
-        (Spectrum { negative, flat, zero, floor_mev, norm_mev, lowest_mev: Vec::new() }, mode)
+        (Spectrum { negative, flat, zero, floor_mev, norm_mev, lowest_mev: Vec::new(), bound: None }, mode)
+    }
+
+    /// The counts without factors: negative directions are looked for until the rest is bounded.
+    fn bounded(h: Evaluator, state: &State, norm_mev: f64, floor_mev: f64) -> (Spectrum, Option<Vec<f64>>) {
+        let length = h.lattice().sites_along() as f64;
+        let stand_in = StandIn::about(&h, &state.m, &state.gradient, h.stiffness_mev() / (length * length));
+        let at = Place { h: &h, m: &state.m, g: &state.gradient, shift: 0.0 };
+        let zeros: Vec<Vec<f64>> = state.zeros.iter().map(|z| state.field(z)).collect();
+        let mut falling: Vec<Vec<f64>> = Vec::new();
+        let bound = loop {
+            let known = falling.iter().map(|v| state.field(v));
+            let border = orthonormal(zeros.iter().cloned().chain(known).collect(), INDEPENDENT);
+            let rest = bound(at, &border, &stand_in, &|| h.is_stopped());
+            if rest.is_some() || falling.len() == MOST || h.is_stopped() {
+                break rest;
+            }
+            let modes = state.lowest_modes_beside(h, falling.len() + 1, &falling);
+            let negative = modes.into_iter().filter(|mode| mode.value < -floor_mev).map(|mode| mode.vector);
+            let before = std::mem::replace(&mut falling, negative.collect()).len();
+            if falling.len() <= before {
+                break None;
+            }
+        };
+        // what is negative and was not found is at least one direction more
+        let negative = falling.len() + usize::from(bound.is_none());
+        let zero = state.zeros.len();
+        let counts = Spectrum { negative, flat: 0, zero, floor_mev, norm_mev, lowest_mev: Vec::new(), bound };
+        (counts, if negative == 1 { falling.pop() } else { None })
     }
 
     /// Negative directions at a point, zero modes apart: one factorisation, in the memory of `matrix`.
     pub fn negatives(h: Evaluator, point: &Point, matrix: &mut Matrix) -> usize {
+        if h.forgoes_factors() {
+            return Spectrum::of(h, &State::of(h, point.clone()), 0).negative;
+        }
         point.write_hessian(h, 0.0, matrix);
         let floor = floor_mev(h, matrix.norm1());
         let factors = pinned(h, take(matrix), &point.zeros, floor);

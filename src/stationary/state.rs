@@ -3,7 +3,7 @@
 use super::point::Point;
 use crate::energy::{Evaluator, Hamiltonian};
 use crate::hessian::Resolvent;
-use crate::linalg::{Matrix, Mode, Wanted, lowest_modes_beside, slab, softest};
+use crate::linalg::{Asked, Matrix, Mode, Wanted, lowest_modes_beside, slab, softest};
 use crate::sphere::move_points;
 use crate::threads::both;
 use serde::{Deserialize, Serialize};
@@ -15,7 +15,7 @@ const DEAR: f64 = 30.0;
 
 /// Whether factors of a Hessian take so long that modes are found sooner without.
 pub fn is_very_dear(h: &Hamiltonian) -> bool {
-    h.solutions_a_factor() > DEAR
+    h.solutions_a_factor() > DEAR || h.forgoes_factors()
 }
 
 /// Two computations with factors of `h`, side by side; one after the other where all threads share the work of one factor, whose memory
@@ -25,7 +25,7 @@ pub fn both_by_factors<A: Send, B: Send>(
     a: impl FnOnce() -> A + Send,
     b: impl FnOnce() -> B + Send,
 ) -> (A, B) {
-    if is_very_dear(h) { (a(), b()) } else { both(3 * h.sites(), a, b) }
+    if is_very_dear(h) && !h.forgoes_factors() { (a(), b()) } else { both(3 * h.sites(), a, b) }
 }
 
 /// Everything a Newton step needs, at one configuration: all that a [`Point`] has, and the Hessian.
@@ -64,7 +64,8 @@ impl State {
         self.lowest_modes(h, 1).into_iter().next()
     }
 
-    /// The lowest modes, so many if there are, zero modes apart; where factors take long, without them if that can be had.
+    /// The lowest modes, so many if there are, zero modes apart; where factors take long, without them if that can be had. None where
+    /// there are no factors and they are not found.
     pub fn lowest_modes(&self, h: Evaluator, count: usize) -> Vec<Mode> {
         self.modes(h, count, Wanted::Vectors, &[])
     }
@@ -92,11 +93,15 @@ impl State {
     }
 
     fn modes(&self, h: Evaluator, count: usize, wanted: Wanted, known: &[Vec<f64>]) -> Vec<Mode> {
+        let asked = Asked { wanted, given: known, by_factors: !h.forgoes_factors() };
         let iterated = || {
             let nearly = Resolvent::at(&h, &self.m, &self.gradient, &self.basis);
             let apply = |x: &mut [f64], theta: f64| nearly.apply(x, theta);
-            softest(&self.hessian, count, &self.zeros, (wanted, known), &apply, &|| h.is_stopped())
+            softest(&self.hessian, count, &self.zeros, asked, &apply, &|| h.is_stopped())
         };
+        if h.forgoes_factors() {
+            return iterated().unwrap_or_default();
+        }
         let found = is_very_dear(&h).then(iterated).flatten();
         found.unwrap_or_else(|| lowest_modes_beside(&self.hessian, count, &self.zeros, (wanted, known)))
     }

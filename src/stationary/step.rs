@@ -18,20 +18,20 @@ use std::mem::take;
 use std::ops::Range;
 
 /// More modes than this are not reversed one by one: the step goes down.
-const MODES: usize = 8;
+pub(super) const MODES: usize = 8;
 
 /// A trust region, with the memory for steps inside it.
 #[derive(Debug)]
 pub struct Region<'a> {
-    h: Evaluator<'a>,
+    pub(super) h: Evaluator<'a>,
     /// Largest rotation of a spin in a step (rad), now and ever.
     radius: f64,
     largest: f64,
-    hessian: Matrix,
+    pub(super) hessian: Matrix,
     room: Matrix,
     /// The lowest modes when they were last needed (3N each).
-    modes: Vec<Vec<f64>>,
-    x: Vec<f64>,
+    pub(super) modes: Vec<Vec<f64>>,
+    pub(super) x: Vec<f64>,
     /// The step (3N).
     pub v: Vec<f64>,
 }
@@ -70,17 +70,7 @@ impl<'a> Region<'a> {
     /// The step from a point, in `v`.
     pub fn step(&mut self, here: &Point) -> Step {
         here.write_hessian(self.h, 0.0, &mut self.hessian);
-        let factors = self.newton(here);
-        let negative = factors.negatives();
-        match negative {
-            0 => self.reverse(here, &factors, 0..1),
-            2..=MODES => self.reverse(here, &factors, 1..negative),
-            _ => {}
-        }
-        self.room = factors.into_memory();
-        if negative > MODES {
-            self.shifted(here);
-        }
+        let negative = if self.h.forgoes_factors() { self.iterate(here) } else { self.by_factors(here) };
         here.write_field(&self.x, &mut self.v);
         self.h.hold_frozen(&mut self.v);
         let rotation = rotation_of(&self.v);
@@ -95,6 +85,22 @@ impl<'a> Region<'a> {
         Step { negative, rotation: rotation.min(self.radius), is_newton, rise_mev, size_mev }
     }
 
+    /// Writes the step to `x`; how many directions are negative.
+    fn by_factors(&mut self, here: &Point) -> usize {
+        let factors = self.newton(here);
+        let negative = factors.negatives();
+        match negative {
+            0 => self.reverse(here, &factors, 0..1),
+            2..=MODES => self.reverse(here, &factors, 1..negative),
+            _ => {}
+        }
+        self.room = factors.into_memory();
+        if negative > MODES {
+            self.shifted(here);
+        }
+        negative
+    }
+
     /// Fits the radius to what the energy did (meV) in a step.
     pub fn judge(&mut self, step: &Step, risen_mev: f64) {
         let error = (risen_mev - step.rise_mev).abs() - ROUGHLY * step.size_mev;
@@ -105,13 +111,19 @@ impl<'a> Region<'a> {
         }
     }
 
-    /// A way along the second of the lowest modes (rad, any spin), in `v`.
-    pub fn along_second(&mut self, here: &Point, rotation: f64) {
-        let modes = lowest_modes(&self.hessian, 2, &here.zeros);
-        here.write_field(&modes[modes.len() - 1].vector, &mut self.v);
+    /// A way along the second of the lowest modes (rad, any spin), in `v`; whether there is one.
+    pub fn along_second(&mut self, here: &Point, rotation: f64) -> bool {
+        if self.h.forgoes_factors() {
+            let Some(second) = self.modes.get(1) else { return false };
+            self.v.clone_from(second);
+        } else {
+            let modes = lowest_modes(&self.hessian, 2, &here.zeros);
+            here.write_field(&modes[modes.len() - 1].vector, &mut self.v);
+        }
         self.h.hold_frozen(&mut self.v);
         let size = rotation_of(&self.v);
         slab::scale(&mut self.v, rotation / size);
+        true
     }
 
     /// Newton's step in `x`; the factors.

@@ -24,30 +24,26 @@ pub struct Unfactored {
 }
 
 impl Unfactored {
-    /// For points below one, with spins held by the stiffness scale c (meV) at least; none where factors are quicker.
-    pub fn below(h: &Hamiltonian, from: &Point, c: f64) -> Option<Unfactored> {
-        let made =
-            || Unfactored { stand_in: StandIn::about(h, &from.m, &from.gradient, c), equations: Complement::default() };
-        (h.solutions_a_factor() > DEAR).then(made)
+    /// For points like one, with spins held by the stiffness scale c (meV) at least.
+    pub fn about(h: &Hamiltonian, from: &Point, c: f64) -> Unfactored {
+        Unfactored { stand_in: StandIn::about(h, &from.m, &from.gradient, c), equations: Complement::default() }
     }
 
-    /// Solves P (H + shift) P x = P b for tangent fields (3N), P without zero modes and, across a valley, the direction `along` it; |b|
+    /// The same for points below one; none where factors are quicker.
+    pub fn below(h: &Hamiltonian, from: &Point, c: f64) -> Option<Unfactored> {
+        (h.solutions_a_factor() > DEAR || h.forgoes_factors()).then(|| Unfactored::about(h, from, c))
+    }
+
+    /// Solves P (H + shift) P x = P b for tangent fields (3N), P without zero modes and, across valleys, the directions `along` them; |b|
     /// may be of any size. None where a direction of negative curvature is met.
-    pub fn solve(
-        &mut self,
-        h: &Hamiltonian,
-        at: &Point,
-        shift: f64,
-        along: Option<&[f64]>,
-        b: &[f64],
-    ) -> Option<&[f64]> {
+    pub fn solve(&mut self, h: &Hamiltonian, at: &Point, shift: f64, along: &[&[f64]], b: &[f64]) -> Option<&[f64]> {
         let zeros = at.zeros.iter().map(|z| at.field(z));
-        let border = zeros.chain(along.map(<[f64]>::to_vec)).collect();
+        let border = zeros.chain(along.iter().map(|t| t.to_vec())).collect();
         self.equations.border = orthonormal(border, INDEPENDENT);
         self.equations.right.clear();
         self.equations.right.extend_from_slice(b);
         let place = Place { h, m: &at.m, g: &at.gradient, shift };
-        self.equations.solve(place, &self.stand_in, if along.is_some() { ACROSS } else { DOWN }).ok()?;
+        self.equations.solve(place, &self.stand_in, if along.is_empty() { DOWN } else { ACROSS }).ok()?;
         Some(&self.equations.x)
     }
 
@@ -57,7 +53,7 @@ impl Unfactored {
         let mut image = vec![0.0; t.len()];
         h.hessian_product(&at.m, &at.gradient, t, &mut image);
         slab::scale(&mut image, -1.0);
-        let mut valley = self.solve(h, at, shift, Some(t), &image)?.to_vec();
+        let mut valley = self.solve(h, at, shift, &[t], &image)?.to_vec();
         slab::add_scaled(&mut valley, 1.0, t);
         Some(valley)
     }
@@ -115,7 +111,7 @@ mod tests {
             slab::norm(&difference) / slab::norm(exact)
         };
         assert!(off(&found, &valley) < 1e-6, "{:e}", off(&found, &valley));
-        let step = without.solve(&h, &at, 0.0, Some(&t), &at.field(&at.downhill())).expect("no direction is negative");
+        let step = without.solve(&h, &at, 0.0, &[&t], &at.field(&at.downhill())).expect("no direction is negative");
         assert!(off(step, &across) < 1e-6, "{:e}", off(step, &across));
         assert!(slab::dot(step, &t).abs() < 1e-9);
     }

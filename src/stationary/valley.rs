@@ -60,6 +60,14 @@ pub struct Refined {
     pub spectrum: Option<Spectrum>,
 }
 
+impl Refined {
+    /// A start from which no search led to a stationary point, and which is left as it is.
+    pub fn not_found(h: Evaluator, m: &[f64], tau: &[f64]) -> Refined {
+        let (state, valley) = (State::at(h, m.to_vec()), unit_tangent(m, tau));
+        Refined { arrived: false, state, valley, factorisations: 0, index: 0, spectrum: None }
+    }
+}
+
 /// The search's memory.
 struct Search<'a> {
     h: Evaluator<'a>,

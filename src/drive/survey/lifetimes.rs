@@ -342,7 +342,15 @@ mod tests {
             places: 1,
             above_lowest_mev: 0.0,
             energy_mev: 0.0,
-            spectrum: Spectrum { negative: 0, flat: 0, zero: 0, floor_mev: 0.0, norm_mev: 1.0, lowest_mev: Vec::new() },
+            spectrum: Spectrum {
+                negative: 0,
+                flat: 0,
+                zero: 0,
+                floor_mev: 0.0,
+                norm_mev: 1.0,
+                lowest_mev: Vec::new(),
+                bound: None,
+            },
             max_torque_mev: 0.0,
         };
         Survey {

@@ -136,6 +136,11 @@ impl Symbolic {
         (numbers + of_branches) * size_of::<f64>()
     }
 
+    /// Memory of a matrix that is not factorised, in bytes.
+    pub fn matrix_bytes(&self) -> usize {
+        4 * self.graph.block_count() * size_of::<f64>()
+    }
+
     /// The arithmetic of a factorisation, in those of a solution by it. (A film of 40² sites: 20.)
     pub fn solutions(&self) -> f64 {
         self.flops / (4.0 * self.entries.max(1) as f64)
