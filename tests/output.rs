@@ -1,11 +1,12 @@
 //! Results as files: whole contents for a tiny outcome, figures that do not break, a disk that is treated with care.
 
 use spinneb::drive::{
-    Barrier, EndPoint, HistoryRow, ImageTable, IntermediateMinimum, Outcome, ProfilePoint, RejectedPath, SaddlePoint,
-    SearchReport, StopCode, Work,
+    Barrier, Certificate, EndPoint, HistoryRow, ImageTable, IntermediateMinimum, Outcome, ProfilePoint, RejectedPath,
+    SaddlePoint, SearchReport, StopCode, Work,
 };
 use spinneb::files::disk;
 use spinneb::geometry::Direction;
+use spinneb::hessian::Bound;
 use spinneb::landscape::Effort;
 use spinneb::lattice::{Chain, Lattice};
 use spinneb::output::canvas::{Look, Style};
@@ -226,6 +227,7 @@ fn the_summary_is_exactly_so() {
   "config_sha256": "abc",
   "converged": true,
   "certified": false,
+  "certificate": null,
   "stop_code": "converged",
   "stop_reason": "converged: largest predicted rotation 3.1e-7 rad",
   "warnings": [
@@ -318,6 +320,20 @@ fn the_summary_is_exactly_so() {
 }
 "#;
     assert_eq!(text(&SummaryJson, &tiny()), expected);
+}
+
+#[test]
+fn a_summary_says_whether_directions_were_counted_or_bounded() {
+    let mut o = tiny();
+    o.certificate = Some(Certificate::Counted);
+    let counted = text(&SummaryJson, &o);
+    assert!(counted.contains("\"certificate\": \"counted\",") && !counted.contains("certificate_bound"));
+    let bound = Bound { part: 0.002, steps: 500, probability: 1e-12 };
+    o.certificate = Some(Certificate::Bounded(bound));
+    let bounded: serde_json::Value = serde_json::from_str(&text(&SummaryJson, &o)).unwrap();
+    assert_eq!(bounded["certificate"], "bounded");
+    let told = serde_json::json!({"part_of_stiffness": 0.002, "lanczos_steps": 500, "probability_of_error": 1e-12});
+    assert_eq!(bounded["certificate_bound"], told);
 }
 
 #[test]

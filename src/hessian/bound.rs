@@ -161,7 +161,7 @@ mod tests {
             ];
             let h = hamiltonian(&square, &terms.each_ref().map(String::as_str));
             let middle = 0.5 * (0..h.sites()).map(|i| square.position(i)[0]).fold(0.0, f64::max);
-            let width = (2.0 * easy as f64).sqrt();
+            let width = f64::sqrt(2.0 * easy);
             let spin = |p: [f64; 3]| {
                 let x = width * (p[0] - middle);
                 [1.0 / x.cosh(), 0.0, x.tanh()]
