@@ -72,6 +72,11 @@ pub enum Certificate {
 }
 
 impl Certificate {
+    /// The bound, where they were not counted.
+    pub fn bound(self) -> Option<Bound> {
+        if let Certificate::Bounded(bound) = self { Some(bound) } else { None }
+    }
+
     /// Of all these states.
     pub fn of<'a>(spectra: impl Iterator<Item = &'a Spectrum>) -> Certificate {
         let weakest = spectra.filter_map(|spectrum| spectrum.bound).max_by(|p, q| p.part.total_cmp(&q.part));

@@ -103,6 +103,12 @@ impl Hamiltonian {
         self.reach
     }
 
+    /// The stiffness (meV) of the longest wave that the lattice holds, roughly: that of the stiffest spin over the square of its length.
+    pub fn longest_wave_mev(&self) -> f64 {
+        let length = self.lattice.sites_along() as f64;
+        self.stiffness / (length * length)
+    }
+
     /// The couplings between spins, of one unknown a site.
     pub fn exchange_matrix(&self) -> &ExchangeMatrix {
         self.exchange.get_or_init(|| ExchangeMatrix::of(&self.blocks, &self.frozen))

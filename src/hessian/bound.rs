@@ -133,10 +133,9 @@ fn below(diagonal: &[f64], beside: &[f64], limit: f64) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::energy::test_terms::{hamiltonian, lattice};
+    use crate::energy::test_terms::{hamiltonian, lattice, posed};
     use crate::hessian::{TangentBasis, assemble};
     use crate::linalg::lowest_modes;
-    use crate::spins::Spins;
 
     #[test]
     fn eigenvalues_of_tridiagonal_matrices_are_counted() {
@@ -166,11 +165,7 @@ mod tests {
                 let x = width * (p[0] - middle);
                 [1.0 / x.cosh(), 0.0, x.tanh()]
             };
-            let vectors: Vec<[f64; 3]> = (0..h.sites()).map(|i| spin(square.position(i))).collect();
-            let flat: Vec<f64> = (0..3).flat_map(|c| vectors.iter().map(move |v| v[c])).collect();
-            let m = Spins::from_components(&flat).expect("unit vectors");
-            let mut g = vec![0.0; 3 * h.sites()];
-            h.energy_gradient(m.as_slice(), &mut g);
+            let (m, g) = posed(&h, spin);
             let basis = TangentBasis::at(m.as_slice());
             let modes = lowest_modes(&assemble(&h, m.as_slice(), &g, &basis), 6, &[]);
             let negative = modes.iter().filter(|mode| mode.value < 0.0).count();

@@ -38,8 +38,7 @@ impl<'a> Resolvent<'a> {
         let free = || (0..h.sites()).filter(|i| !h.is_frozen(*i));
         let average = free().map(|i| own[i] - base[i]).sum::<f64>() / free().count().max(1) as f64;
         own.iter_mut().zip(base).for_each(|(own, base)| *own = base + (*own - base - average).max(0.0));
-        let length = h.lattice().sites_along() as f64;
-        let stand_in = StandIn::of(h, own, h.stiffness_mev() / (length * length));
+        let stand_in = StandIn::of(h, own, h.longest_wave_mev());
         Resolvent { stand_in, average, basis, rooms: Mutex::default() }
     }
 
@@ -66,7 +65,7 @@ impl<'a> Resolvent<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::energy::test_terms::{hamiltonian, lattice};
+    use crate::energy::test_terms::{hamiltonian, lattice, posed};
     use crate::geometry::Direction;
     use crate::hessian::assemble;
     use crate::linalg::{Asked, Wanted, lowest_modes, orthonormal, softest};
@@ -116,11 +115,7 @@ mod tests {
         ];
         for (j, spin) in states {
             let h = hamiltonian(&square, &[&format!(r#"{{"exchange": {{"J": ["{j}"]}}}}"#), easy]);
-            let vectors: Vec<[f64; 3]> = (0..h.sites()).map(|i| spin(square.position(i))).collect();
-            let flat: Vec<f64> = (0..3).flat_map(|c| vectors.iter().map(move |v| v[c])).collect();
-            let m = Spins::from_components(&flat).expect("unit vectors");
-            let mut g = vec![0.0; 3 * h.sites()];
-            h.energy_gradient(m.as_slice(), &mut g);
+            let (m, g) = posed(&h, spin);
             let basis = TangentBasis::at(m.as_slice());
             let hessian = assemble(&h, m.as_slice(), &g, &basis);
             let nearly = Resolvent::at(&h, m.as_slice(), &g, &basis);

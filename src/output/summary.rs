@@ -227,10 +227,7 @@ impl Summary {
                 Certificate::Counted => Told::Counted,
                 Certificate::Bounded(_) => Told::Bounded,
             }),
-            certificate_bound: outcome.certificate.and_then(|by| match by {
-                Certificate::Counted => None,
-                Certificate::Bounded(bound) => Some(bound.into()),
-            }),
+            certificate_bound: outcome.certificate.and_then(Certificate::bound).map(CertificateBound::from),
             stop_code: Some(outcome.stop_code),
             stop_reason: outcome.stop_reason.clone(),
             warnings: outcome.warnings.clone(),

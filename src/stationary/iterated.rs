@@ -15,8 +15,7 @@ impl Region<'_> {
     pub(super) fn iterate(&mut self, here: &Point) -> usize {
         let h = self.h;
         let state = State { point: here.clone(), hessian: take(&mut self.hessian) };
-        let length = h.lattice().sites_along() as f64;
-        let mut rest = Unfactored::about(&h, here, h.stiffness_mev() / (length * length));
+        let mut rest = Unfactored::about(&h, here, h.longest_wave_mev());
         let force = here.field(&here.downhill());
         let mut count = self.modes.len().max(1);
         let negative = loop {
