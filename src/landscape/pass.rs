@@ -11,7 +11,7 @@ use crate::symmetry::{Group, Operation};
 use serde::{Deserialize, Serialize};
 
 /// How many eigenvalues of a saddle are reported.
-const REPORTED: usize = 6;
+const REPORTED: usize = 4;
 /// A valley with less than this (of its curvature) left over when the Hessian acts on it is a mode.
 const PURE: f64 = 0.1;
 

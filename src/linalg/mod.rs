@@ -3,6 +3,7 @@
 //! transform, and numbers of twice the digits.
 
 mod banded;
+mod blocks;
 mod dense;
 mod double_double;
 mod factors;

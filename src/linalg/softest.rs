@@ -6,8 +6,8 @@
 //! ```
 //! A. V. Knyazev, SIAM J. Sci. Comput. 23, 517 (2001), doi:10.1137/S1064827500366124.
 
-use super::ritz::{Mode, combination, none_is_missed, rayleigh_ritz};
-use super::{Matrix, eigen_symmetric, slab};
+use super::ritz::{Mode, none_is_missed, rayleigh_ritz};
+use super::{Matrix, blocks, eigen_symmetric, slab};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -82,16 +82,16 @@ pub fn softest(
         return None;
     }
     let noise = NOISE * f64::EPSILON * matrix.norm1();
-    let mut space = Space { matrix, known, vectors: Vec::new(), images: Vec::new() };
+    let mut space =
+        Space { matrix, known, vectors: Vec::new(), images: Vec::new(), small: Vec::new(), room: Vec::new() };
     let mut random = ChaCha8Rng::seed_from_u64(0x50f7);
-    given.iter().take(count).for_each(|v| space.add(v.clone()));
-    for _ in 0..2 * block {
-        if space.vectors.len() == block {
-            break;
-        }
-        let mut v: Vec<f64> = (0..matrix.order()).map(|_| random.random_range(-1.0..1.0)).collect();
-        nearly(&mut v, 0.0);
-        space.add(v);
+    space.add(given.iter().take(count).cloned().collect());
+    for _ in 0..2 {
+        let missing = block - space.vectors.len();
+        let mut start: Vec<Vec<f64>> =
+            (0..missing).map(|_| (0..matrix.order()).map(|_| random.random_range(-1.0..1.0)).collect()).collect();
+        start.par_iter_mut().for_each(|v| nearly(v, 0.0));
+        space.add(start);
     }
     if space.vectors.len() < block {
         return None;
@@ -116,7 +116,7 @@ pub fn softest(
         }
         residuals.drain(..settled);
         residuals.par_iter_mut().for_each(|(r, theta)| nearly(r, *theta));
-        residuals.into_iter().for_each(|(w, _)| space.add(w));
+        space.add(residuals.into_iter().map(|(w, _)| w).collect());
     }
     None
 }
@@ -127,32 +127,65 @@ struct Space<'a> {
     known: &'a [Vec<f64>],
     vectors: Vec<Vec<f64>>,
     images: Vec<Vec<f64>>,
+    /// The matrix within the space, row by row.
+    small: Vec<f64>,
+    /// Vectors that are done with.
+    room: Vec<Vec<f64>>,
 }
 
 impl Space<'_> {
-    /// Takes in what is new of a vector, if there is any.
-    fn add(&mut self, mut v: Vec<f64>) {
-        let size = slab::norm(&v);
-        if !(size > 0.0 && size.is_finite()) {
-            return;
-        }
-        slab::scale(&mut v, 1.0 / size);
-        for _ in 0..2 {
-            slab::without(&mut v, self.known);
-            slab::without(&mut v, &self.vectors);
+    /// Takes in what is new of some vectors, if there is any.
+    fn add(&mut self, mut new: Vec<Vec<f64>>) {
+        new.retain_mut(has_become_unit);
+        blocks::without(&mut new, self.known);
+        blocks::without(&mut new, &self.vectors);
+        let before = self.vectors.len();
+        for mut v in new {
+            slab::without(&mut v, &self.vectors[before..]);
             let rest = slab::norm(&v);
-            if rest.is_nan() || rest <= DEPENDENT {
-                return;
-            }
-            slab::scale(&mut v, 1.0 / rest);
-            if rest > LEFT {
-                break;
+            if rest > DEPENDENT && (rest > LEFT || self.leaves_anything_of(&mut v)) {
+                let rest = slab::norm(&v);
+                slab::scale(&mut v, 1.0 / rest);
+                self.vectors.push(v);
             }
         }
-        let mut image = vec![0.0; v.len()];
-        self.matrix.multiply(&v, &mut image);
-        self.vectors.push(v);
-        self.images.push(image);
+        let length = self.matrix.order();
+        self.images.extend((before..self.vectors.len()).map(|_| self.room.pop().unwrap_or_else(|| vec![0.0; length])));
+        let (vectors, images) = (&self.vectors[before..], &mut self.images[before..]);
+        vectors.par_iter().zip(images).for_each(|(v, image)| self.matrix.multiply(v, image));
+        self.extend(before);
+    }
+
+    /// Whether anything is left of a vector beside the others, which is left of it then: all but rounding.
+    fn leaves_anything_of(&self, v: &mut Vec<f64>) -> bool {
+        for _ in 0..2 {
+            if !has_become_unit(v) {
+                return false;
+            }
+            slab::without(v, self.known);
+            slab::without(v, &self.vectors);
+            let rest = slab::norm(v);
+            if rest.is_nan() || rest <= DEPENDENT {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// The rows and columns of the vectors from `before` on.
+    fn extend(&mut self, before: usize) {
+        let (k, new) = (self.vectors.len(), self.vectors.len() - before);
+        let mut small = vec![0.0; k * k];
+        for i in 0..before {
+            small[i * k..i * k + before].copy_from_slice(&self.small[i * before..(i + 1) * before]);
+        }
+        for (at, v) in blocks::products(&self.vectors, &self.images[before..]).into_iter().enumerate() {
+            let (i, j) = (at / new, before + at % new);
+            if i <= j {
+                (small[i * k + j], small[j * k + i]) = (v, v);
+            }
+        }
+        self.small = small;
     }
 
     /// Ax − θx of the first so many, without what is known, and θ.
@@ -170,13 +203,7 @@ impl Space<'_> {
     /// from the vectors after the first `from`, of all but the first `still`. All combinations are of small vectors, of weights.
     fn settle(&mut self, block: usize, moved: Option<(usize, usize)>) {
         let k = self.vectors.len();
-        let mut small = vec![0.0; k * k];
-        for j in 0..k {
-            for (i, v) in slab::overlaps(&self.vectors[..=j], &self.images[j]).into_iter().enumerate() {
-                (small[i * k + j], small[j * k + i]) = (v, v);
-            }
-        }
-        let (_, mut weights) = eigen_symmetric(&small, k);
+        let (_, mut weights) = eigen_symmetric(&self.small, k);
         weights.truncate(block);
         if let Some((from, still)) = moved {
             for j in still..block {
@@ -192,9 +219,29 @@ impl Space<'_> {
                 }
             }
         }
-        let combined = |vectors: &[Vec<f64>]| weights.par_iter().map(|w| combination(w, vectors)).collect();
-        (self.vectors, self.images) = (combined(&self.vectors), combined(&self.images));
+        self.small = within(&self.small, &weights);
+        for vectors in [&mut self.vectors, &mut self.images] {
+            let mut combined: Vec<Vec<f64>> =
+                weights.iter().map(|_| self.room.pop().unwrap_or_else(|| vec![0.0; vectors[0].len()])).collect();
+            blocks::combine(&mut combined, &weights, vectors);
+            self.room.append(vectors);
+            *vectors = combined;
+        }
     }
+}
+
+/// Whether a vector has a direction; its length is 1 then.
+fn has_become_unit(v: &mut Vec<f64>) -> bool {
+    let size = slab::norm(v);
+    slab::scale(v, 1.0 / size);
+    size > 0.0 && size.is_finite()
+}
+
+/// wᵢᵀ S wⱼ, row by row.
+fn within(s: &[f64], weights: &[Vec<f64>]) -> Vec<f64> {
+    let images: Vec<Vec<f64>> =
+        weights.iter().map(|w| s.chunks(w.len()).map(|row| slab::dot(row, w)).collect()).collect();
+    weights.iter().flat_map(|w| images.iter().map(|image| slab::dot(w, image))).collect()
 }
 
 #[cfg(test)]
