@@ -52,6 +52,7 @@ mod states;
 mod structure;
 mod sweep;
 mod symmetry;
+mod turning_minima;
 mod without_factors;
 
 #[test]

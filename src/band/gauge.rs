@@ -12,12 +12,12 @@ use crate::threads::{READ, apiece};
 use multiversion::multiversion;
 use rayon::prelude::*;
 
-/// Turns every image between the ends about the given symmetry axes towards the image before it.
-pub fn align_rotations(path: &mut Path, axes: &[Vector]) {
+/// Turns every image between the ends, but those that are `fixed`, about the given symmetry axes towards the image before it.
+pub(super) fn align_rotations(path: &mut Path, axes: &[Vector], fixed: &[bool]) {
     let rounds = if axes.len() > 1 { 4 } else { 1 };
     let slab = 3 * path.sites();
     let mut known = axes.first().map_or(Vec::new(), |axis| overlaps_as_they_are(path, *axis));
-    for k in 1..path.images() - 1 {
+    for k in (1..path.images() - 1).filter(|k| !fixed[*k]) {
         let (before, rest) = path.as_mut_slice().split_at_mut(k * slab);
         let (reference, image) = (&before[(k - 1) * slab..], &mut rest[..slab]);
         let mut turned = false;

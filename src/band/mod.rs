@@ -20,12 +20,12 @@ mod springs;
 mod sweep;
 mod tangent;
 
-pub use gauge::align_rotations;
 pub use laplacian::Laplacian;
 pub use profile::{Extremum, Profile};
 pub use sweep::{Sweep, SweepStep};
 
 use crate::energy::{Evaluator, Hamiltonian};
+use crate::geometry::Vector;
 use crate::path::Path;
 use crate::threads::{MADE, READ, apiece};
 use rayon::prelude::*;
@@ -49,6 +49,8 @@ pub struct Band<'h> {
     uphill: Vec<Option<usize>>,
     spacing: Vec<f64>,
     held: Vec<bool>,
+    /// Those of them that symmetry rotations leave as they are, too.
+    fixed: Vec<bool>,
     evaluations: usize,
     /// While it rests.
     profile: Option<Profile>,
@@ -71,6 +73,7 @@ impl<'h> Band<'h> {
             uphill: vec![None; images],
             spacing: vec![0.0; images - 1],
             held: vec![false; images],
+            fixed: vec![false; images],
             evaluations: 0,
             profile: None,
             path,
@@ -180,11 +183,6 @@ impl<'h> Band<'h> {
         &self.path
     }
 
-    /// The images, to be turned as wholes.
-    pub(crate) fn path_mut(&mut self) -> &mut Path {
-        &mut self.path
-    }
-
     /// Puts all images where they were after `evaluations` evaluations of an earlier band; they are not evaluated.
     pub(crate) fn restore(&mut self, images: &[f64], evaluations: usize) {
         self.path.as_mut_slice().copy_from_slice(images);
@@ -196,6 +194,18 @@ impl<'h> Band<'h> {
         let n = saddle.len();
         self.path.as_mut_slice()[k * n..(k + 1) * n].copy_from_slice(saddle);
         self.held[k] = true;
+    }
+
+    /// Puts a stationary state of a path that is put together in the place of image k: it stays, and is not turned about symmetry axes,
+    /// as its neighbours are at hand as they are to be.
+    pub fn fix(&mut self, k: usize, state: &[f64]) {
+        self.hold(k, state);
+        self.fixed[k] = true;
+    }
+
+    /// Turns every image between the ends about the given symmetry axes towards the image before it.
+    pub fn align(&mut self, axes: &[Vector]) {
+        gauge::align_rotations(&mut self.path, axes, &self.fixed);
     }
 
     /// Whether image k is a saddle that stays.

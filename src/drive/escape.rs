@@ -30,7 +30,8 @@ pub fn escapes(band: &Band, found: &Saddle, c: f64) -> Vec<Path> {
     let own =
         (0..negative.len()).max_by(|&i, &j| overlap(&negative[i].vector).total_cmp(&overlap(&negative[j].vector)));
     let Some(other) = (0..negative.len()).find(|i| Some(*i) != own) else { return Vec::new() };
-    let mode = state.field(&negative[other].vector);
+    let mut mode = state.field(&negative[other].vector);
+    band.hamiltonian().hold_frozen(&mut mode);
     [PUSH, -PUSH].map(|push| pushed(band.path(), &mode, push)).into()
 }
 

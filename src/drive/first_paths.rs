@@ -6,7 +6,7 @@ use super::first_path::{FirstPath, describe};
 use super::relaxation::{Goal, LOOSELY, image_levels};
 use super::run::{Run, WORTH};
 use super::{Images, Stop};
-use crate::band::{Band, align_rotations};
+use crate::band::Band;
 use crate::error::Result;
 use crate::landscape::{Peak, Saddle, ZOOMS, highest, zoomed};
 use crate::path::Path;
@@ -108,7 +108,7 @@ impl<'a> Run<'a, '_> {
             let mut best: Option<Band<'a>> = None;
             for path in escapes(&c.band, found, scale) {
                 let mut band = Band::continued(self.problem.evaluator(), path, c.band.evaluations());
-                align_rotations(band.path_mut(), &self.axes);
+                band.align(&self.axes);
                 band.evaluate();
                 let top = |b: &Band| b.energies_mev()[b.highest()];
                 if best.as_ref().is_none_or(|b| top(&band) < top(b) - ALIKE * scale) {

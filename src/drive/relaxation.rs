@@ -2,7 +2,7 @@
 
 use super::outcome::HistoryRow;
 use super::{NebSettings, Observer, Scales, Silent, Stop};
-use crate::band::{Band, Laplacian, Sweep, align_rotations};
+use crate::band::{Band, Laplacian, Sweep};
 use crate::energy::Evaluator;
 use crate::energy::Stored;
 use crate::error::Result;
@@ -251,7 +251,7 @@ impl Relaxation<'_> {
     }
 
     fn align(&self, band: &mut Band) {
-        align_rotations(band.path_mut(), self.axes);
+        band.align(self.axes);
     }
 
     /// Writes what the methods that follow forces want to be shown; the rotation that still seems needed (rad).

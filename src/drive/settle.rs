@@ -148,7 +148,7 @@ impl<'a> Run<'a, '_> {
     fn follow(&mut self, c: &mut FirstPath<'a>, way: &Assembled, links: &[Pass]) -> Result<bool> {
         let mut band = Band::continued(self.problem.evaluator(), way.path.clone(), c.band.evaluations());
         for &k in &way.stops {
-            band.hold(k, way.path.image(k));
+            band.fix(k, way.path.image(k));
         }
         let before = std::mem::replace(&mut c.band, band);
         let stop = c.stop;

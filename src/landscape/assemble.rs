@@ -5,6 +5,7 @@
 //! and a minimum has neither on the way: it starts as the descent itself and is monotone.
 
 use super::connect::Bands;
+use super::flat::{Stretch, flat_ways, turning};
 use super::{Landscape, Pass, turned, turns};
 use crate::band::Band;
 use crate::energy::{Evaluator, recorded};
@@ -14,8 +15,6 @@ use crate::sphere::SAME;
 use crate::spins::Spins;
 use rayon::prelude::*;
 
-/// Intervals of a turn about the axis of symmetry.
-const TURN: usize = 16;
 /// Rounds of making a stretch's images fewer radians apart.
 const ROUNDS: usize = 12;
 
@@ -60,15 +59,18 @@ pub fn assemble(
     let h = land.evaluator();
     let Some(raw) = stretches(land, passes, a, b) else { return Ok(None) };
     let Some(counts) = counts(&raw, images, apart) else { return Ok(None) };
-    let input: Vec<&[f64]> = raw.iter().map(Path::as_slice).collect();
+    let input: Vec<&[f64]> = raw.iter().map(|stretch| stretch.path().as_slice()).collect();
     let pieces: Vec<Path> = recorded(h, "stretches", &input, || {
-        raw.par_iter().zip(&counts).map(|(piece, &n)| relaxed(h, piece.resampled(n), bands)).collect()
+        raw.par_iter().zip(&counts).map(|(stretch, &n)| in_place(h, stretch, n, bands)).collect()
     })?;
     let mut row: Vec<Spins> = vec![a.clone()];
     let mut stops = Vec::new();
-    for piece in &pieces {
+    for (stretch, piece) in raw.iter().zip(&pieces) {
+        let first = row.len();
         row.extend((1..piece.images()).map(|k| piece.spins(k)));
-        stops.push(row.len() - 1);
+        // all of a turn is stationary
+        let is_turn = matches!(stretch, Stretch::Turn { .. });
+        stops.extend(if is_turn { first } else { row.len() - 1 }..row.len());
     }
     stops.pop();
     Ok(Some(Assembled { path: Path::new(&row), stops }))
@@ -76,7 +78,7 @@ pub fn assemble(
 
 /// The descents from the saddles, end to end from `a` to `b`: minimum to saddle, saddle to minimum, …; and flat ways where a pass does
 /// not begin where the one before it ends.
-fn stretches(land: &Landscape, passes: &[Pass], a: &Spins, b: &Spins) -> Option<Vec<Path>> {
+fn stretches(land: &Landscape, passes: &[Pass], a: &Spins, b: &Spins) -> Option<Vec<Stretch>> {
     let h = land.evaluator();
     let mut pieces = Vec::new();
     let mut here = a.clone();
@@ -86,7 +88,7 @@ fn stretches(land: &Landscape, passes: &[Pass], a: &Spins, b: &Spins) -> Option<
         let turned = |s: &Spins| turned(s, &turn);
         let before = turned(&pass.before.spins);
         if apart(&before, &here) {
-            pieces.push(flat(land, &here, &before));
+            pieces.extend(flat_ways(land, &here, &before));
             here = before;
         }
         let saddle = turned(&Spins::from_unit_components(pass.saddle.spins()));
@@ -100,34 +102,17 @@ fn stretches(land: &Landscape, passes: &[Pass], a: &Spins, b: &Spins) -> Option<
         let mut down = vec![saddle];
         down.extend(pass.ways[1].iter().map(turned));
         down.push(here.clone());
-        pieces.extend([Path::new(&up), Path::new(&down)]);
+        pieces.extend([up, down].map(|row| Stretch::Way(Path::new(&row))));
     }
     if apart(&here, b) {
-        pieces.push(flat(land, &here, b));
+        pieces.extend(flat_ways(land, &here, b));
     }
     (!passes.is_empty()).then_some(pieces)
 }
 
-/// The way between two minima that a flat valley joins, to be relaxed: the valley as it was found; or the turn about the axis of
-/// symmetry, if that makes the one of the other, as of states of one cone; or the geodesic.
-fn flat(land: &Landscape, from: &Spins, to: &Spins) -> Path {
-    if let Some(valley) = land.valley(from, to) {
-        return valley;
-    }
-    let turns = turns(land.evaluator(), from, to);
-    let row = match turns[..] {
-        [(axis, angle)] if largest_angle(turned(from, &turns).as_slice(), to.as_slice()) < SAME => {
-            let part = |k: usize| turned(from, &[(axis, angle * k as f64 / TURN as f64)]);
-            (0..TURN).map(part).chain([to.clone()]).collect()
-        }
-        _ => vec![from.clone(), to.clone()],
-    };
-    Path::new(&row)
-}
-
 /// Images of each stretch, both ends counted: so many that neighbours are at most `apart` (rad, any spin), or so many that all
 /// together have the number asked for.
-fn counts(pieces: &[Path], images: Option<usize>, apart: f64) -> Option<Vec<usize>> {
+fn counts(pieces: &[Stretch], images: Option<usize>, apart: f64) -> Option<Vec<usize>> {
     let enough = |piece: &Path| {
         let mut n = 3;
         for _ in 0..ROUNDS {
@@ -140,8 +125,8 @@ fn counts(pieces: &[Path], images: Option<usize>, apart: f64) -> Option<Vec<usiz
         n
     };
     match images {
-        None => Some(pieces.par_iter().map(enough).collect()),
-        Some(n) => shared(&pieces.iter().map(Path::length).collect::<Vec<_>>(), n - 1)
+        None => Some(pieces.par_iter().map(|piece| enough(piece.path())).collect()),
+        Some(n) => shared(&pieces.iter().map(|piece| piece.path().length()).collect::<Vec<_>>(), n - 1)
             .map(|intervals| intervals.into_iter().map(|i| i + 1).collect()),
     }
 }
@@ -159,8 +144,12 @@ fn shared(lengths: &[f64], total: usize) -> Option<Vec<usize>> {
     Some(counts)
 }
 
-/// A stretch between its two stationary ends, relaxed.
-fn relaxed(h: Evaluator, path: Path, bands: &dyn Bands) -> Result<Path> {
+/// A stretch between its two stationary ends with so many images, relaxed.
+fn in_place(h: Evaluator, stretch: &Stretch, images: usize, bands: &dyn Bands) -> Result<Path> {
+    let path = match stretch {
+        Stretch::Turn { path, by } => return Ok(turning(&path.spins(0), path.spins(path.images() - 1), *by, images)),
+        Stretch::Way(path) => path.resampled(images),
+    };
     if path.images() < 3 {
         return Ok(path);
     }

@@ -23,6 +23,7 @@
 mod assemble;
 mod connect;
 mod doubt;
+mod flat;
 mod graph;
 mod minimum;
 mod pairs;

@@ -136,7 +136,7 @@ impl Saddle {
         let mut v = state.field(&other.vector);
         let size = rotation_of(&v);
         slab::scale(&mut v, far / size);
-        let start = state.moved(&v);
+        let start = state.moved(&h, &v);
         let better = |refined: Refined| {
             let found = Saddle { top: self.top.clone(), refined };
             let better = found.is_stationary(c) && Spectrum::of(h, &found.refined.state, 0).negative <= 1;

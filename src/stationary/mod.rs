@@ -28,7 +28,7 @@ pub(crate) use border::{Border, Pin, pin};
 pub use descent::{Descent, descend};
 pub use modes::follow_modes;
 pub use pinned::Pinned;
-pub use point::Point;
+pub use point::{Point, move_free};
 pub use relax::{Relaxed, WayDown, relax_to_minimum};
 pub use search::{Climb, GaveUp, Limits, STEPS, Saddle, climb};
 pub use spectrum::{Spectrum, lowest_eigenvalues_mev};

@@ -1,7 +1,7 @@
 //! A configuration with its energy, gradient and tangent basis, in memory that is used again for the next one.
 
 use super::tolerances::INDEPENDENT;
-use crate::energy::Evaluator;
+use crate::energy::{Evaluator, Hamiltonian};
 use crate::field::{Components, TILE};
 use crate::hessian::{TangentBasis, assemble_into};
 use crate::linalg::{Matrix, orthonormal, slab};
@@ -34,6 +34,17 @@ pub struct Point {
     pub zeros: Vec<Vec<f64>>,
 }
 
+/// Moves spins along a vector field; those that are frozen stay where they are, to the bit: a mode of the Hessian is zero there to
+/// rounding alone, and a turn of a frozen spin by as little breaks a symmetry that is exact.
+pub fn move_free(h: &Hamiltonian, m: &mut [f64], v: &[f64]) {
+    if !h.has_frozen() {
+        return move_points(m, v, v.len(), 1.0);
+    }
+    let mut free = v.to_vec();
+    h.hold_frozen(&mut free);
+    move_points(m, &free, v.len(), 1.0);
+}
+
 impl Point {
     /// At the spins `m`.
     pub fn at(h: Evaluator, m: Vec<f64>) -> Point {
@@ -50,7 +61,7 @@ impl Point {
 
     /// Goes on along a vector field.
     pub fn move_by(&mut self, h: Evaluator, v: &[f64]) {
-        move_points(&mut self.m, v, v.len(), 1.0);
+        move_free(&h, &mut self.m, v);
         self.evaluate(h);
     }
 

@@ -1,10 +1,9 @@
 //! A configuration with its Hessian.
 
-use super::point::Point;
+use super::point::{Point, move_free};
 use crate::energy::{Evaluator, Hamiltonian};
 use crate::hessian::Resolvent;
 use crate::linalg::{Asked, Matrix, Mode, Wanted, lowest_modes_beside, slab, softest};
-use crate::sphere::move_points;
 use crate::threads::both;
 use serde::{Deserialize, Serialize};
 use std::ops::Deref;
@@ -107,9 +106,9 @@ impl State {
     }
 
     /// The spins after a move along a vector field.
-    pub fn moved(&self, v: &[f64]) -> Vec<f64> {
+    pub fn moved(&self, h: &Hamiltonian, v: &[f64]) -> Vec<f64> {
         let mut m = self.m.clone();
-        move_points(&mut m, v, v.len(), 1.0);
+        move_free(h, &mut m, v);
         m
     }
 }

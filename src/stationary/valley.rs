@@ -130,7 +130,7 @@ pub fn refine(h: Evaluator, m: &[f64], tau: &[f64], c: f64, floor_mev: f64) -> R
         }
         match s.step(step) {
             Next::Move(v, tau) => {
-                let m = s.state.moved(&v);
+                let m = s.state.moved(&h, &v);
                 s.tau = unit_tangent(&m, &tau);
                 s.state = State::at(h, m);
             }

@@ -49,7 +49,7 @@ fn top(h: Evaluator, state: &State, along: &[f64], sense: f64) -> Vec<f64> {
     for k in 1..=STEPS {
         let mut turn = along.to_vec();
         slab::scale(&mut turn, sense * FARTHEST * k as f64 / (STEPS as f64 * size));
-        let next = state.moved(&turn);
+        let next = state.moved(&h, &turn);
         let height = h.difference_mev(&next, &state.m);
         if height < highest {
             break;

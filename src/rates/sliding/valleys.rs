@@ -6,8 +6,7 @@ use super::pinning::Pinning;
 use super::ways::towards;
 use crate::energy::Evaluator;
 use crate::linalg::{Factors, Matrix, combination, eigen_symmetric, orthonormal, remove, slab};
-use crate::sphere::move_points;
-use crate::stationary::{Pin, Point, State, pin};
+use crate::stationary::{Pin, Point, State, move_free, pin};
 
 /// What turns the spins by less (rad) moves nothing.
 const LEAST: f64 = 1e-6;
@@ -74,7 +73,7 @@ impl<'a> Held<'a> {
             let bordered = Bordered::new(&factors, directions.iter().collect(), &pins, self.kappa);
             let way = bordered.to_rest(&point.slope)?;
             let mut m = point.m.clone();
-            move_points(&mut m, &point.field(&way), point.m.len(), 1.0);
+            move_free(&h, &mut m, &point.field(&way));
             if slab::norm(&towards(&m, &self.state.m)) < slab::norm(&towards(&m, &point.m)) {
                 return left.map(|[top_mev, _]| top_mev);
             }

@@ -59,7 +59,7 @@ fn shift(h: Evaluator, held: &Held, group: &Group, direction: usize) -> Option<W
         return None;
     }
     let half: Vec<f64> = hop.iter().map(|x| 0.5 * x).collect();
-    let top_mev = held.top_mev(h, held.state.moved(&half), |at| towards(&at.m, m), |field| field)?;
+    let top_mev = held.top_mev(h, held.state.moved(&h, &half), |at| towards(&at.m, m), |field| field)?;
     let cells = shift.motion.shifts_by().map_or(1, |by| by[direction]);
     slab::scale(&mut derivative, cells as f64);
     let pinning = held.pinning(&derivative, top_mev);

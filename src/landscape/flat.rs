@@ -1,0 +1,111 @@
+//! Ways between minima that flat valleys join.
+
+use super::{Landscape, is_same_state, turned, turns};
+use crate::geometry::Direction;
+use crate::path::{Path, largest_angle};
+use crate::sphere::SAME;
+use crate::spins::Spins;
+
+/// Intervals of a turn about the axis of symmetry.
+const TURN: usize = 16;
+
+/// A part of a path between two stationary states.
+pub enum Stretch {
+    /// One that is to be relaxed.
+    Way(Path),
+    /// A turn about the axis of symmetry, all states of which are stationary.
+    Turn {
+        /// Some states of it.
+        path: Path,
+        /// By what angle (rad) about which axis.
+        by: (Direction, f64),
+    },
+}
+
+impl Stretch {
+    /// Some states of it.
+    pub fn path(&self) -> &Path {
+        let (Stretch::Way(path) | Stretch::Turn { path, .. }) = self;
+        path
+    }
+}
+
+/// So many states of a turn, from one state to another that it makes of it.
+pub fn turning(from: &Spins, to: Spins, (axis, angle): (Direction, f64), images: usize) -> Path {
+    let part = |k: usize| turned(from, &[(axis, angle * k as f64 / (images - 1) as f64)]);
+    Path::new(&(0..images - 1).map(part).chain([to]).collect::<Vec<_>>())
+}
+
+/// The ways from a minimum to one that is joined with it, end to end: over as few flat valleys as lead there, as they were found or
+/// their images, and a turn about the axis of symmetry where that is left; the geodesic where nothing is known.
+pub fn flat_ways(land: &Landscape, from: &Spins, to: &Spins) -> Vec<Stretch> {
+    let h = land.evaluator();
+    // states in the order in which they are reached, each with the one before it and the valley from there
+    let mut reached: Vec<(Spins, Option<(usize, Path)>)> = vec![(from.clone(), None)];
+    let mut k = 0;
+    while k < reached.len() {
+        if let Some(turn) = turn(land, &reached[k].0, to) {
+            let mut ways = Vec::new();
+            let mut here = k;
+            while let Some((before, valley)) = &reached[here].1 {
+                ways.push(Stretch::Way(valley.clone()));
+                here = *before;
+            }
+            ways.reverse();
+            ways.extend(turn);
+            return ways;
+        }
+        for valley in land.valleys_from(&reached[k].0).collect::<Vec<_>>() {
+            let end = valley.spins(valley.images() - 1);
+            if !reached.iter().any(|(known, _)| is_same_state(h, known.as_slice(), end.as_slice())) {
+                reached.push((end, Some((k, valley))));
+            }
+        }
+        k += 1;
+    }
+    vec![Stretch::Way(Path::new(&[from.clone(), to.clone()]))]
+}
+
+/// The turn about the axis of symmetry that makes one state the other, as of states of one cone: none where they are the same; nothing
+/// where no turn does.
+fn turn(land: &Landscape, from: &Spins, to: &Spins) -> Option<Option<Stretch>> {
+    let near = |a: &Spins| largest_angle(a.as_slice(), to.as_slice()) < SAME;
+    if near(from) {
+        return Some(None);
+    }
+    let turns = turns(land.evaluator(), from, to);
+    match turns[..] {
+        [by] if near(&turned(from, &turns)) => {
+            Some(Some(Stretch::Turn { path: turning(from, to.clone(), by, TURN + 1), by }))
+        }
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::energy::{Anisotropy, EnergyTerm, Hamiltonian};
+    use crate::geometry::Direction;
+    use crate::landscape::Minimum;
+    use crate::lattice::Chain;
+
+    #[test]
+    fn a_way_leads_over_several_valleys_where_it_has_to() {
+        let lattice = Chain::open(1).resolve().unwrap();
+        let terms: Vec<Box<dyn EnergyTerm>> = vec![Box::new(Anisotropy::uniform(1, 0.0, Direction::Z))];
+        let h = Hamiltonian::new(&lattice, terms).unwrap();
+        let state = |v: [f64; 3]| Spins::from_vectors(&[v]).unwrap();
+        let [a, b, c] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(state);
+        let middle = |p: [f64; 3]| state(p);
+        let mut land = Landscape::new((&h).into(), a.as_slice());
+        let [i, j, k] = [&a, &b, &c].map(|s| land.add_minimum(&Minimum::examine((&h).into(), s)));
+        land.merge([i, j], Path::new(&[a.clone(), middle([1.0, 1.0, 0.0]), b.clone()]));
+        land.merge([k, j], Path::new(&[c.clone(), middle([0.0, 1.0, 1.0]), b.clone()]));
+        let ways = flat_ways(&land, &a, &c);
+        let [first, second] = &ways[..] else { panic!("{} ways", ways.len()) };
+        let at = |way: &Stretch, k: usize| way.path().spins(k);
+        assert_eq!((at(first, 0), at(first, 2), at(second, 0), at(second, 2)), (a.clone(), b.clone(), b, c));
+        assert!(flat_ways(&land, &a, &a).is_empty());
+    }
+}
