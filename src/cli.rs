@@ -219,7 +219,7 @@ pub(crate) struct Run {
     #[arg(long)]
     pub force: bool,
 
-    /// No progress and no messages, only errors
+    /// No progress and no messages, only errors and results
     #[arg(short, long)]
     pub quiet: bool,
 
@@ -273,15 +273,15 @@ pub(crate) struct Rate {
     #[arg(short = 'T', long, required = true, value_name = "QUANTITY", value_parser = temperature)]
     pub temperature: Vec<Temperature>,
 
-    /// Gilbert damping
-    #[arg(long, default_value = "0.1", value_name = "ALPHA", value_parser = damping)]
-    pub damping: f64,
+    /// Gilbert damping [default: that of the result's config, else 0.1]
+    #[arg(long, value_name = "ALPHA", value_parser = damping)]
+    pub damping: Option<f64>,
 
-    /// g factor
-    #[arg(long, default_value = "2.0", value_name = "G", value_parser = g_factor)]
-    pub g_factor: f64,
+    /// g factor [default: that of the result's config, else 2]
+    #[arg(long, value_name = "G", value_parser = g_factor)]
+    pub g_factor: Option<f64>,
 
-    /// htst or langer; may be given twice [default: both]
+    /// htst or langer; may be given twice [default: those of the result's config, else both]
     #[arg(long, value_name = "THEORY", value_parser = rates::theory)]
     pub theory: Vec<Theory>,
 
@@ -289,7 +289,7 @@ pub(crate) struct Rate {
     #[arg(short, long, value_name = "N")]
     pub threads: Option<NonZeroUsize>,
 
-    /// No progress and no messages, only errors
+    /// No progress and no messages, only errors and results
     #[arg(short, long)]
     pub quiet: bool,
 
@@ -314,6 +314,9 @@ impl Default for Interval {
 fn interval(text: &str) -> Result<Interval, String> {
     if text == "off" {
         return Ok(Interval(None));
+    }
+    if text.parse::<f64>().is_ok() {
+        return Err(format!("found {text} without a unit: give \"{text}s\", or \"off\""));
     }
     let time: Time = text.parse().map_err(|e: Error| e.to_string())?;
     let seconds = 1e-12 * time.0;
@@ -458,9 +461,14 @@ pub(crate) fn report(error: &anyhow::Error) -> u8 {
     }
     match error.downcast_ref::<Error>() {
         Some(Error::Several(_) | Error::Config { .. } | Error::Invalid { .. }) => USAGE,
-        Some(Error::Io { source, .. }) if source.kind() == ErrorKind::AlreadyExists => USAGE,
+        Some(Error::Io { source, .. }) if is_about_a_name(source.kind()) => USAGE,
         _ => 1,
     }
+}
+
+/// Whether a file or folder was named that is not there, is there already, or is the other of the two.
+fn is_about_a_name(kind: ErrorKind) -> bool {
+    matches!(kind, ErrorKind::AlreadyExists | ErrorKind::NotFound | ErrorKind::NotADirectory | ErrorKind::IsADirectory)
 }
 
 /// The worse of two exit codes: 0 is better than 3 (not converged), then 2 (usage), then 1 (anything else).

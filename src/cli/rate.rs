@@ -43,7 +43,7 @@ fn rate_one(arguments: &Rate, directory: &Path) -> Result<u8> {
     };
     folder::are_free(directory, &loaded.file_names())?;
     let _lock = Lock::of(directory)?;
-    loaded.config.rates = Some(asked(arguments));
+    loaded.config.rates = Some(asked(arguments, loaded.config.rates.take()));
     let problem = loaded.problem()?;
     let name = &loaded.name;
     let outcome = match from_files(&loaded, &problem, directory)? {
@@ -58,9 +58,11 @@ fn rate_one(arguments: &Rate, directory: &Path) -> Result<u8> {
     write(&loaded, &outcome, directory, Earlier::GivesWay(manifest.source.as_deref()), false)?;
     if !arguments.quiet {
         outcome.warnings.iter().for_each(|warning| note(&format!("{name}: warning: {warning}")));
-        note(&format!(
-            "{name}: rates are in {place}: summary.json, and rates.csv and arrhenius.svg and .png where asked for"
-        ));
+        if outcome.rates.is_some() {
+            note(&format!(
+                "{name}: rates are in {place}: summary.json, and the table and the figure that its config asks for"
+            ));
+        }
     }
     print(arguments, name, directory, &outcome)
 }
@@ -74,10 +76,14 @@ fn from_files(loaded: &Loaded, problem: &Problem, directory: &Path) -> Result<st
     Ok(outcome.with_rates(problem, &minima, &loaded.warnings))
 }
 
-/// The `rates` that the command line stands for.
-fn asked(arguments: &Rate) -> RatesConfig {
+/// The `rates` that the command line stands for; what it leaves open is as in the config of the result.
+fn asked(arguments: &Rate, earlier: Option<RatesConfig>) -> RatesConfig {
     let mut config = RatesConfig::at(arguments.temperature.clone());
-    (config.damping, config.g_factor) = (arguments.damping, arguments.g_factor);
+    if let Some(earlier) = earlier {
+        config = RatesConfig { temperatures: config.temperatures, ..earlier };
+    }
+    config.damping = arguments.damping.unwrap_or(config.damping);
+    config.g_factor = arguments.g_factor.unwrap_or(config.g_factor);
     if !arguments.theory.is_empty() {
         config.theory = Theory::ALL.into_iter().filter(|t| arguments.theory.contains(t)).collect();
     }

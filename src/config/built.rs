@@ -48,6 +48,9 @@ impl Loaded {
         let config = &self.config;
         let here = |e: Error| self.text.locate(e);
         let started = Instant::now();
+        // before the plan of factors is made, which takes long where these are refused
+        let least = config.path.images.0.asked_for().unwrap_or(FEWEST_IMAGES);
+        self.affordable(memory::images_bytes(least, self.lattice.sites), Some(least))?;
         let States { hamiltonian, scales, initial, final_state, sense } = self.states(true)?;
         let final_state = final_state.unwrap_or_else(|| initial.clone());
         if largest_angle(initial.as_slice(), final_state.as_slice()) < IDENTICAL {

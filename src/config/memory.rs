@@ -16,7 +16,6 @@ const LIMITS: [&str; 2] = ["Max address space", "Max data size"];
 /// Memory of the images of a band (bytes): spins, gradients, forces, tangents and moves, and the Hessian of each with its factors;
 /// where those are no band, of as many images as so many threads prepare ahead, of blocks of so many as are made at a time.
 pub fn band_bytes(images: usize, sites: usize, layout: &Layout, factors: usize, threads: usize) -> f64 {
-    let vectors = sites * 14 * 3 * size_of::<f64>();
     let (factored, hessian) = match layout {
         // 2 rows a site, each with the blocks up to the furthest partner
         Layout::Band { span, .. } => (images, sites * 2 * 2 * (2 * span + 6) * size_of::<f64>()),
@@ -25,7 +24,12 @@ pub fn band_bytes(images: usize, sites: usize, layout: &Layout, factors: usize, 
         Layout::Dense => (images.min(2 * threads), 2 * 4 * sites * sites * size_of::<f64>()),
     };
     let bands = if factors == 0 { BANDS } else { 1 };
-    (images * bands) as f64 * vectors as f64 + factored as f64 * hessian as f64
+    images_bytes(images * bands, sites) + factored as f64 * hessian as f64
+}
+
+/// Memory of so many images alone, their forces and moves (bytes).
+pub fn images_bytes(images: usize, sites: usize) -> f64 {
+    images as f64 * (sites * 14 * 3 * size_of::<f64>()) as f64
 }
 
 /// Memory of the Hessian's couplings of distant sites, and their factors (bytes), as many at a time as there are threads;

@@ -11,7 +11,7 @@ use crate::energy::Hamiltonian;
 use crate::error::Result;
 use crate::geometry::Vector;
 use crate::hessian::factorisation_flops;
-use crate::landscape::{Aim, Effort, Landscape, Minimum, Searched, Settings, search};
+use crate::landscape::{Aim, Effort, KINDS, Landscape, Minimum, Searched, Settings, search};
 use crate::record::Count;
 use crate::spins::Spins;
 use crate::stationary::{RELAXED, Relaxed, relax_to_minimum};
@@ -51,7 +51,7 @@ impl<'a> Run<'a, '_> {
             effort,
             shares: 1,
             most,
-            most_kinds: usize::MAX,
+            most_kinds: KINDS,
             c: self.scales.stiffness_mev,
             context: self.context(),
         };

@@ -75,7 +75,10 @@ impl Hamiltonian {
         };
         let diagonal = |b: super::blocks::Block| b[0][0].abs() + b[1][1].abs() + b[2][2].abs();
         h.stiffness = h.blocks.sites().map(diagonal).fold(1e-280, f64::max);
-        for axis in [Direction::X, Direction::Y, Direction::Z] {
+        // a cubic anisotropy has no torque and no gradient along its axes, and some between them
+        let between =
+            (!h.terms.iter().all(|t| t.is_quadratic())).then(|| Direction::new([1.0, 2.0, 3.0])).and_then(Result::ok);
+        for axis in [Direction::X, Direction::Y, Direction::Z].into_iter().chain(between) {
             let mut g = vec![0.0; 3 * sites];
             h.energy_gradient(Spins::uniform(sites, axis).as_slice(), &mut g);
             h.stiffness = h.stiffness.max(slab::max_abs(&g));

@@ -47,7 +47,7 @@ pub use pass::Pass;
 pub use peaks::{Peak, direction, highest, peaks};
 pub use places::{Places, Seen};
 pub use saddle::Saddle;
-pub use search::{Aim, Effort, Searched, Settings, Standing, search};
+pub use search::{Aim, Effort, KINDS, Searched, Settings, Standing, search};
 pub use stored::{are_counts, are_finite, fit};
 pub use turns::{turned, turns};
 pub use zoom::{ZOOMS, zoomed};

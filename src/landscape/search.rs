@@ -28,6 +28,8 @@ use serde::{Deserialize, Serialize};
 const WITHOUT_MODE: usize = 8;
 /// Searches of a batch.
 const BATCH: usize = 8;
+/// Kinds of minima, at most: of a search for a route, and of a survey for each step of effort.
+pub const KINDS: usize = 1000;
 /// The seed of everything random in a search.
 const SEED: u64 = 0x5ea2c4;
 

@@ -82,8 +82,9 @@ impl Lifetimes {
         let low = |r: &SaddleRate| r.barrier_mev.is_some_and(|e| e < LEAST_BARRIER * K_B * hottest);
         let parts = |[on, back]: &&[SaddleRate; 2]| !on.is_within_one(back, hottest);
         let count = self.saddles.iter().filter(parts).filter(|both| both.iter().any(low)).count();
+        let which = if count == 1 { "one kind of saddles is".into() } else { format!("{count} kinds of saddles are") };
         let low = format!(
-            "{count} kinds of saddles are lower than {LEAST_BARRIER} k_BT at {hottest} K above a minimum beside them: such a minimum hardly \
+            "{which} lower than {LEAST_BARRIER} k_BT at {hottest} K above a minimum beside them: such a minimum hardly \
              holds the spins there, and its part in the times is formal"
         );
         words.extend((count > 0).then_some(low));

@@ -18,7 +18,7 @@ use crate::energy::recorded_each;
 use crate::error::Result;
 use crate::field::Components;
 use crate::geometry::{Direction, vector};
-use crate::landscape::{Aim, Effort, Minimum, Searched, Settings, search};
+use crate::landscape::{Aim, Effort, KINDS, Minimum, Searched, Settings, search};
 use crate::lattice::Triangles;
 use crate::rates::RateSettings;
 use crate::record::Count;
@@ -31,8 +31,6 @@ use std::collections::BTreeSet;
 const ROUNDS: usize = 4;
 /// Of spins, so many are evaluated at most for each step of effort, and so many times as many of a Hessian's blocks.
 const SPINS: usize = 50_000_000;
-/// Kinds of minima, at most, for each step of effort.
-const KINDS: usize = 1000;
 
 /// What a survey is asked for.
 #[derive(Debug)]
