@@ -246,6 +246,10 @@ fn a_command_line_that_makes_no_sense_is_refused() {
             "error: --labels: the figures' font has no '漢', found in \"漢\"; give another label",
         ),
         (
+            &["plot", "a", "b", "--labels", "strong,with twice as much anisotropy in the middle"],
+            "error: --labels: \"with twice as much anisotropy in the middle\" is wider than the figure: give a shorter one, or a larger --width",
+        ),
+        (
             &["plot", "a", "--width", "300"],
             "error: --width: found 300 mm: figures of style paper are 60 mm to 250 mm wide",
         ),

@@ -120,6 +120,19 @@ fn lifetimes_beyond_what_a_double_holds_are_null_with_their_logarithm() {
     assert!(csv.lines().nth(1).unwrap().contains(",0.0,0.0,,7"), "{csv}");
 }
 
+#[test]
+fn what_is_asked_for_later_has_the_damping_and_the_theory_of_the_config() {
+    let folder = folder(&CONFIG.replace("\"damping\": 0.2", "\"damping\": 0.2, \"theory\": [\"langer\"]"));
+    assert_eq!(spinneb(folder.path(), &["run", "chain.json", "--quiet"]).0, Some(0));
+    for (more, damping) in [(&[][..], 0.2), (&["--damping", "0.4"][..], 0.4)] {
+        let asked = ["rate", "results/chain", "-T", "2 K", "--quiet"];
+        assert_eq!(spinneb(folder.path(), &[&asked[..], more].concat()).0, Some(0));
+        let rates = &summary(folder.path())["rates"][0];
+        assert_eq!((&rates["damping"], &rates["temperatures"][0]["htst_rate_per_s"]), (&damping.into(), &Value::Null));
+        assert_eq!(rates["temperatures"].as_array().unwrap().len(), 1);
+    }
+}
+
 /// Two values are the same, numbers to rounding.
 fn agree(a: &Value, b: &Value) {
     match (a, b) {

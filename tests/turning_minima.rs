@@ -1,5 +1,5 @@
 //! Minima that an axis of symmetry makes rings of: frustrated antiferromagnets, and walls around spins that are held. Routes lead over
-//! turns of such states, and each ring is one minimum.
+//! turns of such states, and each ring is one minimum; and one spin that no axis holds.
 
 use spinneb::config::load_text;
 use spinneb::drive::{Outcome, Silent, run};
@@ -43,6 +43,17 @@ fn a_path_is_put_together_over_turns_of_any_angle() {
     let film = r#"{"square": {"cells": [5, 5], "periodic": true}}"#;
     for barrier in barriers(-4.0, 1.7, film, &[0, 12, 14]) {
         assert!((barrier / 8.167_791_458_849 - 1.0).abs() < 1e-11, "{barrier}");
+    }
+}
+
+#[test]
+fn one_spin_between_two_body_diagonals_crosses_an_edge() {
+    // |K| (1/3 − 1/4): no term gives it a torque along the axes of the cube
+    for k in [0.07, 1.0, 5.0] {
+        let ends = [[1, 1, 1], [1, 1, -1]].map(|d| format!(r#"{{"uniform": {{"direction": {d:?}}}}}"#));
+        let cubic = format!(r#"{{"cubic_anisotropy": {{"K": "{} meV"}}}}"#, -k);
+        let found = outcome(&cubic, r#"{"chain": {"sites": 1}}"#, [&ends[0], &ends[1]]);
+        assert!(found.certified && (found.barrier.unwrap().forward_mev / (k / 12.0) - 1.0).abs() < 1e-12, "{k}");
     }
 }
 

@@ -4,7 +4,7 @@ use super::{Plot, USAGE, note, report, worse};
 use crate::config::{Config, Loaded, load};
 use crate::error::Error;
 use crate::files::disk::File;
-use crate::output::canvas::{Look, Style, description};
+use crate::output::canvas::{Canvas, Look, SMALL_PT, Style, Text, description};
 use crate::output::folder;
 use crate::output::{
     EnergyPath, PLOTS, Picture, PlotData, PlotFile, PlotTable, StoredRun, describe, draw_energy_paths,
@@ -79,6 +79,10 @@ fn several(arguments: &Plot) -> Result<u8> {
         return Ok(USAGE);
     }
     let look = Look::new(arguments.style.unwrap_or_default(), arguments.width).map_err(flagged)?;
+    if let Some(label) = arguments.labels.iter().find(|label| !fits(label, &look)) {
+        note(&format!("error: --labels: {label:?} is wider than the figure: give a shorter one, or a larger --width"));
+        return Ok(USAGE);
+    }
     let paths: Vec<EnergyPath> = (stored.iter().zip(&labels))
         .map(|(one, label)| EnergyPath { name: label.clone(), ..one.data().energy })
         .collect();
@@ -97,6 +101,12 @@ fn several(arguments: &Plot) -> Result<u8> {
         files.iter().for_each(|file| note(&format!("{} is drawn", out.join(&file.name).display())));
     }
     Ok(0)
+}
+
+/// Whether a label has room in a legend, its barrier beside it.
+fn fits(label: &str, look: &Look) -> bool {
+    let text = Text::new(format!("{label}: 0.000000 meV"), SMALL_PT);
+    text.width().is_ok_and(|wide| wide < 0.7 * Canvas::styled(look, 10.0).width())
 }
 
 /// Folder, name without its ending, and formats of the one figure of several results.

@@ -26,10 +26,13 @@ impl Plot for ArrheniusPlot {
         "arrhenius"
     }
 
-    /// One temperature makes no curve; its rates are in `rates.csv`.
+    /// A curve needs times that are drawn at two temperatures; all others are in `rates.csv` alone.
     fn applies(&self, data: &PlotData) -> bool {
-        let temperatures = |t: &Lifetimes| t.rows.iter().any(|r| r.temperature_k != t.rows[0].temperature_k);
-        data.lifetimes.iter().any(temperatures)
+        let is_curve = |t: &Lifetimes| {
+            let mut drawn = t.rows.iter().filter(|r| times(r).into_iter().flatten().any(is_drawn));
+            drawn.next().is_some_and(|first| drawn.any(|r| r.temperature_k != first.temperature_k))
+        };
+        data.lifetimes.iter().any(is_curve)
     }
 
     fn draw(&self, data: &PlotData, look: &Look) -> Result<Canvas> {
@@ -52,13 +55,12 @@ pub fn draw_lifetimes(lifetimes: &[Lifetimes], look: &Look) -> Result<Canvas> {
             false => what.to_string(),
         };
         let passage = |theory: &str| name(&if stops { format!("First passage, {theory}") } else { theory.to_string() });
-        let inverse = |rate: Option<f64>| rate.map(|r| 1.0 / r);
-        let langer = curves(&t.rows, |r| inverse(r.langer_per_s), passage("Langer"), colour, None);
-        let htst = curves(&t.rows, |r| inverse(r.htst_per_s), passage("HTST"), htst_colour, Some((3.0, 2.0)));
+        let langer = curves(&t.rows, |r| times(r)[0], passage("Langer"), colour, None);
+        let htst = curves(&t.rows, |r| times(r)[1], passage("HTST"), htst_colour, Some((3.0, 2.0)));
         plot.series.extend(langer.into_iter().chain(htst));
         if stops {
             let dots = Some((0.8, 1.6));
-            plot.series.extend(curves(&t.rows, |r| r.escape_s, name("First escape"), colour, dots));
+            plot.series.extend(curves(&t.rows, |r| times(r)[2], name("First escape"), colour, dots));
         }
     }
     // grey lines lie below the others, and one entry at the end of the legend stands for all
@@ -79,6 +81,16 @@ pub fn draw_lifetimes(lifetimes: &[Lifetimes], look: &Look) -> Result<Canvas> {
     let obstacles = plot.draw_series(&mut canvas, &frame);
     plot.draw_legend(&mut canvas, &frame, &obstacles)?;
     Ok(canvas)
+}
+
+/// Mean times (s) by Langer's theory and by HTST, and of the first escape.
+fn times(r: &RateRow) -> [Option<f64>; 3] {
+    [r.langer_per_s.map(|rate| 1.0 / rate), r.htst_per_s.map(|rate| 1.0 / rate), r.escape_s]
+}
+
+/// Whether a time (s) is within what a figure shows.
+fn is_drawn(time_s: f64) -> bool {
+    (SHORTEST_S..=LONGEST_S).contains(&time_s)
 }
 
 /// Whether the two directions have different lifetimes, as far as a figure shows.
@@ -104,7 +116,7 @@ fn curves(
 ) -> Vec<Series> {
     let shown = |r: &RateRow| Some((1000.0 / r.temperature_k, time_s(r)?, r.barrier_over_kt < LOW_BARRIER));
     let mut points: Vec<(f64, f64, bool)> = rows.iter().filter_map(shown).collect();
-    points.retain(|p| (SHORTEST_S..=LONGEST_S).contains(&p.1));
+    points.retain(|p| is_drawn(p.1));
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     let marker = (points.len() <= FEW).then_some(Marker::Disc);
     let low = points.iter().take_while(|p| p.2).count();

@@ -196,7 +196,8 @@ impl Layer<'_> {
     fn draw(&self, canvas: &mut Canvas, rect: Rect, m: Components) {
         let scale = PIXELS / self.size[0].max(self.size[1]);
         let [columns, rows] = self.size.map(|x| (scale * x).ceil().max(1.0) as usize);
-        let Colour(r, g, b) = mix(LIGHT_GREY, GREY, 0.3);
+        let [light, grey] = [LIGHT_GREY, GREY].map(|c| canvas.style().colour(c));
+        let Colour(r, g, b) = mix(light, grey, 0.3);
         let mut rgb = [r, g, b].repeat(columns * rows);
         for &i in &self.sites {
             let Colour(r, g, b) = direction(m.get(i));
@@ -232,6 +233,7 @@ fn wheel(canvas: &mut Canvas, room: Rect) -> Result<()> {
     let radius = 0.5 * (room.width() - 26.0).min(room.height() - 2.0 * TITLE);
     let (x, y) = ((room.x0 + room.x1) / 2.0, room.y0 + radius + TITLE / 2.0);
     let mut rgb = Vec::with_capacity(3 * SIDE * SIDE);
+    let page = canvas.style().colour(WHITE);
     for row in 0..SIDE {
         for column in 0..SIDE {
             let place = |k: usize| 2.0 * (k as f64 + 0.5) / SIDE as f64 - 1.0;
@@ -239,7 +241,7 @@ fn wheel(canvas: &mut Canvas, room: Rect) -> Result<()> {
             let out = libm::hypot(a, b);
             let z = 1.0 - 2.0 * out;
             let across = (1.0 - z * z).max(0.0).sqrt() / out.max(1e-9);
-            let Colour(r, g, b) = if out > 1.0 { WHITE } else { direction([across * a, across * b, z]) };
+            let Colour(r, g, b) = if out > 1.0 { page } else { direction([across * a, across * b, z]) };
             rgb.extend([r, g, b]);
         }
     }
