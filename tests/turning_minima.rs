@@ -3,6 +3,8 @@
 
 use spinneb::config::load_text;
 use spinneb::drive::{Outcome, Silent, run};
+use spinneb::spins::Spins;
+use spinneb::stationary::{RELAXED, relax_to_minimum};
 
 fn outcome(energy: &str, lattice: &str, ends: [&str; 2]) -> Outcome {
     let [initial, end] = ends;
@@ -43,6 +45,24 @@ fn a_path_is_put_together_over_turns_of_any_angle() {
     let film = r#"{"square": {"cells": [5, 5], "periodic": true}}"#;
     for barrier in barriers(-4.0, 1.7, film, &[0, 12, 14]) {
         assert!((barrier / 8.167_791_458_849 - 1.0).abs() < 1e-11, "{barrier}");
+    }
+}
+
+#[test]
+fn minima_that_turn_freely_are_relaxed_to_rounding() {
+    let up = r#"{"uniform": {"direction": [0, 0, 1]}}"#;
+    let axis = r#"{"exchange": {"J": ["-3.249 meV"]}}, {"anisotropy": {"K": "0.0731 meV", "axis": [1, 0, 0]}}"#;
+    let config = format!(
+        r#"{{"material": {{"name": "test", "energy": [{axis}]}}, "lattice": {{"triangular": {{"cells": [4, 3]}}}}, "initial": {up},
+            "final": {{"uniform": {{"direction": [0, 0, -1]}}}}}}"#
+    );
+    let problem = load_text(std::path::Path::new("test.json"), config).unwrap().problem().unwrap();
+    let h = problem.evaluator();
+    let goal = RELAXED * h.stiffness_mev();
+    for seed in 0..20 {
+        let relaxed = relax_to_minimum(h, &Spins::random(h.sites(), seed), goal).unwrap();
+        // a force along the free turn was 1e-10 meV before
+        assert!(relaxed.max_torque_mev <= 2.0 * goal, "{seed}: {:e} {goal:e}", relaxed.max_torque_mev);
     }
 }
 

@@ -136,7 +136,7 @@ struct Space<'a> {
 impl Space<'_> {
     /// Takes in what is new of some vectors, if there is any.
     fn add(&mut self, mut new: Vec<Vec<f64>>) {
-        new.retain_mut(has_become_unit);
+        new.retain_mut(|v| has_become_unit(v));
         blocks::without(&mut new, self.known);
         blocks::without(&mut new, &self.vectors);
         let before = self.vectors.len();
@@ -157,7 +157,7 @@ impl Space<'_> {
     }
 
     /// Whether anything is left of a vector beside the others, which is left of it then: all but rounding.
-    fn leaves_anything_of(&self, v: &mut Vec<f64>) -> bool {
+    fn leaves_anything_of(&self, v: &mut [f64]) -> bool {
         for _ in 0..2 {
             if !has_become_unit(v) {
                 return false;
@@ -231,7 +231,7 @@ impl Space<'_> {
 }
 
 /// Whether a vector has a direction; its length is 1 then.
-fn has_become_unit(v: &mut Vec<f64>) -> bool {
+fn has_become_unit(v: &mut [f64]) -> bool {
     let size = slab::norm(v);
     slab::scale(v, 1.0 / size);
     size > 0.0 && size.is_finite()

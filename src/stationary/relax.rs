@@ -7,7 +7,7 @@ use crate::energy::Evaluator;
 use crate::error::{Error, Result};
 use crate::field::Components;
 use crate::geometry::{Vector, vector};
-use crate::linalg::{Factors, Matrix, slab};
+use crate::linalg::{Factors, Matrix, remove, slab};
 use crate::path::largest_angle;
 use crate::sphere::rotation_of;
 use crate::spins::Spins;
@@ -142,7 +142,9 @@ fn newton_step(h: Evaluator, p: &Point, shift: &mut f64, memory: &mut Matrix) ->
 
 /// The solution v of (H + shift) v = F, a field; none where H + shift is not positive definite.
 fn newton(h: Evaluator, p: &Point, shift: f64, memory: &mut Matrix) -> Option<Vec<f64>> {
+    // what rounding leaves of a force along a free rotation would be a long step, and a straight one: no rotation any more
     let mut x = p.downhill();
+    remove(&mut x, &p.zeros);
     if h.forgoes_factors() {
         let force = p.field(&x);
         return Unfactored::about(&h, p, shift).solve(&h, p, shift, &[], &force).map(<[f64]>::to_vec);
@@ -152,6 +154,7 @@ fn newton(h: Evaluator, p: &Point, shift: f64, memory: &mut Matrix) -> Option<Ve
     let factors = Factors::solving(matrix, &mut x, 1);
     let positive = factors.negatives() == 0;
     *memory = factors.into_memory();
+    remove(&mut x, &p.zeros);
     positive.then(|| p.field(&x))
 }
 
