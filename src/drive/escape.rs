@@ -18,7 +18,7 @@ pub fn escapes(band: &Band, found: &Saddle, c: f64) -> Vec<Path> {
     if band.hamiltonian().forgoes_factors() {
         return Vec::new();
     }
-    let modes = soft_modes(&state.hessian, 8, &state.zeros, enough, &|| false);
+    let modes = soft_modes(&state.hessian, 8, &state.zeros, enough);
     let negative: Vec<_> = modes.into_iter().filter(|m| m.value < enough).collect();
     if negative.len() < 2 {
         return Vec::new();

@@ -25,34 +25,13 @@ pub(super) struct Modes {
     pub part: f64,
 }
 
-/// What a symmetric matrix is inverted by, in all of its space or in a part of it.
-pub trait Inverse {
-    /// Number of unknowns.
-    fn order(&self) -> usize;
-
-    /// Solves A X = B in place for `columns` right-hand sides, interleaved: x[j columns + c].
-    fn solve(&self, x: &mut [f64], columns: usize);
-}
-
-impl Inverse for Factors {
-    fn order(&self) -> usize {
-        Factors::order(self)
-    }
-
-    fn solve(&self, x: &mut [f64], columns: usize) {
-        Factors::solve(self, x, columns);
-    }
-}
-
 /// The space that the inverse spans from a block, and the inverse within it.
 pub(super) struct Krylov<'a> {
-    inverse: &'a dyn Inverse,
+    inverse: &'a Factors,
     known: &'a [Vec<f64>],
     block: usize,
     /// What the block is made of first; where that is too few, of anything.
     pub starts: Vec<Vec<f64>>,
-    /// Whether to end with what there is.
-    pub stop: &'a dyn Fn() -> bool,
     /// How often a vector is made orthogonal to those before it.
     pub passes: usize,
     random: ChaCha8Rng,
@@ -65,10 +44,10 @@ pub(super) struct Krylov<'a> {
 }
 
 impl<'a> Krylov<'a> {
-    pub fn new(inverse: &'a dyn Inverse, known: &'a [Vec<f64>], block: usize) -> Krylov<'a> {
+    pub fn new(inverse: &'a Factors, known: &'a [Vec<f64>], block: usize) -> Krylov<'a> {
         let (starts, random) = (Vec::new(), ChaCha8Rng::seed_from_u64(0x5eed));
         let (basis, images, products) = (Vec::new(), Vec::new(), Vec::new());
-        Krylov { inverse, known, block, starts, stop: &|| false, passes: 2, random, basis, images, products }
+        Krylov { inverse, known, block, starts, passes: 2, random, basis, images, products }
     }
 
     /// Dimensions of the space that A acts in, known vectors apart.
@@ -86,7 +65,7 @@ impl<'a> Krylov<'a> {
     pub fn largest(&mut self, wanted: Modes, most: usize) -> (Vec<Vec<f64>>, bool) {
         let mut look = wanted.count + 2 * self.block;
         loop {
-            let last = !self.grow() || self.is_full(most) || (self.stop)();
+            let last = !self.grow() || self.is_full(most);
             if last || self.basis.len() >= look {
                 if let Some(vectors) = self.settled(wanted, false) {
                     return (vectors, true);

@@ -2,16 +2,13 @@
 //! already by the latter alone.
 
 use super::krylov::{BY_VALUE, Krylov, MOST, Modes, SHARP};
-use super::orthonormal::orthonormal;
 use super::ritz::{Mode, none_is_missed, rayleigh_ritz};
 use super::slices::sliced;
 use super::together::together;
-use super::{Factors, Inverse, Matrix, Wanted};
+use super::{Factors, Matrix, Wanted};
 
 /// Vectors in a block: as many as modes are often degenerate, and for the rare case in which that was too few.
 const BLOCKS: [usize; 2] = [2, 4];
-/// How sharp modes are of which the sign matters: |A⁻¹v − v/λ| in parts of 1/|λ|.
-const BY_THEIR_SIGN: f64 = 1e-2;
 /// Most vectors from the factors of the matrix itself, whose modes may be far from zero.
 const MOST_AS_IT_IS: usize = 60;
 
@@ -34,22 +31,16 @@ pub fn lowest_modes_beside(
     (wanted, given): (Wanted, &[Vec<f64>]),
 ) -> Vec<Mode> {
     let part = if wanted == Wanted::Vectors { SHARP } else { BY_VALUE };
-    those_below(matrix, Modes { count, below: f64::INFINITY, part }, known, given, &|| false)
+    those_below(matrix, Modes { count, below: f64::INFINITY, part }, known, given)
 }
 
 /// The modes among the `count` lowest that are below a limit, but one at least; as [`lowest_modes`], without the time that the
-/// modes above the limit take, which on long chains are close together. Where it is to `stop`, some of them, to be thrown away.
-pub fn soft_modes(matrix: &Matrix, count: usize, known: &[Vec<f64>], below: f64, stop: &dyn Fn() -> bool) -> Vec<Mode> {
-    those_below(matrix, Modes { count, below, part: BY_VALUE }, known, &[], stop)
+/// modes above the limit take, which on long chains are close together.
+pub fn soft_modes(matrix: &Matrix, count: usize, known: &[Vec<f64>], below: f64) -> Vec<Mode> {
+    those_below(matrix, Modes { count, below, part: BY_VALUE }, known, &[])
 }
 
-fn those_below(
-    matrix: &Matrix,
-    wanted: Modes,
-    known: &[Vec<f64>],
-    given: &[Vec<f64>],
-    stop: &dyn Fn() -> bool,
-) -> Vec<Mode> {
+fn those_below(matrix: &Matrix, wanted: Modes, known: &[Vec<f64>], given: &[Vec<f64>]) -> Vec<Mode> {
     let n = matrix.order();
     let room = n.saturating_sub(known.len());
     let wanted = Modes { count: wanted.count.min(room), ..wanted };
@@ -65,7 +56,7 @@ fn those_below(
         }
         _ => slices(),
     };
-    found.unwrap_or_else(|| lanczos(matrix, wanted, known, stop).0)
+    found.unwrap_or_else(|| lanczos(matrix, wanted, known))
 }
 
 /// The vectors of all negative modes of a factorised matrix, or, where there are none, of the lowest mode; ascending, in the space
@@ -93,29 +84,8 @@ pub fn modes_by_factors(
     }
 }
 
-/// The space of the modes that are negative, so many, and of the lowest of the others, at most `count`, those below a limit or one;
-/// of what `inverse` inverts in the space orthogonal to `known`. Nothing where they are not found soon.
-pub fn soft_space(
-    inverse: &dyn Inverse,
-    known: &[Vec<f64>],
-    negatives: usize,
-    count: usize,
-    below: f64,
-) -> Option<Vec<Vec<f64>>> {
-    let mut krylov = Krylov::new(inverse, known, BLOCKS[0]);
-    let (mut space, mut found) = krylov.largest(Modes { count, below, part: BY_VALUE }, MOST_AS_IT_IS);
-    while found && negatives > 0 {
-        if let Some(below) = krylov.negative(negatives, BY_THEIR_SIGN) {
-            space.extend(below);
-            return Some(orthonormal(space, 0.5));
-        }
-        found = !krylov.is_full(MOST_AS_IT_IS) && krylov.grow();
-    }
-    found.then_some(space)
-}
-
-/// Some of the `count` lowest modes, at least one, by block Lanczos; and whether they are eigenvectors, none missed.
-fn lanczos(matrix: &Matrix, wanted: Modes, known: &[Vec<f64>], stop: &dyn Fn() -> bool) -> (Vec<Mode>, bool) {
+/// Some of the `count` lowest modes, at least one, by block Lanczos.
+fn lanczos(matrix: &Matrix, wanted: Modes, known: &[Vec<f64>]) -> Vec<Mode> {
     let scale = matrix.norm1().max(1e-280);
     let shift = shift_below(matrix, scale);
     let mut shifted = matrix.clone();
@@ -124,14 +94,13 @@ fn lanczos(matrix: &Matrix, wanted: Modes, known: &[Vec<f64>], stop: &dyn Fn() -
     let mut modes = Vec::new();
     for block in BLOCKS {
         let mut krylov = Krylov::new(&factors, known, block);
-        krylov.stop = stop;
-        let (space, settled) = krylov.largest(Modes { below: wanted.below + shift, ..wanted }, MOST);
+        let (space, _) = krylov.largest(Modes { below: wanted.below + shift, ..wanted }, MOST);
         modes = rayleigh_ritz(matrix, &space);
-        if stop() || none_is_missed(matrix, &modes, known, scale) {
-            return (modes, settled);
+        if none_is_missed(matrix, &modes, known, scale) {
+            break;
         }
     }
-    (modes, false)
+    modes
 }
 
 /// s with A + s·1 positive definite and its lowest eigenvalue small beside that of A: halves an interval by the inertia.
@@ -182,7 +151,7 @@ mod tests {
         let all = Modes { count, below: f64::INFINITY, part: BY_VALUE };
         let (near, complete) = together(matrix, known, &[], all);
         assert!(complete);
-        [slices, lanczos(matrix, all, known, &|| false).0, near, lowest_modes(matrix, count, known)]
+        [slices, lanczos(matrix, all, known), near, lowest_modes(matrix, count, known)]
     }
 
     #[test]

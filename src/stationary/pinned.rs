@@ -14,7 +14,7 @@ use super::border::{Border, pin};
 use super::state::State;
 use super::tolerances::INDEPENDENT;
 use crate::energy::Evaluator;
-use crate::linalg::{Factors, Inverse, Matrix, remove, slab};
+use crate::linalg::{Factors, Matrix, remove, slab};
 use std::mem::take;
 
 /// A factorised, pinned Hessian.
@@ -39,13 +39,13 @@ impl Pinned {
         (h.stiffness_mev() / 3.0).max(c)
     }
 
-    /// Of H + shift·1 at a state, with the soft mode `t` (tangent coordinates, any length) and `frozen` further modes that are
-    /// treated as zero modes; κ is the stiffness of the pins (meV). Solutions get a step of iterative refinement.
-    pub fn new(state: &State, t: &[f64], shift: f64, frozen: &[Vec<f64>], kappa: f64) -> Pinned {
+    /// Of H + shift·1 at a state, with the soft mode `t` (tangent coordinates, any length); κ is the stiffness of the pins (meV).
+    /// Solutions get a step of iterative refinement.
+    pub fn new(state: &State, t: &[f64], shift: f64, kappa: f64) -> Pinned {
         let mut pinned = Pinned::default();
         let mut matrix = state.hessian.clone();
         matrix.shift(shift);
-        let mut used = pinned.pin_zeros(&mut matrix, state.zeros.iter().chain(frozen), kappa);
+        let mut used = pinned.pin_zeros(&mut matrix, &state.zeros, kappa);
         pinned.aim(t);
         let (matrix, factors) = pinned.border.factor_refined(matrix, &mut used, kappa);
         pinned.matrix = Some(matrix);
@@ -61,19 +61,14 @@ impl Pinned {
     /// Takes any matrix with orthonormal zero modes, in the memory there is. Solutions are less accurate than those of
     /// [`new`](Self::new), and quicker: good enough for steps that are corrected.
     pub fn factor(&mut self, mut matrix: Matrix, zeros: &[Vec<f64>], t: &[f64], kappa: f64) {
-        let mut used = self.pin_zeros(&mut matrix, zeros.iter(), kappa);
+        let mut used = self.pin_zeros(&mut matrix, zeros, kappa);
         self.aim(t);
         let factors = self.border.factor(matrix, &mut used, kappa);
         self.count(factors);
     }
 
     /// Pins the zero modes; the sites that have pins now.
-    fn pin_zeros<'a>(
-        &mut self,
-        matrix: &mut Matrix,
-        modes: impl Iterator<Item = &'a Vec<f64>>,
-        kappa: f64,
-    ) -> Vec<usize> {
+    fn pin_zeros(&mut self, matrix: &mut Matrix, modes: &[Vec<f64>], kappa: f64) -> Vec<usize> {
         let mut used = Vec::new();
         let mut memory = take(&mut self.zeros).into_iter();
         for mode in modes {
@@ -149,20 +144,6 @@ impl Pinned {
         let nu = self.border.valley(x);
         remove(x, &self.zeros);
         nu
-    }
-}
-
-/// Of H in the complement of the soft mode, for vectors in that of the zero modes.
-impl Inverse for Pinned {
-    fn order(&self) -> usize {
-        self.factors.order()
-    }
-
-    fn solve(&self, x: &mut [f64], columns: usize) {
-        self.factors.solve(x, columns);
-        slab::one_by_one(x, columns, |x| {
-            self.border.take_back(x);
-        });
     }
 }
 

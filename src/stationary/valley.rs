@@ -5,9 +5,8 @@
 //! [tᵀ 0][ν] = [ 0]        [tᵀ 0][·] = [1]        λ = wᵀHw: its curvature
 //! m ← Exp_m(d + Δx w/|w|),   Δx = −(r/λ)|w| at a maximum, kept inside the bracket of r's sign change
 //! ```
-//! Negative directions outside the soft mode are handled in this order: modes flat to 1e-4 c are frozen (bordered like zero
-//! modes); if there is one negative direction in all, t is re-aimed at it; else a shift μ keeps the step finite, and a state
-//! that stays so is kicked along the lowest of them, at most twice.
+//! Where another direction than the soft mode is negative, t is re-aimed at it if it is the only one; else a shift μ keeps the step
+//! finite.
 
 use super::pinned::Pinned;
 use super::polish::polish;
@@ -16,8 +15,7 @@ use super::spectrum::Spectrum;
 use super::state::State;
 use super::tolerances::{ALIKE, LARGER, NEARLY, ROUNDING, SHARP, STEP};
 use crate::energy::Evaluator;
-use crate::linalg::{Matrix, Mode, lowest_modes, orthonormal, rayleigh_ritz, remove, slab, soft_modes, soft_space};
-use crate::path::distance;
+use crate::linalg::{lowest_modes, slab};
 use crate::sphere::rotation_of;
 use serde::{Deserialize, Serialize};
 
@@ -25,9 +23,6 @@ use serde::{Deserialize, Serialize};
 const SHIFT: f64 = 0.1;
 /// How often a Hessian is pinned in another way at one place.
 const TRIES: usize = 15;
-/// How many modes beside the soft one are looked at; those flatter than this part of c are frozen.
-const MODES: usize = 6;
-const FROZEN: f64 = 1e-4;
 /// A step across the valley that is shorter (rad, any component) is one beside it.
 const BESIDE: f64 = 0.03;
 /// What the valley tells of a slope or a curvature is to be so many times what is left across it.
@@ -35,11 +30,6 @@ const TOLD: f64 = 10.0;
 /// The longest move along the valley may grow so far at a time; where the valley is not reached yet, a part of it is allowed.
 const GROWTH: f64 = 1.6;
 const CAREFUL: f64 = 0.3;
-/// A search that needs shifts for so many steps is where more than one direction falls; so often it is kicked out of there.
-const BAD: usize = 6;
-const KICKS: usize = 2;
-/// Between kicks a search that needs shifts ends so far (rad) from the valley.
-const ASTRAY: f64 = 1.5;
 /// A torque of so many times the rounding error may be as small as it becomes.
 const LAST: f64 = 1e2;
 
@@ -74,7 +64,6 @@ struct Search<'a> {
     c: f64,
     floor_mev: f64,
     kappa: f64,
-    start: Vec<f64>,
     state: State,
     /// The soft mode as a unit field (3N).
     tau: Vec<f64>,
@@ -82,18 +71,13 @@ struct Search<'a> {
     reach: f64,
     shift: f64,
     visited: Vec<(f64, f64)>,
-    frozen: Vec<Vec<f64>>,
     factorisations: usize,
-    kicks: usize,
-    bad: usize,
-    last_step: f64,
     torques: Vec<f64>,
 }
 
 /// What a step decided.
 enum Next {
     Move(Vec<f64>, Vec<f64>),
-    Retry,
     Arrived,
     Lost,
 }
@@ -109,32 +93,26 @@ pub fn refine(h: Evaluator, m: &[f64], tau: &[f64], c: f64, floor_mev: f64) -> R
         c,
         floor_mev,
         kappa,
-        start: m.to_vec(),
         state,
         tau,
         x: 0.0,
         reach: STEP,
         shift: 0.0,
         visited: Vec::new(),
-        frozen: Vec::new(),
         factorisations: 0,
-        kicks: 0,
-        bad: 0,
-        last_step: f64::INFINITY,
         torques: Vec::new(),
     };
     let mut arrived = false;
-    for step in 0..STEPS {
+    for _ in 0..STEPS {
         if h.is_stopped() {
             break;
         }
-        match s.step(step) {
+        match s.step() {
             Next::Move(v, tau) => {
                 let m = s.state.moved(&h, &v);
                 s.tau = unit_tangent(&m, &tau);
                 s.state = State::at(h, m);
             }
-            Next::Retry => {}
             Next::Arrived => {
                 arrived = true;
                 break;
@@ -154,58 +132,22 @@ impl Search<'_> {
     fn pinned(&mut self) -> Pinned {
         self.shift = if self.shift < SHIFT * self.c { 0.0 } else { self.shift / LARGER };
         for _ in 0..TRIES {
-            let t = self.state.basis.coordinates(&self.tau);
-            let frozen: Vec<Vec<f64>> = self.frozen.iter().map(|f| self.state.basis.coordinates(f)).collect();
-            let p = Pinned::new(&self.state, &t, self.shift, &frozen, self.kappa);
-            self.factorisations += 1;
-            if p.complement_negatives == 0 || self.freeze_flat(&p) || self.aim_lower(&p) {
-                if p.complement_negatives == 0 {
-                    return p;
-                }
-                continue;
+            let p = self.pin();
+            if p.complement_negatives == 0 {
+                return p;
             }
-            self.shift = (LARGER * self.shift).max(SHIFT * self.c);
+            if !self.aim_lower(&p) {
+                self.shift = (LARGER * self.shift).max(SHIFT * self.c);
+            }
         }
+        self.pin()
+    }
+
+    /// The same along the soft mode as it is.
+    fn pin(&mut self) -> Pinned {
         let t = self.state.basis.coordinates(&self.tau);
         self.factorisations += 1;
-        Pinned::new(&self.state, &t, self.shift, &[], self.kappa)
-    }
-
-    /// Modes of the complement of the soft mode and the zero modes, lowest first, those below a limit.
-    fn complement(&self, p: &Pinned, count: usize, below: f64) -> Vec<Mode> {
-        let mut known = p.zeros().to_vec();
-        known.push(p.soft().to_vec());
-        // a space that the factors tell, without any more of them
-        if matches!(self.state.hessian, Matrix::Sparse(_))
-            && let Some(space) = soft_space(p, &known, p.complement_negatives, count, below + self.shift)
-        {
-            return rayleigh_ritz(&self.state.hessian, &space);
-        }
-        let modes = soft_modes(&self.state.hessian, count, p.zeros(), below, &|| self.h.is_stopped());
-        let rest = modes.into_iter().map(|mut m| {
-            remove(&mut m.vector, &known);
-            m.vector
-        });
-        let space = orthonormal(rest.collect(), 0.5);
-        rayleigh_ritz(&self.state.hessian, &space)
-    }
-
-    /// Freezes modes that are flat to 1e-4 c, if nothing beside them is worse.
-    fn freeze_flat(&mut self, p: &Pinned) -> bool {
-        let flat = FROZEN * self.c;
-        // what is negative still is less than −shift
-        if self.shift >= flat {
-            return false;
-        }
-        let modes = self.complement(p, MODES, flat);
-        if modes.first().is_none_or(|m| m.value <= -flat) {
-            return false;
-        }
-        let fields: Vec<Vec<f64>> =
-            modes.iter().filter(|m| m.value.abs() < flat).map(|m| self.state.field(&m.vector)).collect();
-        let found = !fields.is_empty();
-        self.frozen.extend(fields);
-        found
+        Pinned::new(&self.state, &t, self.shift, self.kappa)
     }
 
     /// With one negative direction in all, makes that the soft mode.
@@ -222,13 +164,9 @@ impl Search<'_> {
         true
     }
 
-    fn step(&mut self, step: usize) -> Next {
+    fn step(&mut self) -> Next {
         let p = self.pinned();
         let c = self.c;
-        self.bad = if self.shift > 0.0 { self.bad + 1 } else { 0 };
-        if self.bad >= BAD && self.last_step < BESIDE {
-            return self.kick(&p);
-        }
         let g = self.state.slope.clone();
         let minus: Vec<f64> = g.iter().map(|x| -x).collect();
         let (d, nu) = p.solve(&minus);
@@ -236,12 +174,11 @@ impl Search<'_> {
         let size = slab::norm(&w);
         let (slope, curvature) = (-nu, -nl - self.shift * size * size);
         let across = slab::max_abs(&d);
-        self.last_step = across;
         let torque = slab::max_abs(&g);
         let trusted =
             across < BESIDE && slope.abs() > TOLD * c * across * across && curvature.abs() > TOLD * c * across
                 || across < ALIKE;
-        if self.has_arrived(&p, &g, torque, across, step) {
+        if torque <= self.tolerance() && across < ALIKE {
             return Next::Arrived;
         }
         if trusted {
@@ -249,10 +186,6 @@ impl Search<'_> {
         }
         let along = self.along(slope, curvature, size, across, trusted);
         if self.state.energy_mev < self.floor_mev {
-            return Next::Lost;
-        }
-        let apart = ASTRAY * (self.kicks + 1) as f64;
-        if self.shift > 0.0 && distance(&self.start, &self.state.m) > self.x.abs() + apart {
             return Next::Lost;
         }
         if across > BESIDE {
@@ -291,18 +224,6 @@ impl Search<'_> {
             }
         }
         best
-    }
-
-    fn has_arrived(&self, p: &Pinned, g: &[f64], torque: f64, across: f64, step: usize) -> bool {
-        let tolerance = self.tolerance();
-        if !self.frozen.is_empty() && step > 0 {
-            let mut rest = g.to_vec();
-            remove(&mut rest, p.zeros());
-            if slab::max_abs(&rest) <= LARGER * tolerance && torque <= LAST * tolerance {
-                return true;
-            }
-        }
-        torque <= tolerance && across < ALIKE
     }
 
     /// The step itself, unless nothing is left to gain.
@@ -349,38 +270,13 @@ impl Search<'_> {
         Next::Move(v, tau)
     }
 
-    /// Leaves a region with more than one negative direction along the lowest mode beside the soft one.
-    fn kick(&mut self, p: &Pinned) -> Next {
-        if self.kicks >= KICKS {
-            return Next::Arrived;
-        }
-        let modes = self.complement(p, MODES, 0.0);
-        match modes.first() {
-            Some(lowest) if lowest.value < -ALIKE * self.c => {
-                let mut v = self.state.field(&lowest.vector);
-                let size = rotation_of(&v);
-                slab::scale(&mut v, STEP / size);
-                self.kicks += 1;
-                (self.bad, self.shift, self.last_step) = (0, 0.0, f64::INFINITY);
-                self.visited.clear();
-                Next::Move(v, self.tau.clone())
-            }
-            _ => {
-                self.bad = 0;
-                Next::Retry
-            }
-        }
-    }
-
     fn report(mut self, arrived: bool) -> Refined {
         if arrived {
             self.state = State::of(self.h, polish(self.h, self.state.point));
             self.tau = unit_tangent(&self.state.m, &self.tau);
         }
-        let t = self.state.basis.coordinates(&self.tau);
-        let frozen: Vec<Vec<f64>> = self.frozen.iter().map(|f| self.state.basis.coordinates(f)).collect();
-        let p = Pinned::new(&self.state, &t, 0.0, &frozen, self.kappa);
-        self.factorisations += 1;
+        self.shift = 0.0;
+        let p = self.pin();
         Refined {
             arrived,
             valley: self.state.field(p.soft()),
