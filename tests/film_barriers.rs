@@ -352,7 +352,7 @@ fn a_search_that_slides_down_the_path_to_the_hop_of_a_skyrmion_finds_no_saddle()
     assert!(above < 0.1 * (energy_mev - band.energies_mev()[0]), "the search slides down: {above}");
     let top = peaks(&band, 0.4).remove(0);
     let peak = Peak { m: band.path().image(start).to_vec(), tau, energy_mev, ..top };
-    let found = Saddle::at(h.into(), Peak { floor_mev: energy_mev - 0.1, ..peak }, 0.4, 0.1);
+    let found = Saddle::at(h.into(), Peak { floor_mev: energy_mev - 0.1, ..peak }, 0.4);
     assert!(!found.is_saddle(0.4) || found.refined.state.energy_mev > energy_mev - 0.1);
 }
 

@@ -95,7 +95,7 @@ impl<'a> Run<'a, '_> {
             }
             let h = c.band.evaluator();
             c.found = match self.zoom(c)? {
-                Some(top) => Some(Saddle::recorded(h, top, scale, self.scales.half_site_rad())?),
+                Some(top) => Some(Saddle::recorded(h, top, scale)?),
                 None => None,
             };
             let Some(found) = c.found.as_ref() else { break };

@@ -47,11 +47,6 @@ impl Scales {
         StateContext { exchange_mev: self.exchange_mev, hamiltonian: Some(h), ..context }
     }
 
-    /// Largest rotation of a spin (rad) when a wall moves by half a site.
-    pub fn half_site_rad(&self) -> f64 {
-        0.5 / self.wall_width_sites.max(0.5)
-    }
-
     /// Images between the ends that resolve a wall sweeping through `moving` of the sites along a lattice: 2 rad a spin between
     /// neighbours, and at least 15, or 7 where a wall in the middle of a chain only moves by a few times its width.
     pub fn images_between(&self, lattice: &Lattice, moving: usize) -> usize {

@@ -39,8 +39,6 @@ pub struct Connector<'c> {
     pub evaluations: usize,
     /// Stiffness scale c (meV).
     pub c: f64,
-    /// Largest rotation of a spin where a wall moves by half a site (rad).
-    pub hop: f64,
     /// What first paths need to know.
     pub context: GuessContext<'c>,
 }
@@ -118,7 +116,7 @@ impl Connector<'_> {
             return Ok(());
         }
         for top in tops {
-            let found = Saddle::recorded(h, top, self.c, self.hop)?;
+            let found = Saddle::recorded(h, top, self.c)?;
             if found.is_saddle(self.c) && !land.knows(&found) {
                 return self.add(land, found);
             }

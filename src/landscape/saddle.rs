@@ -3,16 +3,12 @@
 use super::peaks::Peak;
 use crate::energy::{Evaluator, recorded};
 use crate::error::Result;
-use crate::linalg::{Matrix, slab};
-use crate::sphere::rotation_of;
+use crate::linalg::Matrix;
 use crate::stationary::{
     self, ALIKE, Climb, Limits, Refined, STATIONARY, Spectrum, State, climb, follow_modes, refine,
 };
 use crate::symmetry::Operation;
 use serde::{Deserialize, Serialize};
-
-/// A mode of less than this part of c is shallow.
-const SHALLOW: f64 = 1e-3;
 
 /// Where a refined saddle was looked for, and what was found.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -24,10 +20,9 @@ pub struct Saddle {
 }
 
 impl Saddle {
-    /// Refines a top. A saddle that is also a maximum of a shallow mode (a wall halfway between two sites) is left along that
-    /// mode by `hop` (rad), for the one beside it.
-    pub fn at(h: Evaluator, top: Peak, c: f64, hop: f64) -> Saddle {
-        let mut found = Saddle::near(h, top, c, hop);
+    /// Refines a top.
+    pub fn at(h: Evaluator, top: Peak, c: f64) -> Saddle {
+        let mut found = Saddle::near(h, top, c);
         found.sharpen(h, c);
         if found.refined.index > 1 {
             // a mode within the rounding error has no sign to count
@@ -89,7 +84,7 @@ impl Saddle {
 
     /// In a row walls stand between one site and the next in valleys that are flat to rounding, and the valley's search comes first;
     /// on other lattices following the lowest mode takes a step less, and arrives from farther away.
-    fn near(h: Evaluator, top: Peak, c: f64, hop: f64) -> Saddle {
+    fn near(h: Evaluator, top: Peak, c: f64) -> Saddle {
         let is_row = h.lattice().is_row();
         let follow = |top: &Peak| follow_modes(h, &top.m, top.floor_mev);
         if !is_row && let Some(refined) = follow(&top) {
@@ -103,48 +98,19 @@ impl Saddle {
         }
         let refined = refine(h, &top.m, &top.tau, c, top.floor_mev);
         let mut found = Saddle { top, refined };
-        if !found.is_stationary(c) {
-            if is_row && let Some(refined) = follow(&found.top) {
-                found.refined = refined;
-            }
-            return found;
-        }
-        let state = &found.refined.state;
-        let shallow = |l: &f64| l.abs() < SHALLOW * c;
-        if Spectrum::of(h, state, 0).negative != 2 || !Spectrum::of(h, state, 2).lowest_mev.get(1).is_some_and(shallow)
+        if is_row
+            && !found.is_stationary(c)
+            && let Some(refined) = follow(&found.top)
         {
-            return found;
+            found.refined = refined;
         }
-        // two walls, one on a site and one between two, have a period of half a site
-        [hop, -hop, 0.5 * hop, -0.5 * hop].into_iter().find_map(|far| found.beside(h, c, far)).unwrap_or(found)
+        found
     }
 
     /// The same, as far as it is not on record.
-    pub fn recorded(h: Evaluator, top: Peak, c: f64, hop: f64) -> Result<Saddle> {
+    pub fn recorded(h: Evaluator, top: Peak, c: f64) -> Result<Saddle> {
         let [m, tau] = [&top.m, &top.tau].map(Vec::clone);
-        recorded(h, "saddle", &[&m, &tau], || Ok(Saddle::at(h, top, c, hop)))
-    }
-
-    /// The saddle of index one a little along the second-lowest mode.
-    fn beside(&self, h: Evaluator, c: f64, far: f64) -> Option<Saddle> {
-        let state = &self.refined.state;
-        let along = state.basis.coordinates(&self.refined.valley);
-        let modes = state.lowest_modes(h, 2);
-        let other = modes
-            .iter()
-            .min_by(|p, q| slab::dot(&p.vector, &along).abs().total_cmp(&slab::dot(&q.vector, &along).abs()))?;
-        let mut v = state.field(&other.vector);
-        let size = rotation_of(&v);
-        slab::scale(&mut v, far / size);
-        let start = state.moved(&h, &v);
-        let better = |refined: Refined| {
-            let found = Saddle { top: self.top.clone(), refined };
-            let better = found.is_stationary(c) && Spectrum::of(h, &found.refined.state, 0).negative <= 1;
-            better.then_some(found)
-        };
-        let floor = self.top.floor_mev;
-        let valley = (!h.forgoes_factors()).then(|| refine(h, &start, &self.refined.valley, c, floor));
-        valley.and_then(better).or_else(|| better(follow_modes(h, &start, floor)?))
+        recorded(h, "saddle", &[&m, &tau], || Ok(Saddle::at(h, top, c)))
     }
 
     /// Stationary to machine precision, and near the start's height.
