@@ -4,12 +4,10 @@
 //! the usual way. So several guesses are relaxed loosely, and the lowest goes on.
 
 use super::Problem;
-use super::search::DOMAIN;
 use crate::geometry::{Direction, vector};
 use crate::path::guess::{
     Edge, Geodesic, GuessContext, GuessSpec, NoiseSpec, Rotation, Sweep, Ways, best_turn, natural,
 };
-use crate::path::{COARSE, Path};
 use crate::sphere::SAME;
 use crate::spins::Spins;
 use crate::stationary::{ALIKE, LOWER};
@@ -19,9 +17,6 @@ use rayon::prelude::*;
 
 /// Noise that frees a swept wall from accidental symmetries (rad).
 const NOISE: f64 = 2e-3;
-
-/// Walls whose energies differ by no more than this part are compared all along their ways.
-const CLOSE: f64 = 1e-2;
 
 /// A guess that only needs an axis.
 #[derive(Clone, Copy)]
@@ -46,24 +41,13 @@ impl Natural {
         }
     }
 
-    /// Its highest energy between the ends (meV); with 3 images that halfway.
-    fn highest_mev(
-        self,
-        problem: &Problem,
-        ways: &Ways,
-        context: &GuessContext,
-        axis: Direction,
-        images: usize,
-    ) -> f64 {
+    /// Its energy halfway (meV).
+    fn halfway_mev(self, problem: &Problem, ways: &Ways, context: &GuessContext, axis: Direction) -> f64 {
         let path = match self {
-            Natural::Geodesic => Ok(Self::geodesic(axis).along(ways, images, context)),
-            Natural::Sweep(from) => Self::sweep(from, axis).along(ways, images, context),
+            Natural::Geodesic => Ok(Self::geodesic(axis).along(ways, 3, context)),
+            Natural::Sweep(from) => Self::sweep(from, axis).along(ways, 3, context),
         };
-        let energy = |path: Path| {
-            let inner = (1..images - 1).map(|k| problem.hamiltonian.energy_mev(path.image(k)));
-            inner.fold(f64::MIN, f64::max)
-        };
-        path.map_or(f64::INFINITY, energy)
+        path.map_or(f64::INFINITY, |path| problem.hamiltonian.energy_mev(path.image(1)))
     }
 }
 
@@ -108,11 +92,11 @@ fn both_senses(
     guess: Natural,
     axis: Option<Direction>,
 ) -> Vec<GuessSpec> {
-    let cost = |axis: Direction, images: usize| guess.highest_mev(problem, ways, context, axis, images);
+    let cost = |axis: Direction| guess.halfway_mev(problem, ways, context, axis);
     let axis = axis.unwrap_or_else(|| best_axis(problem, ways, cost));
     let other = axis.reversed();
     let least = LOWER * problem.hamiltonian.stiffness_mev();
-    let differ = ways.have_a_choice() && (cost(axis, 3) - cost(other, 3)).abs() > least;
+    let differ = ways.have_a_choice() && (cost(axis) - cost(other)).abs() > least;
     if differ { vec![guess.about(axis), guess.about(other)] } else { vec![guess.about(axis)] }
 }
 
@@ -139,18 +123,14 @@ fn rotation_axes(problem: &Problem, a: &Spins, b: &Spins) -> Vec<Direction> {
     axes
 }
 
-/// The axis about which opposite spins turn: of ±x, ±y, ±z and the symmetry axes, the one whose wall halfway is lowest; see
-/// [`best_axis`] for walls that move.
+/// The axis about which opposite spins turn: of ±x, ±y, ±z and the symmetry axes, the one whose wall halfway is lowest.
 pub fn turning_axis(problem: &Problem, a: &Spins, b: &Spins, context: &GuessContext) -> Direction {
     let ways = Ways::between(a, b);
-    let wall = Natural::Sweep(Edge::Left);
-    best_axis(problem, &ways, |axis, images| wall.highest_mev(problem, &ways, context, axis, images))
+    best_axis(problem, &ways, |axis| Natural::Sweep(Edge::Left).halfway_mev(problem, &ways, context, axis))
 }
 
-/// Of ±x, ±y, ±z and the symmetry axes the one of least cost halfway (meV); of equal ones the first. Where that hardly tells and
-/// an end holds a wall (which moves as it is if its spins turn in one sense, and is turned over in the other), the one on whose
-/// way the highest energy is lowest. The cost is asked for with a number of images.
-fn best_axis(problem: &Problem, ways: &Ways, cost: impl Fn(Direction, usize) -> f64 + Sync) -> Direction {
+/// Of ±x, ±y, ±z and the symmetry axes the one of least cost halfway (meV); of equal ones the first.
+fn best_axis(problem: &Problem, ways: &Ways, cost: impl Fn(Direction) -> f64 + Sync) -> Direction {
     let h = problem.evaluator();
     if !ways.have_a_choice() {
         return Direction::X;
@@ -158,35 +138,13 @@ fn best_axis(problem: &Problem, ways: &Ways, cost: impl Fn(Direction, usize) -> 
     let cartesian = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let oblique = h.symmetry_axes().iter().filter(|v| v.iter().all(|c| c.abs() < 1.0));
     let candidates = cartesian.iter().chain(oblique).flat_map(|v| [*v, v.map(|c| -c)]);
-    let axes = candidates.filter_map(|axis| Direction::new(axis).ok());
-    let axes: Vec<Direction> = axes.collect();
-    let costs = |axes: &[Direction], images: usize| -> Vec<(f64, Direction)> {
-        let axes = axes.par_iter().with_min_len(apiece(3 * h.sites(), MADE));
-        axes.map(|axis| (cost(*axis, images), *axis)).collect()
-    };
-    let halfway = costs(&axes, 3);
-    let Some((least, first)) = lowest(&halfway, h.stiffness_mev()) else { return Direction::X };
-    let above = (least - h.energy_mev(ways.a.as_slice())).abs();
-    let near = least + CLOSE * above + ALIKE * h.stiffness_mev();
-    let alike: Vec<Direction> = halfway.iter().filter(|(e, _)| *e <= near).map(|(_, axis)| *axis).collect();
-    if alike.len() < 2 || !(holds_wall(ways.a) || holds_wall(ways.b)) {
-        return first;
-    }
-    lowest(&costs(&alike, COARSE), h.stiffness_mev()).map_or(first, |(_, axis)| axis)
-}
-
-/// The first of the lowest (meV).
-fn lowest(costs: &[(f64, Direction)], stiffness: f64) -> Option<(f64, Direction)> {
+    let axes: Vec<Direction> = candidates.filter_map(|axis| Direction::new(axis).ok()).collect();
+    let halfway = axes.par_iter().with_min_len(apiece(3 * h.sites(), MADE)).map(|axis| (cost(*axis), *axis));
     let mut best: Option<(f64, Direction)> = None;
-    for found in costs {
-        if best.is_none_or(|(e, _)| found.0 < e - ALIKE * stiffness) {
-            best = Some(*found);
+    for found in halfway.collect::<Vec<_>>() {
+        if best.is_none_or(|(e, _)| found.0 < e - ALIKE * h.stiffness_mev()) {
+            best = Some(found);
         }
     }
-    best
-}
-
-/// Whether some spin is well off the line of the first.
-fn holds_wall(m: &Spins) -> bool {
-    (1..m.sites()).any(|i| vector::norm(vector::cross(m.get(0), m.get(i))) > DOMAIN)
+    best.map_or(Direction::X, |(_, axis)| axis)
 }

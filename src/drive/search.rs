@@ -22,7 +22,7 @@ const SPINS: usize = 10_000_000;
 const FLOPS: f64 = 1e9;
 
 /// Spins that are further apart (rad) are of different domains.
-pub(super) const DOMAIN: f64 = 0.5;
+const DOMAIN: f64 = 0.5;
 
 impl<'a> Run<'a, '_> {
     /// Looks for a route below the top of the best path, and leads the path over it.
