@@ -2,12 +2,9 @@
 
 use super::{Landscape, is_same_state, turned, turns};
 use crate::geometry::Direction;
-use crate::path::{Path, largest_angle};
+use crate::path::{COARSE, Path, largest_angle};
 use crate::sphere::SAME;
 use crate::spins::Spins;
-
-/// Intervals of a turn about the axis of symmetry.
-const TURN: usize = 16;
 
 /// A part of a path between two stationary states.
 pub enum Stretch {
@@ -76,7 +73,7 @@ fn turn(land: &Landscape, from: &Spins, to: &Spins) -> Option<Option<Stretch>> {
     let turns = turns(land.evaluator(), from, to);
     match turns[..] {
         [by] if near(&turned(from, &turns)) => {
-            Some(Some(Stretch::Turn { path: turning(from, to.clone(), by, TURN + 1), by }))
+            Some(Some(Stretch::Turn { path: turning(from, to.clone(), by, COARSE), by }))
         }
         _ => None,
     }
