@@ -6,14 +6,12 @@ use crate::error::Result;
 use crate::linalg::slab;
 use crate::rates::Crossing;
 use crate::spins::Spins;
-use crate::stationary::{FLAT, RELAXED, Refined, Spectrum, descend, lowest_eigenvalues_mev, relax_to_minimum};
+use crate::stationary::{FLAT, RELAXED, ROUGHLY, Refined, Spectrum, descend, lowest_eigenvalues_mev, relax_to_minimum};
 use crate::symmetry::{Group, Operation};
 use serde::{Deserialize, Serialize};
 
 /// How many eigenvalues of a saddle are reported.
 const REPORTED: usize = 4;
-/// A valley with less than this (of its curvature) left over when the Hessian acts on it is a mode.
-const PURE: f64 = 0.1;
 
 /// The direction (3N) in which a saddle falls: the valley that its search followed, or, where that is a mixture of soft modes,
 /// the lowest mode, if that is plainly negative.
@@ -24,7 +22,8 @@ fn falling(h: Evaluator, saddle: &Saddle) -> Vec<f64> {
     state.hessian.multiply(&v, &mut residual);
     let curvature = slab::dot(&v, &residual) / slab::dot(&v, &v);
     slab::add_scaled(&mut residual, -curvature, &v);
-    if slab::norm(&residual) < PURE * curvature.abs() * slab::norm(&v) {
+    // a mode, roughly
+    if slab::norm(&residual) < ROUGHLY * curvature.abs() * slab::norm(&v) {
         return valley.clone();
     }
     let floor = 1e3 * f64::EPSILON * state.hessian.norm1();

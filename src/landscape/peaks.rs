@@ -5,7 +5,7 @@ use crate::field::Components;
 use crate::linalg::slab;
 use crate::path::blend;
 use crate::sphere::write_logs;
-use crate::stationary::ALIKE;
+use crate::stationary::{ALIKE, ROUGHLY};
 use crate::threads::both;
 use serde::{Deserialize, Serialize};
 
@@ -26,9 +26,6 @@ pub struct Peak {
     /// down the path.
     pub floor_mev: f64,
 }
-
-/// A saddle is lower than its peak by no more than this part of what the peak rises above the higher end.
-const NEAR: f64 = 0.2;
 
 /// Every maximum, highest first; c: stiffness scale (meV).
 pub fn peaks(band: &Band, c: f64) -> Vec<Peak> {
@@ -87,9 +84,9 @@ fn floor(band: &Band, peak_mev: f64, image: usize, c: f64) -> f64 {
     let e = band.energies_mev();
     let rises = (peak_mev - e[0].max(e[e.len() - 1])).max(0.0);
     let f = band.perpendicular(image);
-    // a band that is not relaxed yet is higher than its valley by about |F⊥|²/2c
+    // a saddle is lower than its peak by no more than a part of what that rises; a band that is not relaxed yet is higher than its valley by about |F⊥|²/2c
     let falls = slab::dot(f, f) / c;
-    peak_mev - (NEAR * rises).max(falls)
+    peak_mev - (ROUGHLY * rises).max(falls)
 }
 
 /// The interpolated maximum of an interval: its spins on the great circles between the two images.

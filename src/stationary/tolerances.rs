@@ -9,7 +9,8 @@ pub const STEP: f64 = 0.3;
 /// Steps that may lead into another valley turn no spin by more (rad).
 pub const STRIDE: f64 = 0.5;
 
-/// What a quadratic model tells of an energy or a mode is right to this part of it.
+/// What a quadratic model tells of an energy or a mode is right to this part of it; and so is what a valley tells of the mode of its
+/// saddle, and what a path's maximum tells of the height of that.
 pub const ROUGHLY: f64 = 0.3;
 
 /// Fields of which less than this part is left beside others depend on them.
