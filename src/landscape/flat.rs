@@ -90,7 +90,9 @@ mod tests {
     #[test]
     fn a_way_leads_over_several_valleys_where_it_has_to() {
         let lattice = Chain::open(1).resolve().unwrap();
-        let terms: Vec<Box<dyn EnergyTerm>> = vec![Box::new(Anisotropy::uniform(1, 0.0, Direction::Z))];
+        // without an axis of symmetry, about which one valley would be turned to lead the whole way
+        let along = |k: f64, axis: Direction| Box::new(Anisotropy::uniform(1, k, axis)) as Box<dyn EnergyTerm>;
+        let terms = vec![along(1.0, Direction::Z), along(-0.5, Direction::X)];
         let h = Hamiltonian::new(&lattice, terms).unwrap();
         let state = |v: [f64; 3]| Spins::from_vectors(&[v]).unwrap();
         let [a, b, c] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(state);
