@@ -461,14 +461,9 @@ pub(crate) fn report(error: &anyhow::Error) -> u8 {
     }
     match error.downcast_ref::<Error>() {
         Some(Error::Several(_) | Error::Config { .. } | Error::Invalid { .. }) => USAGE,
-        Some(Error::Io { source, .. }) if is_about_a_name(source.kind()) => USAGE,
+        Some(Error::Io { source, .. }) if source.kind() == ErrorKind::AlreadyExists => USAGE,
         _ => 1,
     }
-}
-
-/// Whether a file or folder was named that is not there, is there already, or is the other of the two.
-fn is_about_a_name(kind: ErrorKind) -> bool {
-    matches!(kind, ErrorKind::AlreadyExists | ErrorKind::NotFound | ErrorKind::NotADirectory | ErrorKind::IsADirectory)
 }
 
 /// The worse of two exit codes: 0 is better than 3 (not converged), then 2 (usage), then 1 (anything else).

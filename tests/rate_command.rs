@@ -294,9 +294,9 @@ fn a_barrier_below_kt_leaves_the_entry_with_nulls_and_a_reason() {
             && csv.lines().nth(2).unwrap().ends_with(",,,,,,,,,"),
         "{csv}"
     );
-    // what is left at 3 K is above 5 k_BT, what lies below is grey
+    // what is left at 3 K alone makes no figure; in one of more, what lies below 5 k_BT is grey
     let svg = |folder: &Path| fs::read_to_string(folder.join("results/chain/arrhenius.svg")).unwrap();
-    assert!(!svg(folder.path()).contains("Barrier below"));
+    assert!(!folder.path().join("results/chain/arrhenius.svg").exists());
     let (code, out, _) = spinneb(folder.path(), &["rate", "results/chain", "-T", "3 K", "-T", "10 K", "-T", "20 K"]);
     assert_eq!(code, Some(0));
     assert!(out.contains("none: ΔE is below 1 k_BT"), "{out}");
