@@ -76,8 +76,7 @@ impl Hamiltonian {
         let diagonal = |b: super::blocks::Block| b[0][0].abs() + b[1][1].abs() + b[2][2].abs();
         h.stiffness = h.blocks.sites().map(diagonal).fold(1e-280, f64::max);
         // a cubic anisotropy has no torque and no gradient along its axes, and some between them
-        let between =
-            (!h.terms.iter().all(|t| t.is_quadratic())).then(|| Direction::new([1.0, 2.0, 3.0])).and_then(Result::ok);
+        let between = (!h.is_quadratic()).then(|| Direction::new([1.0, 2.0, 3.0])).and_then(Result::ok);
         for axis in [Direction::X, Direction::Y, Direction::Z].into_iter().chain(between) {
             let mut g = vec![0.0; 3 * sites];
             h.energy_gradient(Spins::uniform(sites, axis).as_slice(), &mut g);
@@ -370,9 +369,13 @@ impl Hamiltonian {
         &self.blocks
     }
 
+    fn is_quadratic(&self) -> bool {
+        self.terms.iter().all(|t| t.is_quadratic())
+    }
+
     /// All Hessian blocks at `m`, or `None` where they are the constant ones.
     pub fn varying_blocks(&self, m: Components) -> Option<Blocks> {
-        if self.terms.iter().all(|t| t.is_quadratic()) {
+        if self.is_quadratic() {
             return None;
         }
         let mut blocks = self.blocks.clone();

@@ -189,14 +189,17 @@ impl Space<'_> {
     }
 
     /// Ax − θx of the first so many, without what is known, and θ.
-    fn residuals(&self, block: usize) -> Vec<(Vec<f64>, f64)> {
-        let residual = |(x, image): (&Vec<f64>, &Vec<f64>)| {
-            let (mut r, theta) = (image.clone(), slab::dot(x, image));
+    fn residuals(&mut self, block: usize) -> Vec<(Vec<f64>, f64)> {
+        // in the memory of vectors that are done with, of which there would be more with every round
+        let room: Vec<Vec<f64>> = (0..block).map(|_| self.room.pop().unwrap_or_default()).collect();
+        let residual = |((x, image), mut r): ((&Vec<f64>, &Vec<f64>), Vec<f64>)| {
+            r.clone_from(image);
+            let theta = slab::dot(x, image);
             slab::add_scaled(&mut r, -theta, x);
             slab::without(&mut r, self.known);
             (r, theta)
         };
-        self.vectors[..block].par_iter().zip(&self.images[..block]).map(residual).collect()
+        self.vectors[..block].par_iter().zip(&self.images[..block]).zip(room).map(residual).collect()
     }
 
     /// Leaves the lowest `block` Ritz vectors, and behind them, orthogonal to them all, the directions in which they moved: what came
