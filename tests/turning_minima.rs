@@ -27,6 +27,8 @@ fn barriers(j: f64, k: f64, lattice: &str, seeds: &[u32]) -> Vec<f64> {
         assert!(found.certified, "{lattice} {seed}: {:?}", found.warnings);
         let lower = |warning: &String| warning.contains("put together");
         assert!(!found.warnings.iter().any(lower), "{lattice} {seed}: {:?}", found.warnings);
+        // images of a turn are where they are to be, and not turned back to leave one long step
+        assert!(found.path.largest_rotation() <= 1.0 + 1e-9, "{lattice} {seed}: {}", found.path.largest_rotation());
         found.barrier.unwrap().forward_mev
     };
     seeds.iter().map(from).collect()
