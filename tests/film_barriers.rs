@@ -347,12 +347,12 @@ fn a_search_that_slides_down_the_path_to_the_hop_of_a_skyrmion_finds_no_saddle()
     let start = 3;
     let tau = band.tangent(start).to_vec();
     let energy_mev = band.energies_mev()[start];
-    let slid = refine(h.into(), band.path().image(start), &tau, 0.4, f64::NEG_INFINITY);
+    let slid = refine(h.into(), band.path().image(start), &tau, f64::NEG_INFINITY);
     let above = h.difference_mev(&slid.state.m, a.as_slice());
     assert!(above < 0.1 * (energy_mev - band.energies_mev()[0]), "the search slides down: {above}");
     let top = peaks(&band, 0.4).remove(0);
     let peak = Peak { m: band.path().image(start).to_vec(), tau, energy_mev, ..top };
-    let found = Saddle::at(h.into(), Peak { floor_mev: energy_mev - 0.1, ..peak }, 0.4);
+    let found = Saddle::at(h.into(), Peak { floor_mev: energy_mev - 0.1, ..peak });
     assert!(!found.is_saddle(0.4) || found.refined.state.energy_mev > energy_mev - 0.1);
 }
 

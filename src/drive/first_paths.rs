@@ -95,7 +95,7 @@ impl<'a> Run<'a, '_> {
             }
             let h = c.band.evaluator();
             c.found = match self.zoom(c)? {
-                Some(top) => Some(Saddle::recorded(h, top, scale)?),
+                Some(top) => Some(Saddle::recorded(h, top)?),
                 None => None,
             };
             let Some(found) = c.found.as_ref() else { break };

@@ -116,7 +116,7 @@ impl Connector<'_> {
             return Ok(());
         }
         for top in tops {
-            let found = Saddle::recorded(h, top, self.c)?;
+            let found = Saddle::recorded(h, top)?;
             if found.is_saddle(self.c) && !land.knows(&found) {
                 return self.add(land, found);
             }

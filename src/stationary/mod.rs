@@ -1,19 +1,19 @@
 //! Minima and saddles to machine precision, and what kind of stationary state they are.
 //!
-//! From any state one search, in steps inside a trust region, leads to a saddle of index one (`search`, `step`): climbs and mode
-//! following are uses of it.
+//! From any state one search, in steps inside a trust region, leads to a saddle of index one (`search`, `step`): climbs and the
+//! refinement of a path's maximum are uses of it.
 //!
-//! A wall that can slide gives a chain's Hessian one eigenvalue of either sign that may be 1e-12 of the others. Plain Newton
-//! oscillates there; so the soft mode is split off (Lyapunov–Schmidt): Newton across it, a safeguarded search along it.
+//! A wall that can slide gives a chain's Hessian one eigenvalue of either sign that may be 1e-12 of the others. On the way down the soft
+//! mode is split off there (Lyapunov–Schmidt): Newton's method across it, steps along it.
 
 mod border;
 mod descent;
 mod iterated;
-mod modes;
 mod pinned;
 mod point;
 mod polish;
 mod quench;
+mod refine;
 mod relax;
 mod search;
 mod spectrum;
@@ -22,16 +22,14 @@ mod step;
 mod tolerances;
 mod trail;
 mod unfactored;
-mod valley;
 
 pub(crate) use border::{Border, Pin, pin};
 pub use descent::{Descent, descend};
-pub use modes::follow_modes;
 pub use pinned::Pinned;
 pub use point::{Point, move_free};
+pub use refine::{Refined, refine};
 pub use relax::{Relaxed, WayDown, relax_to_minimum};
 pub use search::{Climb, GaveUp, Limits, STEPS, Saddle, climb};
 pub use spectrum::{Spectrum, lowest_eigenvalues_mev};
 pub use state::{State, both_by_factors, is_very_dear};
 pub use tolerances::{ALIKE, FLAT, LOWER, RELAXED, ROUGHLY, STATIONARY, STRIDE};
-pub use valley::{Refined, refine};

@@ -8,26 +8,28 @@ use super::tolerances::SHARP;
 use crate::energy::Evaluator;
 
 /// A longer step (rad, any spin) is no last digit.
-const FARTHEST: f64 = 0.05;
+pub const FARTHEST: f64 = 0.05;
 /// Most steps.
 const STEPS: usize = 6;
 
 /// The stationary point that `here` all but is, the zero modes left as they are. A point from which Newton's method leads far
 /// away, or nowhere, is given back as it came.
 pub fn polish(h: Evaluator, mut here: Point) -> Point {
+    let sharp = SHARP * h.stiffness_mev();
     let mut region = Region::new(h, FARTHEST);
     let mut best = here.clone();
+    let mut in_vain = 0;
     for _ in 0..STEPS {
-        if h.is_stopped() {
-            break;
-        }
+        let least = best.max_torque_mev();
         // a NaN is no small rotation either
-        let is_near = region.plain(&here) < FARTHEST;
-        if best.max_torque_mev() <= SHARP * h.stiffness_mev() || !is_near {
+        let goes_on = least > sharp && in_vain < 3 && !h.is_stopped() && region.plain(&here) < FARTHEST;
+        if !goes_on {
             break;
         }
         here.move_by(h, &region.v);
-        if here.max_torque_mev() < best.max_torque_mev() {
+        let torque = here.max_torque_mev();
+        in_vain = if torque < 0.5 * least { 0 } else { in_vain + 1 };
+        if torque < least {
             best.clone_from(&here);
         }
     }

@@ -1,6 +1,7 @@
 //! The search for a saddle of index one, from any state.
 
 use super::point::Point;
+use super::polish::polish;
 use super::spectrum::Spectrum;
 use super::state::State;
 use super::step::{Region, Step};
@@ -87,7 +88,7 @@ pub fn climb(h: Evaluator, start: &[f64], limits: &Limits) -> Climb {
         (step.is_newton && step.rotation < STEP && there > limits.ceiling_mev).then_some(GaveUp::TooHigh)
     });
     let steps = search.steps;
-    Climb { saddle: ended.and_then(|()| search.saddle()), steps }
+    Climb { saddle: ended.and_then(|()| search.saddle(0)), steps }
 }
 
 /// A search on its way.
@@ -121,16 +122,15 @@ impl<'a> Search<'a> {
             if !torque.is_finite() {
                 return Err(GaveUp::Stuck);
             }
-            if torque > loose {
+            if torque > loose || torque > sharp && step.is_underway {
                 // Newton's steps leave the negative directions as many as they are
                 self.go(&step);
                 if step.is_newton && self.here.max_torque_mev() <= sharp {
                     return Ok(());
                 }
-            } else if step.negative == 1 {
-                if self.last_digits(torque, sharp) {
-                    return Ok(());
-                }
+            } else if step.negative <= 1 {
+                self.here = polish(self.h, std::mem::take(&mut self.here));
+                return Ok(());
             } else if !self.leave(&step) {
                 return Err(GaveUp::Stuck);
             }
@@ -144,18 +144,6 @@ impl<'a> Search<'a> {
         swap(&mut self.here, &mut self.next);
     }
 
-    /// Takes a step that lessens a torque of rounding errors; whether it was the last.
-    fn last_digits(&mut self, torque: f64, sharp: f64) -> bool {
-        if torque > sharp {
-            self.next.go(self.h, &self.here, &self.region.v);
-            if self.next.max_torque_mev() < torque {
-                swap(&mut self.here, &mut self.next);
-            }
-        }
-        let left = self.here.max_torque_mev();
-        left <= sharp || left > 0.5 * torque
-    }
-
     /// Leaves a stationary state along the lowest of its wrong modes; not one that has none too many.
     fn leave(&mut self, step: &Step) -> bool {
         let leads_away = step.negative > 1 && self.region.along_second(&self.here, LEAVE);
@@ -165,11 +153,12 @@ impl<'a> Search<'a> {
         leads_away
     }
 
-    /// Where it is, if that is a saddle of index one.
-    pub fn saddle(self) -> Result<Saddle, GaveUp> {
+    /// Where it is, if that is a saddle of index one; or if at most so many modes are flat to rounding, and none falls.
+    pub fn saddle(self, flat: usize) -> Result<Saddle, GaveUp> {
         let state = State::of(self.h, self.here);
         let (spectrum, lowest) = Spectrum::of_saddle(self.h, &state);
-        let lowest = lowest.filter(|_| spectrum.negative == 1).ok_or(GaveUp::Stuck)?;
+        let is_saddle = spectrum.negative == 1 || spectrum.negative == 0 && (1..=flat).contains(&spectrum.flat);
+        let lowest = lowest.filter(|_| is_saddle).ok_or(GaveUp::Stuck)?;
         let (mut mode, curvature_mev) = (state.field(&lowest), state.curvature_mev(&lowest));
         self.h.hold_frozen(&mut mode);
         Ok(Saddle { state, mode, curvature_mev, spectrum })

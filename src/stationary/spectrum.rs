@@ -45,8 +45,9 @@ impl Spectrum {
         Spectrum { lowest_mev: lowest_eigenvalues_mev(h, state, count, &[]), ..spectrum }
     }
 
-    /// Of a state, without eigenvalues, and the vector of its negative mode (in tangent coordinates) where it has one alone. Where
-    /// no other eigenvalue is below the floor that mode's own value tells the counts, by one factorisation.
+    /// Of a state, without eigenvalues, and the vector of its negative mode (in tangent coordinates) where it has one alone, or of its
+    /// flat one where none is negative and one is flat. Where no other eigenvalue is below the floor that mode's own value tells the
+    /// counts, by one factorisation.
     pub fn of_saddle(h: Evaluator, state: &State) -> (Spectrum, Option<Vec<f64>>) {
         Spectrum::counted(h, state, |factors| {
             let roughly = modes_by_factors(factors, &state.zeros, Vec::new(), ROUGHLY).unwrap_or_default();
@@ -54,7 +55,7 @@ impl Spectrum {
         })
     }
 
-    /// The counts, and what `lone` makes of factors with one negative direction, if the Hessian is negative along that.
+    /// The counts, and what `lone` makes of factors with one negative direction.
     fn counted(
         h: Evaluator,
         state: &State,
@@ -65,21 +66,19 @@ impl Spectrum {
         if h.forgoes_factors() {
             return Spectrum::bounded(h, state, norm_mev, floor_mev);
         }
-        let falling = |factors: &Factors| {
-            let mode = if factors.negatives() == 1 { lone(factors) } else { None };
-            mode.filter(|v| state.curvature_mev(v) < -floor_mev)
-        };
+        let lone = |factors: &Factors| if factors.negatives() == 1 { lone(factors) } else { None };
+        let falls = |v: &Vec<f64>| state.curvature_mev(v) < -floor_mev;
         let mut factors = pinned(h, state.hessian.clone(), &state.zeros, -floor_mev);
         let below_floor = factors.negatives();
-        let mut mode = falling(&factors);
+        let mut mode = lone(&factors);
         // most states that are looked at are minima, and need no more
-        let negative = if below_floor == 0 || mode.is_some() {
+        let negative = if below_floor == 0 || mode.as_ref().is_some_and(falls) {
             below_floor
         } else {
             let mut matrix = factors.into_memory();
             matrix.copy_from(&state.hessian);
             factors = pinned(h, matrix, &state.zeros, floor_mev);
-            mode = falling(&factors);
+            mode = lone(&factors).filter(falls).or(mode.filter(|_| factors.negatives() == 0));
             factors.negatives()
         };
         let flat = below_floor.saturating_sub(negative);
@@ -157,6 +156,6 @@ fn pinned(h: Evaluator, mut matrix: Matrix, zeros: &[Vec<f64>], shift: f64) -> F
 }
 
 /// What an eigenvalue must exceed in size to have a sign (meV): the rounding error, or what the Hessian leaves out.
-fn floor_mev(h: Evaluator, norm_mev: f64) -> f64 {
+pub fn floor_mev(h: Evaluator, norm_mev: f64) -> f64 {
     (8.0 * f64::EPSILON * norm_mev).max(h.hessian_error_mev())
 }

@@ -10,7 +10,9 @@
 
 use super::border::pin;
 use super::point::Point;
-use super::tolerances::{FIRST_SHIFT, LARGER, LAST_SHIFT, ROUGHLY};
+use super::polish::FARTHEST;
+use super::spectrum::floor_mev;
+use super::tolerances::{ALIKE, FIRST_SHIFT, LARGER, LAST_SHIFT, ROUGHLY};
 use crate::energy::Evaluator;
 use crate::linalg::{Factors, Matrix, lowest_modes, modes_by_factors, remove, slab};
 use crate::sphere::rotation_of;
@@ -27,6 +29,8 @@ pub struct Region<'a> {
     /// Largest rotation of a spin in a step (rad), now and ever.
     radius: f64,
     largest: f64,
+    /// The step now tried leads along a mode that is all but flat, or is to be followed by one that does.
+    is_underway: bool,
     pub(super) hessian: Matrix,
     room: Matrix,
     /// The lowest modes when they were last needed (3N each).
@@ -34,6 +38,16 @@ pub struct Region<'a> {
     pub(super) x: Vec<f64>,
     /// The step (3N).
     pub v: Vec<f64>,
+}
+
+/// What became of the part of a step along a mode that is all but flat.
+enum Soft {
+    /// No mode is.
+    None,
+    /// It is told well enough.
+    Kept,
+    /// It was left out; whether the mode's curvature is negative, by chance where it is flat to rounding.
+    Frozen { falls: bool, is_flat: bool },
 }
 
 /// A step.
@@ -45,6 +59,8 @@ pub struct Step {
     pub rotation: f64,
     /// It is Newton's, not cut, and there is one negative direction.
     pub is_newton: bool,
+    /// There is a way to go along a mode that is all but flat, however small the torque.
+    pub is_underway: bool,
     /// By how much the energy is to rise (meV).
     pub rise_mev: f64,
     /// |g||s| (meV).
@@ -56,13 +72,19 @@ impl<'a> Region<'a> {
     pub fn new(h: Evaluator<'a>, radius: f64) -> Region<'a> {
         let [hessian, room] = [(); 2].map(|()| Matrix::default());
         let (modes, x, v) = (Vec::new(), Vec::new(), Vec::new());
-        Region { h, radius, largest: radius, hessian, room, modes, x, v }
+        Region { h, radius, largest: radius, is_underway: false, hessian, room, modes, x, v }
     }
 
-    /// Newton's step from a point, in `v`, wherever it leads; its largest rotation of a spin (rad).
+    /// Newton's step from a point, in `v`, wherever it leads (without factors, [`step`](Self::step)'s); its largest rotation of a spin (rad).
     pub fn plain(&mut self, here: &Point) -> f64 {
         here.write_hessian(self.h, 0.0, &mut self.hessian);
-        self.room = self.newton(here).into_memory();
+        if self.h.forgoes_factors() {
+            self.iterate(here);
+        } else {
+            let factors = self.newton(here);
+            self.freeze(here, &factors);
+            self.room = factors.into_memory();
+        }
         here.write_field(&self.x, &mut self.v);
         rotation_of(&self.v)
     }
@@ -81,14 +103,23 @@ impl<'a> Region<'a> {
         }
         let rise_mev = here.predicted_mev(&self.hessian, &self.x);
         let size_mev = slab::norm(&self.x) * slab::norm(&here.slope);
-        let is_newton = whole && negative == 1;
-        Step { negative, rotation: rotation.min(self.radius), is_newton, rise_mev, size_mev }
+        let (is_newton, is_underway) = (whole && negative == 1, self.is_underway || rotation > FARTHEST);
+        Step { negative, rotation: rotation.min(self.radius), is_newton, is_underway, rise_mev, size_mev }
     }
 
     /// Writes the step to `x`; how many directions are negative.
     fn by_factors(&mut self, here: &Point) -> usize {
         let factors = self.newton(here);
-        let negative = factors.negatives();
+        let soft = self.freeze(here, &factors);
+        let negative = match soft {
+            Soft::Frozen { falls, .. } => (factors.negatives() - usize::from(falls)).max(1),
+            _ => factors.negatives(),
+        };
+        self.is_underway = match soft {
+            Soft::None => false,
+            Soft::Kept => negative == 0,
+            Soft::Frozen { is_flat, .. } => !is_flat,
+        };
         match negative {
             0 => self.reverse(here, &factors, 0..1),
             2..=MODES => self.reverse(here, &factors, 1..negative),
@@ -135,6 +166,32 @@ impl<'a> Region<'a> {
             pin(&mut matrix, z, &mut used, self.h.stiffness_mev());
         }
         self.solve(here, matrix)
+    }
+
+    /// Takes the part along a mode out of `x`, Newton's step, where nothing tells how long that is: the mode is flat to rounding, or all
+    /// but flat while its curvature may still change by more than that is, with what is left to turn across it.
+    fn freeze(&mut self, here: &Point, factors: &Factors) -> Soft {
+        let scale = self.h.stiffness_mev();
+        let along = slab::norm(&self.x);
+        if !(slab::dot(&self.x, &here.slope).abs() < ALIKE * scale * along * along) {
+            return Soft::None;
+        }
+        let mut soft = self.x.clone();
+        slab::scale(&mut soft, 1.0 / along);
+        factors.solve(&mut soft, 1);
+        remove(&mut soft, &here.zeros);
+        let size = slab::norm(&soft);
+        slab::scale(&mut soft, 1.0 / size);
+        let inverse = slab::dot(&soft, &self.x) / along * size;
+        let mut across = self.x.clone();
+        remove(&mut across, std::slice::from_ref(&soft));
+        let floor = floor_mev(self.h, self.hessian.norm1());
+        let unknown = (scale * slab::max_abs(&across)).max(floor);
+        if inverse.abs() * unknown < 1.0 {
+            return Soft::Kept;
+        }
+        self.x = across;
+        Soft::Frozen { falls: inverse < 0.0, is_flat: inverse.abs() * floor >= 1.0 }
     }
 
     /// Solves A x = −g; the factors of A.
