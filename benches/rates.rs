@@ -39,7 +39,7 @@ fn measure(sites: usize) {
         (along[sites + i], along[2 * sites + i]) = (s * t, s * s);
     }
     let start = Instant::now();
-    let saddle = refine((&h).into(), &m, &along, 2.0 * k, f64::NEG_INFINITY);
+    let saddle = refine((&h).into(), &m, &along, f64::NEG_INFINITY);
     let spectrum = Spectrum::of((&h).into(), &saddle.state, 6);
     let minima = [Direction::Z, Direction::Z.reversed()].map(|d| Spins::uniform(sites, d));
     let spectra = [0, 1].map(|side| Minimum::examine((&h).into(), &minima[side]).spectrum);

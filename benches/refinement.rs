@@ -139,7 +139,7 @@ fn saddle_solves(problem: &Problem, outcome: &Outcome) -> usize {
     band.evaluate();
     let c = 2.0 * anisotropy(outcome.path.sites());
     let top = peaks(&band, c).into_iter().next();
-    top.map_or(0, |top| refine((&problem.hamiltonian).into(), &top.m, &top.tau, c, top.floor_mev).factorisations)
+    top.map_or(0, |top| refine((&problem.hamiltonian).into(), &top.m, &top.tau, top.floor_mev).factorisations)
 }
 
 /// Energy (meV) of the wall in the middle of the chain above the uniform state, by Newton's method on its angles:

@@ -7,11 +7,9 @@
 //! H″ = H' + κ e eᵀ            the same for the soft mode t, on another site: well conditioned
 //! C = [t, −e],  Z = H″⁻¹C,  S = diag(0, 1/κ) − CᵀZ        takes the last pin back through one border column
 //! negatives in the complement of t and the zero modes = n(H″) + n(S) − 1
-//! soft pivot s = 1/κ − eᵀH″⁻¹e,   Morse index = n(H″) + [s < 0]
 //! ```
 
 use super::border::{Border, pin};
-use super::state::State;
 use super::tolerances::INDEPENDENT;
 use crate::energy::Evaluator;
 use crate::linalg::{Factors, Matrix, remove, slab};
@@ -20,17 +18,11 @@ use std::mem::take;
 /// A factorised, pinned Hessian.
 #[derive(Debug, Default)]
 pub struct Pinned {
-    /// Kept where solutions are refined.
-    matrix: Option<Matrix>,
     factors: Factors,
     zeros: Vec<Vec<f64>>,
     border: Border,
     /// Negative directions in the complement of the soft mode and the zero modes.
     pub complement_negatives: usize,
-    /// Its sign is that of the soft direction's curvature.
-    pub soft_pivot: f64,
-    /// Negative eigenvalues of H, zero modes apart.
-    pub index: usize,
 }
 
 impl Pinned {
@@ -39,27 +31,13 @@ impl Pinned {
         (h.stiffness_mev() / 3.0).max(c)
     }
 
-    /// Of H + shift·1 at a state, with the soft mode `t` (tangent coordinates, any length); κ is the stiffness of the pins (meV).
-    /// Solutions get a step of iterative refinement.
-    pub fn new(state: &State, t: &[f64], shift: f64, kappa: f64) -> Pinned {
-        let mut pinned = Pinned::default();
-        let mut matrix = state.hessian.clone();
-        matrix.shift(shift);
-        let mut used = pinned.pin_zeros(&mut matrix, &state.zeros, kappa);
-        pinned.aim(t);
-        let (matrix, factors) = pinned.border.factor_refined(matrix, &mut used, kappa);
-        pinned.matrix = Some(matrix);
-        pinned.count(factors);
-        pinned
-    }
-
     /// The matrix of the last factors, to be filled for [`factor`](Self::factor).
     pub fn take_memory(&mut self) -> Matrix {
         take(&mut self.factors).into_memory()
     }
 
-    /// Takes any matrix with orthonormal zero modes, in the memory there is. Solutions are less accurate than those of
-    /// [`new`](Self::new), and quicker: good enough for steps that are corrected.
+    /// Takes a matrix with orthonormal zero modes and the soft mode `t` (tangent coordinates, any length), in the memory there is; κ is
+    /// the stiffness of the pins (meV).
     pub fn factor(&mut self, mut matrix: Matrix, zeros: &[Vec<f64>], t: &[f64], kappa: f64) {
         let mut used = self.pin_zeros(&mut matrix, zeros, kappa);
         self.aim(t);
@@ -97,9 +75,7 @@ impl Pinned {
 
     fn count(&mut self, factors: Factors) {
         let (negatives, schur) = (factors.negatives(), self.border.schur());
-        self.soft_pivot = schur[1][1];
         self.complement_negatives = (negatives + negatives_of(schur)).saturating_sub(1);
-        self.index = negatives + usize::from(self.soft_pivot < 0.0);
         self.factors = factors;
     }
 
@@ -121,12 +97,9 @@ impl Pinned {
     }
 
     /// [`solve`](Self::solve) where `x` is b at first; returns ν.
-    pub fn solve_in_place(&self, x: &mut Vec<f64>) -> f64 {
+    pub fn solve_in_place(&self, x: &mut [f64]) -> f64 {
         remove(x, &self.zeros);
-        match &self.matrix {
-            Some(matrix) => *x = accurate(matrix, &self.factors, x),
-            None => self.factors.solve(x, 1),
-        }
+        self.factors.solve(x, 1);
         let nu = self.border.take_back(x);
         remove(x, &self.zeros);
         nu
@@ -145,20 +118,6 @@ impl Pinned {
         remove(x, &self.zeros);
         nu
     }
-}
-
-/// A⁻¹ b with one step of iterative refinement.
-fn accurate(matrix: &Matrix, factors: &Factors, b: &[f64]) -> Vec<f64> {
-    let mut x = b.to_vec();
-    factors.solve(&mut x, 1);
-    let mut r = vec![0.0; b.len()];
-    matrix.multiply(&x, &mut r);
-    for (r, b) in r.iter_mut().zip(b) {
-        *r = b - *r;
-    }
-    factors.solve(&mut r, 1);
-    slab::add_scaled(&mut x, 1.0, &r);
-    x
 }
 
 /// Negative eigenvalues of a symmetric 2 × 2 matrix.

@@ -173,7 +173,8 @@ impl<'a> Region<'a> {
     fn freeze(&mut self, here: &Point, factors: &Factors) -> Soft {
         let scale = self.h.stiffness_mev();
         let along = slab::norm(&self.x);
-        if !(slab::dot(&self.x, &here.slope).abs() < ALIKE * scale * along * along) {
+        let curvature = slab::dot(&self.x, &here.slope).abs() / (along * along);
+        if curvature >= ALIKE * scale || curvature.is_nan() {
             return Soft::None;
         }
         let mut soft = self.x.clone();
