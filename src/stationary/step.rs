@@ -5,8 +5,10 @@
 //! ```
 //! This is Newton's step −H⁻¹g with its parts along the wrong modes reversed: one factorisation where one direction is negative,
 //! and the modes in question where more are or none is. Where very many are, the step goes down: s = −(H + μ)⁻¹g. A step is cut to
-//! the trust radius, which follows how well the model told the energy. (Cerjan, Miller, J. Chem. Phys. 75, 2800 (1981),
-//! doi:10.1063/1.442352; Wales, J. Chem. Phys. 101, 3750 (1994), doi:10.1063/1.467559.)
+//! the trust radius, which follows how well the model told the energy. Along a mode that is all but flat, as a wall's that slides, it
+//! has a part only once what is left to turn across that mode can no longer change its curvature, and none where that is rounding.
+//! (Cerjan, Miller, J. Chem. Phys. 75, 2800 (1981), doi:10.1063/1.442352; Wales, J. Chem. Phys. 101, 3750 (1994),
+//! doi:10.1063/1.467559.)
 
 use super::border::pin;
 use super::point::Point;
