@@ -57,8 +57,10 @@ fn beside(h: Evaluator, m: &[f64], tau: &[f64], factorisations: usize) -> Refine
     let here = Point::at(h, m.to_vec());
     let here = if h.forgoes_factors() { here } else { polish(h, here) };
     let state = State::of(h, here);
-    let arrived = state.max_torque_mev() < ALIKE * h.stiffness_mev();
-    let spectrum = (arrived && !h.forgoes_factors()).then(|| Spectrum::of(h, &state, 0));
+    let rests = state.max_torque_mev() < ALIKE * h.stiffness_mev() && !h.forgoes_factors();
+    let spectrum = rests.then(|| Spectrum::of(h, &state, 0));
+    // a minimum is no saddle
+    let arrived = spectrum.as_ref().is_some_and(|s| s.negative + s.flat > 0);
     let index = spectrum.as_ref().map_or(0, |s| s.negative);
     let mut valley = tau.to_vec();
     project(&state.m, &mut valley);
