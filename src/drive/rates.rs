@@ -178,8 +178,7 @@ fn stored_link(h: Evaluator, saddle: &SaddlePoint, beside: &[Minimum]) -> Pass {
     let lowest = state.lowest_mode(h);
     let valley = lowest.as_ref().map_or_else(|| vec![0.0; state.m.len()], |mode| state.field(&mode.vector));
     let mut tau = valley.clone();
-    let size = slab::norm(&tau);
-    slab::scale(&mut tau, 1.0 / size.max(f64::MIN_POSITIVE));
+    slab::normalise(&mut tau);
     let (s, image) = (saddle.reaction_coordinate_rad, saddle.image);
     let top = Peak { m: state.m.clone(), tau, energy_mev: state.energy_mev, s, image, floor_mev: f64::NEG_INFINITY };
     let index = spectrum.negative;

@@ -116,8 +116,7 @@ impl<'a> Krylov<'a> {
     /// The part of `v` that is new, or of something random where nothing is.
     fn new_direction(&mut self, mut v: Vec<f64>) -> Option<Vec<f64>> {
         for _ in 0..4 {
-            let size = slab::norm(&v);
-            slab::scale(&mut v, 1.0 / size.max(f64::MIN_POSITIVE));
+            slab::normalise(&mut v);
             for _ in 0..self.passes {
                 for space in [self.known, &self.basis] {
                     slab::without(&mut v, space);

@@ -53,6 +53,13 @@ pub fn norm(a: &[f64]) -> f64 {
     dot(a, a).sqrt()
 }
 
+/// Makes a vector one of unit length, unless it is zero; the length that it had.
+pub fn normalise(a: &mut [f64]) -> f64 {
+    let size = norm(a);
+    scale(a, 1.0 / size.max(f64::MIN_POSITIVE));
+    size
+}
+
 /// Adds a vector of this length, roughly, that has a part of every mode: the multiples of the golden ratio, less their whole parts.
 pub fn stir(a: &mut [f64], length: f64) {
     let each = length * (12.0 / a.len() as f64).sqrt();

@@ -121,21 +121,19 @@ impl Border {
         self.schur
     }
 
-    /// From x = H″⁻¹b to the solution of [H' t; tᵀ 0] (x, ν) = (b, 0), in place; returns ν.
-    pub fn take_back(&self, x: &mut [f64]) -> f64 {
+    /// From x = H″⁻¹b to the solution of [H' t; tᵀ 0] (x, ν) = (b, 0), in place.
+    pub fn take_back(&self, x: &mut [f64]) {
         let r = [-slab::dot(&self.soft, x), self.pin.dot(x)];
         let q = self.share(r);
         slab::add_pairs(x, [-q[0], -q[1]], &self.solved);
-        q[0]
     }
 
-    /// The solution of [H' t; tᵀ 0] (x, ν) = (0, 1), into the memory of `x`; returns ν.
-    pub fn valley(&self, x: &mut Vec<f64>) -> f64 {
+    /// The solution of [H' t; tᵀ 0] (x, ν) = (0, 1), into the memory of `x`.
+    pub fn valley(&self, x: &mut Vec<f64>) {
         let q = self.share([1.0, 0.0]);
         x.clear();
         x.resize(self.soft.len(), 0.0);
         slab::add_pairs(x, [-q[0], -q[1]], &self.solved);
-        q[0]
     }
 
     /// S⁻¹ r.

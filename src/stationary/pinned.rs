@@ -69,8 +69,7 @@ impl Pinned {
         soft.clear();
         soft.extend_from_slice(t);
         remove(soft, &self.zeros);
-        let size = slab::norm(soft);
-        slab::scale(soft, 1.0 / size.max(f64::MIN_POSITIVE));
+        slab::normalise(soft);
     }
 
     fn count(&mut self, factors: Factors) {
@@ -84,39 +83,18 @@ impl Pinned {
         &self.border.soft
     }
 
-    /// The modes treated as zero modes, orthonormal.
-    pub fn zeros(&self) -> &[Vec<f64>] {
-        &self.zeros
-    }
-
-    /// Solves [H t; tᵀ 0] (x, ν) = (b, 0) in the complement of the zero modes.
-    pub fn solve(&self, b: &[f64]) -> (Vec<f64>, f64) {
-        let mut x = b.to_vec();
-        let nu = self.solve_in_place(&mut x);
-        (x, nu)
-    }
-
-    /// [`solve`](Self::solve) where `x` is b at first; returns ν.
-    pub fn solve_in_place(&self, x: &mut [f64]) -> f64 {
+    /// Solves [H t; tᵀ 0] (x, ν) = (b, 0) in the complement of the zero modes, where `x` is b at first.
+    pub fn solve_in_place(&self, x: &mut [f64]) {
         remove(x, &self.zeros);
         self.factors.solve(x, 1);
-        let nu = self.border.take_back(x);
+        self.border.take_back(x);
         remove(x, &self.zeros);
-        nu
     }
 
-    /// The valley's direction: solves [H t; tᵀ 0] (x, ν) = (0, 1).
-    pub fn valley(&self) -> (Vec<f64>, f64) {
-        let mut x = Vec::new();
-        let nu = self.write_valley(&mut x);
-        (x, nu)
-    }
-
-    /// [`valley`](Self::valley) into the memory of `x`; returns ν.
-    pub fn write_valley(&self, x: &mut Vec<f64>) -> f64 {
-        let nu = self.border.valley(x);
+    /// The valley's direction, into the memory of `x`: solves [H t; tᵀ 0] (x, ν) = (0, 1).
+    pub fn write_valley(&self, x: &mut Vec<f64>) {
+        self.border.valley(x);
         remove(x, &self.zeros);
-        nu
     }
 }
 

@@ -4,11 +4,9 @@
 
 use super::point::Point;
 use super::step::Region;
-use super::tolerances::SHARP;
+use super::tolerances::{LAST_DIGITS, SHARP};
 use crate::energy::Evaluator;
 
-/// A longer step (rad, any spin) is no last digit.
-pub const FARTHEST: f64 = 0.05;
 /// Most steps.
 const STEPS: usize = 6;
 
@@ -16,13 +14,13 @@ const STEPS: usize = 6;
 /// away, or nowhere, is given back as it came.
 pub fn polish(h: Evaluator, mut here: Point) -> Point {
     let sharp = SHARP * h.stiffness_mev();
-    let mut region = Region::new(h, FARTHEST);
+    let mut region = Region::new(h, LAST_DIGITS);
     let mut best = here.clone();
     let mut in_vain = 0;
     for _ in 0..STEPS {
         let least = best.max_torque_mev();
         // a NaN is no small rotation either
-        let goes_on = least > sharp && in_vain < 3 && !h.is_stopped() && region.plain(&here) < FARTHEST;
+        let goes_on = least > sharp && in_vain < 3 && !h.is_stopped() && region.plain(&here) < LAST_DIGITS;
         if !goes_on {
             break;
         }

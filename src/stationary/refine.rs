@@ -43,7 +43,7 @@ pub fn refine(h: Evaluator, m: &[f64], tau: &[f64], floor_mev: f64) -> Refined {
     let left = |here: &Point| largest_angle(m, &here.m) > FARTHEST || here.energy_mev < floor_mev;
     let found = search.run(STEPS, |here, _| left(here).then_some(GaveUp::Stuck));
     let factorisations = search.steps;
-    match found.and_then(|()| search.saddle(1)) {
+    match found.and_then(|()| search.saddle(true)) {
         Ok(Saddle { state, mode: valley, spectrum, .. }) => {
             let index = spectrum.negative;
             Refined { arrived: true, state, valley, factorisations, index, spectrum: Some(spectrum) }
@@ -64,7 +64,6 @@ fn beside(h: Evaluator, m: &[f64], tau: &[f64], factorisations: usize) -> Refine
     let index = spectrum.as_ref().map_or(0, |s| s.negative);
     let mut valley = tau.to_vec();
     project(&state.m, &mut valley);
-    let size = slab::norm(&valley);
-    slab::scale(&mut valley, 1.0 / size.max(f64::MIN_POSITIVE));
+    slab::normalise(&mut valley);
     Refined { arrived, state, valley, factorisations, index, spectrum }
 }

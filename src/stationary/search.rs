@@ -88,7 +88,7 @@ pub fn climb(h: Evaluator, start: &[f64], limits: &Limits) -> Climb {
         (step.is_newton && step.rotation < STEP && there > limits.ceiling_mev).then_some(GaveUp::TooHigh)
     });
     let steps = search.steps;
-    Climb { saddle: ended.and_then(|()| search.saddle(0)), steps }
+    Climb { saddle: ended.and_then(|()| search.saddle(false)), steps }
 }
 
 /// A search on its way.
@@ -153,11 +153,11 @@ impl<'a> Search<'a> {
         leads_away
     }
 
-    /// Where it is, if that is a saddle of index one; or if at most so many modes are flat to rounding, and none falls.
-    pub fn saddle(self, flat: usize) -> Result<Saddle, GaveUp> {
+    /// Where it is, if that is a saddle of index one; or, if it `may_be_flat`, if one mode is flat to rounding and none falls.
+    pub fn saddle(self, may_be_flat: bool) -> Result<Saddle, GaveUp> {
         let state = State::of(self.h, self.here);
         let (spectrum, lowest) = Spectrum::of_saddle(self.h, &state);
-        let is_saddle = spectrum.negative == 1 || spectrum.negative == 0 && (1..=flat).contains(&spectrum.flat);
+        let is_saddle = spectrum.negative == 1 || may_be_flat && spectrum.negative == 0 && spectrum.flat == 1;
         let lowest = lowest.filter(|_| is_saddle).ok_or(GaveUp::Stuck)?;
         let (mut mode, curvature_mev) = (state.field(&lowest), state.curvature_mev(&lowest));
         self.h.hold_frozen(&mut mode);

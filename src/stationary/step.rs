@@ -12,9 +12,8 @@
 
 use super::border::pin;
 use super::point::Point;
-use super::polish::FARTHEST;
 use super::spectrum::floor_mev;
-use super::tolerances::{ALIKE, FIRST_SHIFT, LARGER, LAST_SHIFT, ROUGHLY};
+use super::tolerances::{ALIKE, FIRST_SHIFT, LARGER, LAST_DIGITS, LAST_SHIFT, ROUGHLY};
 use crate::energy::Evaluator;
 use crate::linalg::{Factors, Matrix, lowest_modes, modes_by_factors, remove, slab};
 use crate::sphere::rotation_of;
@@ -31,8 +30,6 @@ pub struct Region<'a> {
     /// Largest rotation of a spin in a step (rad), now and ever.
     radius: f64,
     largest: f64,
-    /// The step now tried leads along a mode that is all but flat, or is to be followed by one that does.
-    is_underway: bool,
     pub(super) hessian: Matrix,
     room: Matrix,
     /// The lowest modes when they were last needed (3N each).
@@ -74,7 +71,7 @@ impl<'a> Region<'a> {
     pub fn new(h: Evaluator<'a>, radius: f64) -> Region<'a> {
         let [hessian, room] = [(); 2].map(|()| Matrix::default());
         let (modes, x, v) = (Vec::new(), Vec::new(), Vec::new());
-        Region { h, radius, largest: radius, is_underway: false, hessian, room, modes, x, v }
+        Region { h, radius, largest: radius, hessian, room, modes, x, v }
     }
 
     /// Newton's step from a point, in `v`, wherever it leads (without factors, [`step`](Self::step)'s); its largest rotation of a spin (rad).
@@ -94,7 +91,8 @@ impl<'a> Region<'a> {
     /// The step from a point, in `v`.
     pub fn step(&mut self, here: &Point) -> Step {
         here.write_hessian(self.h, 0.0, &mut self.hessian);
-        let negative = if self.h.forgoes_factors() { self.iterate(here) } else { self.by_factors(here) };
+        let (negative, leads_on) =
+            if self.h.forgoes_factors() { (self.iterate(here), false) } else { self.by_factors(here) };
         here.write_field(&self.x, &mut self.v);
         self.h.hold_frozen(&mut self.v);
         let rotation = rotation_of(&self.v);
@@ -105,22 +103,20 @@ impl<'a> Region<'a> {
         }
         let rise_mev = here.predicted_mev(&self.hessian, &self.x);
         let size_mev = slab::norm(&self.x) * slab::norm(&here.slope);
-        let (is_newton, is_underway) = (whole && negative == 1, self.is_underway || rotation > FARTHEST);
+        let (is_newton, is_underway) = (whole && negative == 1, leads_on || rotation > LAST_DIGITS);
         Step { negative, rotation: rotation.min(self.radius), is_newton, is_underway, rise_mev, size_mev }
     }
 
-    /// Writes the step to `x`; how many directions are negative.
-    fn by_factors(&mut self, here: &Point) -> usize {
+    /// Writes the step to `x`; how many directions are negative, and whether the step leads along a mode that is all but flat, or is to be
+    /// followed by one that does.
+    fn by_factors(&mut self, here: &Point) -> (usize, bool) {
         let factors = self.newton(here);
         let soft = self.freeze(here, &factors);
-        let negative = match soft {
-            Soft::Frozen { falls, .. } => (factors.negatives() - usize::from(falls)).max(1),
-            _ => factors.negatives(),
-        };
-        self.is_underway = match soft {
-            Soft::None => false,
-            Soft::Kept => negative == 0,
-            Soft::Frozen { is_flat, .. } => !is_flat,
+        let all = factors.negatives();
+        let (negative, leads_on) = match soft {
+            Soft::None => (all, false),
+            Soft::Kept => (all, all == 0),
+            Soft::Frozen { falls, is_flat } => ((all - usize::from(falls)).max(1), !is_flat),
         };
         match negative {
             0 => self.reverse(here, &factors, 0..1),
@@ -131,7 +127,7 @@ impl<'a> Region<'a> {
         if negative > MODES {
             self.shifted(here);
         }
-        negative
+        (negative, leads_on)
     }
 
     /// Fits the radius to what the energy did (meV) in a step.
@@ -180,11 +176,10 @@ impl<'a> Region<'a> {
             return Soft::None;
         }
         let mut soft = self.x.clone();
-        slab::scale(&mut soft, 1.0 / along);
+        slab::normalise(&mut soft);
         factors.solve(&mut soft, 1);
         remove(&mut soft, &here.zeros);
-        let size = slab::norm(&soft);
-        slab::scale(&mut soft, 1.0 / size);
+        let size = slab::normalise(&mut soft);
         let inverse = slab::dot(&soft, &self.x) / along * size;
         let mut across = self.x.clone();
         remove(&mut across, std::slice::from_ref(&soft));

@@ -13,6 +13,9 @@ pub const STRIDE: f64 = 0.5;
 /// saddle, and what a path's maximum tells of the height of that.
 pub const ROUGHLY: f64 = 0.3;
 
+/// A longer step (rad, any spin) is none of the last digits of a stationary state.
+pub const LAST_DIGITS: f64 = 0.05;
+
 /// Fields of which less than this part is left beside others depend on them.
 pub const INDEPENDENT: f64 = 1e-6;
 

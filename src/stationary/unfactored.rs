@@ -99,8 +99,10 @@ mod tests {
         at.write_hessian((&h).into(), 0.0, &mut matrix);
         let along = at.basis.coordinates(&t);
         pinned.factor(matrix, &at.zeros, &along, Pinned::strength_mev((&h).into(), C));
-        let (valley, _) = pinned.valley();
-        let (across, _) = pinned.solve(&at.downhill());
+        let mut valley = Vec::new();
+        pinned.write_valley(&mut valley);
+        let mut across = at.downhill();
+        pinned.solve_in_place(&mut across);
 
         let stand_in = StandIn::about(&h, &at.m, &at.gradient, C);
         let mut without = Unfactored { stand_in, equations: Complement::default() };

@@ -223,8 +223,7 @@ fn principal(k: usize, entry: impl Fn(usize, usize) -> f64) -> (Vec<f64>, Vec<Ve
                 let overlap = slab::dot(s, &v);
                 slab::add_scaled(&mut v, -overlap, s);
             }
-            let size = slab::norm(&v);
-            slab::scale(&mut v, 1.0 / size.max(f64::MIN_POSITIVE));
+            slab::normalise(&mut v);
         }
         space.push(v);
     }
