@@ -51,6 +51,13 @@ pub fn turn_towards(a: Components, b: Components, axis: Vector) -> (f64, f64) {
     (sines, cosines)
 }
 
+/// Σ a·b after the turn about the unit axis k that makes it largest.
+pub fn best_overlap(a: Components, b: Components, axis: Vector) -> f64 {
+    let (sine, cosine) = turn_towards(a, b, axis);
+    let fixed = |i: usize| vector::dot(axis, a.get(i)) * vector::dot(axis, b.get(i));
+    (sine * sine + cosine * cosine).sqrt() + (0..a.sites()).map(fixed).sum::<f64>()
+}
+
 #[multiversion(targets("x86_64+avx2"))]
 fn turns(a: Components, b: Components, [x, y, z]: Vector, sine: &mut [f64], cosine: &mut [f64]) {
     let n = sine.len();

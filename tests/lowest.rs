@@ -86,6 +86,22 @@ fn a_narrow_wall_on_a_long_plateau_is_certified_with_few_images_too() {
 }
 
 #[test]
+fn no_route_is_higher_than_the_path_that_it_is_for() {
+    // a coarse path from hop to hop leads around the saddle of a single spin's reversal, 27.54 meV, which a route over all of its
+    // minima need not pass
+    for sites in [44, 50] {
+        let energy = json!([
+            {"exchange": {"J": ["10 meV"]}},
+            {"anisotropy": {"K": "2.0673683363429225 meV", "axis": [0, 0, 1]}},
+            {"anisotropy": {"K": "-0.8788192774338054 meV", "axis": [1, 0, 0]}},
+        ]);
+        let outcome = solve(&chain(sites, true, energy, up(), down()), Effort::None);
+        assert!((certified(&outcome) - 25.2438).abs() < 1e-3, "{sites} {}", certified(&outcome));
+        assert!(outcome.work.force_evaluations < 200_000, "{}", outcome.work.force_evaluations);
+    }
+}
+
+#[test]
 fn the_two_signs_of_a_dzyaloshinskii_moriya_interaction_on_a_ring_have_one_barrier() {
     let ring = |d: &str| {
         let energy = json!([

@@ -4,11 +4,12 @@
 //! the usual way. So several guesses are relaxed loosely, and the lowest goes on.
 
 use super::Problem;
+use crate::field::Components;
 use crate::geometry::{Direction, vector};
 use crate::path::guess::{
     Edge, Geodesic, GuessContext, GuessSpec, NoiseSpec, Rotation, Sweep, Ways, best_turn, natural,
 };
-use crate::sphere::SAME;
+use crate::sphere::{SAME, best_overlap};
 use crate::spins::Spins;
 use crate::stationary::{ALIKE, LOWER};
 use crate::threads::{MADE, apiece};
@@ -111,7 +112,8 @@ fn rotation_axes(problem: &Problem, a: &Spins, b: &Spins) -> Vec<Direction> {
     let cartesian = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     for v in cartesian.iter().chain(problem.hamiltonian.symmetry_axes()) {
         let Ok(axis) = Direction::new(*v) else { continue };
-        let (angle, together) = best_turn(a, b, axis);
+        let [p, q] = [a, b].map(|s| Components::new(s.as_slice()));
+        let (angle, together) = (best_turn(a, b, axis), best_overlap(p, q, axis.vector()));
         let new = axes.iter().all(|k| vector::norm(vector::cross(k.vector(), *v)) > SAME);
         if new && together > n - 1e-3 * n.max(10.0) {
             axes.push(axis);

@@ -8,7 +8,7 @@ use super::run::{FEWEST_IMAGES, Run};
 use super::settled::Settled;
 use crate::band::Band;
 use crate::error::Result;
-use crate::landscape::{Assembled, Connector, Doubt, Minimum, Pass, PathEnd, Saddle, assemble, peaks};
+use crate::landscape::{Assembled, Connector, Doubt, Minimum, Pass, PathEnd, Saddle, assemble, highest_between, peaks};
 use crate::path::{RESOLVED, distance, is_within};
 use crate::sphere::SAME;
 use crate::stationary::LOWER;
@@ -24,7 +24,12 @@ const WINDOW: f64 = 0.1;
 fn over(c: &FirstPath, links: &[Pass]) -> f64 {
     let e = c.band.energies_mev();
     let saddles = links.iter().map(|l| l.saddle.refined.state.energy_mev - e[0]);
-    saddles.fold((e[e.len() - 1] - e[0]).max(0.0), f64::max) + LOWER * height(&c.band)
+    saddles.fold((e[e.len() - 1] - e[0]).max(0.0), f64::max) + slack(&c.band)
+}
+
+/// Heights of a band that differ by less are one (meV).
+fn slack(band: &Band) -> f64 {
+    LOWER * height(band)
 }
 
 impl<'a> Run<'a, '_> {
@@ -206,25 +211,51 @@ impl<'a> Run<'a, '_> {
                 break;
             }
         }
+        let gap = self.connect(c, below_mev)?;
+        let route = self.land.route(self.minima[0], self.minima[1]).filter(|route| route.top_mev < below_mev);
+        let links = match route {
+            Some(route) => {
+                doubts.clear();
+                self.land.passes_of(&route)
+            }
+            None => own,
+        };
+        doubts.extend(gap);
+        let unproven = ends.iter().zip(PathEnd::BOTH).filter(|(end, _)| !end.is_proven());
+        doubts.extend(unproven.map(|(_, which)| Doubt::NoMinimum(which)));
+        doubts.dedup_by_key(|doubt| doubt.to_string());
+        Ok(Proof { ends, links, doubts })
+    }
+
+    /// Connects the ends below a height (meV above the initial state), and not higher than the path itself rises; what stands against
+    /// that.
+    fn connect(&mut self, c: &FirstPath<'a>, below_mev: f64) -> Result<Option<Doubt>> {
         let tools = self.tools();
         let connector = Connector {
             bands: &tools,
             path: c.band.path(),
             below_mev,
             evaluations: self.problem.neb.max_evaluations.saturating_mul(c.band.images()),
-            c: scale,
+            c: self.scales.stiffness_mev,
             context: self.context(),
         };
         let gap = connector.connect(&mut self.land, self.minima)?;
-        let route = self.land.route(self.minima[0], self.minima[1]).filter(|route| route.top_mev < below_mev);
-        let (links, mut doubts) = match route {
-            Some(route) => (self.land.passes_of(&route), Vec::new()),
-            None => (own, doubts.into_iter().chain(gap).collect()),
-        };
-        let unproven = ends.iter().zip(PathEnd::BOTH).filter(|(end, _)| !end.is_proven());
-        doubts.extend(unproven.map(|(_, which)| Doubt::NoMinimum(which)));
-        doubts.dedup_by_key(|doubt| doubt.to_string());
-        Ok(Proof { ends, links, doubts })
+        let slack = slack(&c.band);
+        if gap.is_some() || self.route_mev() <= c.peak_mev() + slack {
+            return Ok(gap);
+        }
+        // few images may lead around saddles that a finer look finds
+        let path_mev = highest_between(self.problem.evaluator(), c.band.path()) + slack;
+        if self.route_mev() > path_mev {
+            Connector { below_mev: path_mev, ..connector }.connect(&mut self.land, self.minima)?;
+        }
+        let route_mev = self.route_mev();
+        Ok((route_mev > path_mev).then_some(Doubt::HigherRoute { route_mev, path_mev }))
+    }
+
+    /// The highest saddle between the ends as far as is known (meV above the initial state).
+    fn route_mev(&self) -> f64 {
+        self.land.top_mev(self.minima[0], self.minima[1]).unwrap_or(f64::NEG_INFINITY)
     }
 
     /// What a saddle between ends that are kept as they are is by itself.

@@ -1,22 +1,19 @@
 //! Connecting two minima by a band's saddles: the graph names the next pair, a way between the two is relaxed a little, and its
 //! peaks are refined to saddles, whose passes go into the graph; until a route leads from end to end.
 
+use super::flat::flat_way;
 use super::pass::Pass;
 use super::ways::{WAYS, way};
 use super::zoom::{ZOOMS, zoomed};
-use super::{Doubt, Landscape, Saddle, highest, peaks, turned, turns};
+use super::{Doubt, Landscape, Peak, Saddle, highest, peaks, turned, turns};
 use crate::band::Band;
-use crate::energy::Evaluator;
 use crate::error::Result;
 use crate::path::guess::GuessContext;
 use crate::path::{COARSE, Path, distance};
 use crate::spins::Spins;
-use crate::stationary::FLAT;
 
 /// Intervals, at least, of a part of the path that is a way.
 const FEWEST: usize = 5;
-/// A way that is lower than this part of c after a little relaxation may be flat.
-const LOW: f64 = 1e-3;
 
 /// What relaxes bands.
 pub trait Bands: Sync {
@@ -102,8 +99,8 @@ impl Connector<'_> {
         let h = land.evaluator();
         let mut band = Band::new(h, way);
         self.bands.loosely(&mut band)?;
-        if self.is_flat(&mut band)? {
-            land.merge(pair, band.into_path());
+        if let Some(flat) = flat_way(self.bands, &band, self.c)? {
+            land.merge(pair, flat);
             return Ok(());
         }
         for _ in 0..ZOOMS {
@@ -115,8 +112,10 @@ impl Connector<'_> {
         if tops.first().is_some_and(|top| top.floor_mev - land.reference_mev() > self.below_mev) {
             return Ok(());
         }
+        // a saddle between the two lies above both, and may lie far below a peak that it is not near
+        let ends_mev = band.energies_mev()[0].max(band.energies_mev()[band.images() - 1]);
         for top in tops {
-            let found = Saddle::recorded(h, top)?;
+            let found = Saddle::recorded(h, Peak { floor_mev: top.floor_mev.min(ends_mev), ..top })?;
             if found.is_saddle(self.c) && !land.knows(&found) {
                 return self.add(land, found);
             }
@@ -131,19 +130,5 @@ impl Connector<'_> {
             land.add(pass);
         }
         Ok(())
-    }
-
-    /// Whether a way between two minima is flat as far as double precision tells: a soliton on a ring, moved along it.
-    fn is_flat(&self, band: &mut Band) -> Result<bool> {
-        let h: Evaluator = band.evaluator();
-        let flat = FLAT * h.stiffness_mev();
-        let level = |band: &Band, k: usize| h.difference_mev(band.path().image(k), band.path().image(0)).abs() < flat;
-        let e = band.energies_mev();
-        let low = e.iter().all(|x| (x - e[0]).abs() < LOW * self.c);
-        if !low || !level(band, band.images() - 1) {
-            return Ok(false);
-        }
-        self.bands.tightly(band)?;
-        Ok(band.path().is_resolved() && (0..band.images()).all(|k| level(band, k)))
     }
 }

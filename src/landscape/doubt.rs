@@ -35,6 +35,17 @@ pub enum Doubt {
     /// The path is highest at an end that was not relaxed.
     #[error("the highest point of the path is the {0} state, kept as given: that is no barrier")]
     KeptEnd(PathEnd),
+    /// The route over proven saddles rises so high, and a path that was found does not.
+    #[error(
+        "the lowest route over proven saddles that was found rises by {route_mev:.6} meV, and a path that stays below {path_mev:.6} \
+         meV is known"
+    )]
+    HigherRoute {
+        /// Highest saddle of the route above the initial state.
+        route_mev: f64,
+        /// What the path stays below.
+        path_mev: f64,
+    },
     /// A saddle is not stationary.
     #[error("a torque of {0:.1e} meV remains on the saddle")]
     Torque(f64),

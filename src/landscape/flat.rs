@@ -1,10 +1,22 @@
 //! Ways between minima that flat valleys join.
 
-use super::{Landscape, is_same_state, turned, turns};
+use super::{Bands, Landscape, is_same_state, turned, turns};
+use crate::band::Band;
+use crate::energy::Evaluator;
+use crate::error::Result;
 use crate::geometry::Direction;
 use crate::path::{COARSE, Path, largest_angle};
 use crate::sphere::SAME;
 use crate::spins::Spins;
+use crate::stationary::FLAT;
+
+/// A way that is lower than this part of c after a little relaxation may be flat.
+const LOW: f64 = 1e-3;
+/// Neighbouring images of a flat way are nearer than minima of a lattice that holds a wall or a soliton fast (rad, any spin): one that is
+/// broader than five sites it does not hold.
+const HOP: f64 = 0.2;
+/// How often a flat way's images are doubled until they are.
+const HALVINGS: usize = 6;
 
 /// A part of a path between two stationary states.
 pub enum Stretch {
@@ -79,13 +91,41 @@ fn turn(land: &Landscape, from: &Spins, to: &Spins) -> Option<Option<Stretch>> {
     }
 }
 
+/// A way between two minima that is flat as far as double precision tells: a soliton on a ring, moved along it. None if it is not.
+pub fn flat_way(bands: &dyn Bands, band: &Band, c: f64) -> Result<Option<Path>> {
+    let h: Evaluator = band.evaluator();
+    let flat = FLAT * h.stiffness_mev();
+    let level = |band: &Band, k: usize| h.difference_mev(band.path().image(k), band.path().image(0)).abs() < flat;
+    let e = band.energies_mev();
+    let low = e.iter().all(|x| (x - e[0]).abs() < LOW * c);
+    if !low || !level(band, band.images() - 1) {
+        return Ok(None);
+    }
+    // images that lie in one minimum each hide what is between these
+    let mut path = band.path().clone();
+    for _ in 0..HALVINGS {
+        let mut band = Band::new(h, path);
+        bands.tightly(&mut band)?;
+        if !(0..band.images()).all(|k| level(&band, k)) {
+            break;
+        }
+        path = band.into_path();
+        if path.largest_rotation() < HOP {
+            return Ok(Some(path));
+        }
+        path = path.doubled();
+    }
+    Ok(None)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::energy::{Anisotropy, EnergyTerm, Hamiltonian};
+    use crate::energy::{Anisotropy, EnergyTerm, Exchange, Hamiltonian};
     use crate::geometry::Direction;
     use crate::landscape::Minimum;
     use crate::lattice::Chain;
+    use crate::stationary::relax_to_minimum;
 
     #[test]
     fn a_way_leads_over_several_valleys_where_it_has_to() {
@@ -106,5 +146,45 @@ mod tests {
         let at = |way: &Stretch, k: usize| way.path().spins(k);
         assert_eq!((at(first, 0), at(first, 2), at(second, 0), at(second, 2)), (a.clone(), b.clone(), b, c));
         assert!(flat_ways(&land, &a, &a).is_empty());
+    }
+
+    /// Leaves bands as they are.
+    struct AsTheyAre;
+
+    impl Bands for AsTheyAre {
+        fn loosely(&self, _: &mut Band) -> Result<()> {
+            Ok(())
+        }
+
+        fn tightly(&self, _: &mut Band) -> Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn images_that_all_lie_in_minima_are_no_flat_way() {
+        let lattice = Chain::open(60).resolve().unwrap();
+        let easy = Anisotropy::uniform(60, 2.5, Direction::Z);
+        let terms: Vec<Box<dyn EnergyTerm>> = vec![Box::new(Exchange::uniform(&lattice, &[10.0])), Box::new(easy)];
+        let hamiltonian = Hamiltonian::new(&lattice, terms).unwrap();
+        let h = (&hamiltonian).into();
+        let wall = |center: f64| {
+            let angle = |i: usize| 2.0 * ((i as f64 - center) / 1.4).exp().atan();
+            let spins: Vec<_> = (0..60).map(|i| [angle(i).sin(), 0.0, angle(i).cos()]).collect();
+            relax_to_minimum(h, &Spins::from_vectors(&spins).unwrap(), 1e-12).unwrap().spins
+        };
+        let path = Path::new(&[28.5, 29.5, 30.5].map(wall));
+        assert!(path.largest_rotation() > 0.5 && path.is_resolved());
+        let mut band = Band::new(h, path);
+        band.evaluate();
+        assert!(band.energies_mev().iter().all(|e| (e - band.energies_mev()[0]).abs() < 1e-10));
+        assert!(flat_way(&AsTheyAre, &band, 10.0).unwrap().is_none());
+        // a turn about the axis is flat however it is looked at
+        let from = wall(29.5);
+        let by = (Direction::Z, 1.0);
+        let turn = turning(&from, turned(&from, &[by]), by, 9);
+        let mut band = Band::new(h, turn);
+        band.evaluate();
+        assert!(flat_way(&AsTheyAre, &band, 10.0).unwrap().is_some_and(|path| path.images() == 9));
     }
 }

@@ -7,7 +7,7 @@
 
 use super::pairs::Pairs;
 use super::places::Places;
-use super::{Minimum, Pass, Saddle, is_same_state, turned, turns};
+use super::{Minimum, Pass, Saddle, Seen, is_same_state, turned, turns};
 use crate::energy::Evaluator;
 use crate::network::Parts;
 use crate::path::{Path, is_within, largest_angle};
@@ -22,7 +22,7 @@ const BESIDE: f64 = 0.05;
 /// so many in a search for a route, and so many in a survey.
 const IMAGES: usize = 64;
 const IMAGE_SPINS: usize = 2_000_000;
-const MINIMA: usize = 1000;
+const MINIMA: usize = 2000;
 const SURVEYED: usize = 10_000;
 
 /// A pass, or an image of one.
@@ -274,12 +274,16 @@ impl<'a> Landscape<'a> {
     }
 
     /// The flat valleys that lead on from a state: those that were found and their images, turned about the symmetry axes.
-    pub(super) fn valleys_from(&self, from: &Spins) -> impl Iterator<Item = Path> {
+    pub(super) fn valleys_from<'l>(&'l self, from: &'l Spins) -> impl Iterator<Item = Path> + 'l {
         let images = || std::iter::once(None).chain(self.operations_known().iter().map(Some));
         let all = self.valleys.iter().flat_map(move |valley| images().map(move |by| (valley, by)));
         let ways = all.flat_map(|(valley, by)| [(valley, by, false), (valley, by, true)]);
-        ways.filter_map(|(valley, by, back)| {
+        let here = Seen::of(self.h, from.as_slice());
+        ways.filter_map(move |(valley, by, back)| {
             let last = valley.images() - 1;
+            if !here.may_be(by, valley.image(if back { last } else { 0 })) {
+                return None;
+            }
             let image = |k: usize| {
                 let m = valley.image(if back { last - k } else { k });
                 Spins::from_unit_components(&by.map_or_else(|| m.to_vec(), |by| by.apply(m)))

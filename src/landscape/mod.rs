@@ -21,6 +21,7 @@
 //! the energy's symmetry group makes of a minimum or a pass. *Orbit*: a minimum with its images.
 
 mod assemble;
+mod bound;
 mod connect;
 mod doubt;
 mod flat;
@@ -39,6 +40,7 @@ mod ways;
 mod zoom;
 
 pub use assemble::{Assembled, assemble};
+pub use bound::highest_between;
 pub use connect::{Bands, Connector};
 pub use doubt::{Doubt, PathEnd};
 pub use graph::{Edge, Landscape, Route};

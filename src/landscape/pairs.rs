@@ -5,10 +5,9 @@
 //! doi:10.1063/1.1931587.)
 
 use super::{Landscape, turned, turns};
-use crate::geometry::Direction;
+use crate::field::Components;
 use crate::linalg::slab;
-use crate::path::guess::best_turn;
-use crate::sphere::SAME;
+use crate::sphere::{SAME, best_overlap};
 use std::collections::BTreeMap;
 
 /// A pair that was tried k times counts as (1 + k)⁴ times as far.
@@ -17,7 +16,7 @@ const TIRED: i32 = 4;
 /// What is known of pairs of minima.
 #[derive(Debug, Default)]
 pub(super) struct Pairs {
-    /// Squares of distances of minimum k from those before it, as far as they were asked for; NaN where they were not.
+    /// Squares of distances of minimum k from all others, as far as they were asked for; NaN where they were not.
     apart: Vec<Vec<f64>>,
     /// How often each was tried, it or an image of it by symmetry: the orbits of the two, and the square of their distance.
     tried: BTreeMap<([usize; 2], i64), usize>,
@@ -36,21 +35,21 @@ impl Landscape<'_> {
         let [a, b] = [a.min(b), a.max(b)].map(|k| &self.minima()[k].spins);
         let together = match self.evaluator().symmetry_axes() {
             [] => slab::dot(a.as_slice(), b.as_slice()),
-            [axis] if let Ok(axis) = Direction::new(*axis) => best_turn(a, b, axis).1,
+            [axis] => best_overlap(Components::new(a.as_slice()), Components::new(b.as_slice()), *axis),
             _ => slab::dot(a.as_slice(), turned(b, &turns(self.evaluator(), b, a)).as_slice()),
         };
         2.0 * (a.sites() as f64 - together).max(0.0)
     }
 
-    fn known_distance(&self, pairs: &mut Pairs, [a, b]: [usize; 2]) -> f64 {
-        let (a, b) = (a.min(b), a.max(b));
-        if pairs.apart[b].is_empty() {
-            pairs.apart[b] = vec![f64::NAN; b];
+    fn known_distance(&self, pairs: &mut Pairs, [here, there]: [usize; 2]) -> f64 {
+        if pairs.apart[here].len() <= there {
+            pairs.apart[here].resize(self.minima().len(), f64::NAN);
         }
-        if pairs.apart[b][a].is_nan() {
-            pairs.apart[b][a] = self.squared_distance([a, b]);
+        if pairs.apart[here][there].is_nan() {
+            let other_way = pairs.apart[there].get(here).copied().filter(|squared| !squared.is_nan());
+            pairs.apart[here][there] = other_way.unwrap_or_else(|| self.squared_distance([here, there]));
         }
-        pairs.apart[b][a]
+        pairs.apart[here][there]
     }
 
     /// How often a pair was tried; one time more from now on.
@@ -96,11 +95,12 @@ impl Landscape<'_> {
                 break;
             }
             for &there in &open {
-                let mut step = 0.0;
-                if part[here] != part[there] {
-                    let squared = self.known_distance(&mut pairs, [here, there]);
-                    let tried = self.tries(&pairs, [here, there], squared);
-                    step = if tried < tries { tired(squared, tried) } else { f64::INFINITY };
+                let is_apart = part[here] != part[there];
+                let mut step = if is_apart { self.known_distance(&mut pairs, [here, there]) } else { 0.0 };
+                // most are far from here however often they were tried
+                if is_apart && far[here] + step < far[there] {
+                    let tried = self.tries(&pairs, [here, there], step);
+                    step = if tried < tries { tired(step, tried) } else { f64::INFINITY };
                 }
                 if far[here] + step < far[there] {
                     (far[there], before[there]) = (far[here] + step, here);

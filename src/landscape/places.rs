@@ -24,8 +24,10 @@ impl Places {
 
     /// Whether one of them makes `b` of `a`, perhaps with a rotation about the symmetry axes.
     pub fn join(&self, h: Evaluator, a: &[f64], b: &[f64]) -> bool {
-        let seen = Seen::of(h, b);
-        self.0.iter().any(|by| seen.is_made(by, a))
+        !self.0.is_empty() && {
+            let seen = Seen::of(h, b);
+            self.0.iter().any(|by| seen.is_made(by, a))
+        }
     }
 
     /// At how many places a state may be.
@@ -55,14 +57,14 @@ impl<'a> Seen<'a> {
 
     /// Whether an operation makes it of another state, perhaps with a rotation about the symmetry axes.
     pub fn is_made(&self, by: &Operation, of: &[f64]) -> bool {
-        self.may_be(by, of) && is_same_state(self.h, &by.apply(of), self.m)
+        self.may_be(Some(by), of) && is_same_state(self.h, &by.apply(of), self.m)
     }
 
-    /// Whether it may: what no rotation about the symmetry axes changes is compared.
-    fn may_be(&self, by: &Operation, of: &[f64]) -> bool {
+    /// Whether an operation, or none, may make it of another state: what no rotation about the symmetry axes changes is compared.
+    pub fn may_be(&self, by: Option<&Operation>, of: &[f64]) -> bool {
         let [own, from] = [self.m, of].map(Components::new);
         let sites = own.sites();
-        let off = |i: usize| vector::sub(by.at(from, i), own.get(i));
+        let off = |i: usize| vector::sub(by.map_or_else(|| from.get(i), |by| by.at(from, i)), own.get(i));
         let is_off = |i: usize| match self.h.symmetry_axes() {
             [] => vector::norm(off(i)) > SAME,
             [axis] => vector::dot(*axis, off(i)).abs() > SAME,

@@ -14,7 +14,7 @@ pub fn turns(h: Evaluator, from: &Spins, to: &Spins) -> Vec<(Direction, f64)> {
     let mut turns = Vec::new();
     for _ in 0..if axes.len() > 1 { 4 } else { 1 } {
         for axis in &axes {
-            let (angle, _) = best_turn(&now, to, *axis);
+            let angle = best_turn(&now, to, *axis);
             now = rotated(&now, *axis, angle);
             turns.push((*axis, angle));
         }

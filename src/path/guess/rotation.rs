@@ -40,20 +40,16 @@ impl Described for Rotation {
 /// Turns and eigenvalues that differ by less, relative to what they are made of, are as good as one another.
 const AS_GOOD: f64 = 1e-9;
 
-/// The angle of the turn about an axis that brings a nearest to b (rad, −π to π), and Σ b·R a after it. Where no angle is better
-/// than another it is a half turn, or none if no spin has a part normal to the axis.
-pub fn best_turn(a: &Spins, b: &Spins, axis: Direction) -> (f64, f64) {
+/// The angle of the turn about an axis that brings a nearest to b (rad, −π to π). Where no angle is better than another it is a half turn, or none if no spin has a part normal to the axis.
+pub fn best_turn(a: &Spins, b: &Spins, axis: Direction) -> f64 {
     turn(Components::new(a.as_slice()), Components::new(b.as_slice()), axis)
 }
 
-fn turn(a: Components, b: Components, axis: Direction) -> (f64, f64) {
+fn turn(a: Components, b: Components, axis: Direction) -> f64 {
     let k = axis.vector();
     let (sine, cosine) = turn_towards(a, b, k);
-    let (mut fixed, mut lever) = (0.0, 0.0);
-    for (p, q) in (0..a.sites()).map(|i| (a.get(i), b.get(i))) {
-        fixed += vector::dot(k, p) * vector::dot(k, q);
-        lever += vector::norm(vector::cross(k, p)) * vector::norm(vector::cross(k, q));
-    }
+    let levers = |m: Components, i: usize| vector::norm(vector::cross(k, m.get(i)));
+    let lever: f64 = (0..a.sites()).map(|i| levers(a, i) * levers(b, i)).sum();
     let size = (sine * sine + cosine * cosine).sqrt();
     let angle = if lever < AS_GOOD * a.sites() as f64 {
         0.0
@@ -63,7 +59,7 @@ fn turn(a: Components, b: Components, axis: Direction) -> (f64, f64) {
         libm::atan2(sine, cosine)
     };
     // a half turn that rounding made −π is right-handed
-    (if angle < AS_GOOD - PI { PI } else { angle }, size + fixed)
+    if angle < AS_GOOD - PI { PI } else { angle }
 }
 
 /// Axis and angle of the rotation that brings a nearest to b; of several as good, one near a turn about `axis`.
@@ -87,7 +83,7 @@ fn best_rotation(a: Components, b: Components, axis: Direction) -> (Direction, f
         values.iter().zip(&vectors).filter(|(v, _)| **v >= values[3] - tolerance).map(|(_, q)| q).collect();
     let mut rotation = [0.0; 4];
     for k in [axis, next_axis(axis), next_axis(next_axis(axis))] {
-        let wanted = Quaternion::from_axis_angle(k, turn(a, b, k).0).components();
+        let wanted = Quaternion::from_axis_angle(k, turn(a, b, k)).components();
         rotation = [0.0; 4];
         for q in &best {
             let overlap: f64 = q.iter().zip(&wanted).map(|(x, y)| x * y).sum();
@@ -115,7 +111,7 @@ impl FirstGuess for Rotation {
         let (p, q) = (free(a), free(b));
         let (p, q) = (Components::new(&p), Components::new(&q));
         let (axis, angle) = match self.axis {
-            Some(axis) => (axis, turn(p, q, axis).0),
+            Some(axis) => (axis, turn(p, q, axis)),
             None => best_rotation(p, q, context.default_axis),
         };
         let back = Quaternion::from_axis_angle(axis, -angle);
