@@ -16,6 +16,10 @@ use std::path::{Path, PathBuf};
 
 /// All figures of one result, or one figure of several.
 pub fn plot(arguments: &Plot) -> Result<u8> {
+    if let Some((out, ending)) = arguments.out.as_ref().and_then(|out| Some((out, not_drawn(out)?))) {
+        note(&format!("error: --out {}: found {ending:?}, expected svg or png, or a folder", out.display()));
+        return Ok(USAGE);
+    }
     match &arguments.results[..] {
         [one] => single(arguments, one),
         _ => several(arguments),
@@ -184,6 +188,13 @@ fn pictures(arguments: &Plot) -> Vec<Picture> {
 /// The format that a file's name stands for.
 fn picture_of(path: &Path) -> Option<Picture> {
     path.extension().and_then(|ending| picture(&ending.to_string_lossy()).ok())
+}
+
+/// The ending of a picture of another kind than can be drawn: no folder is meant by that.
+fn not_drawn(path: &Path) -> Option<String> {
+    const OTHERS: [&str; 9] = ["bmp", "eps", "gif", "jpeg", "jpg", "pdf", "ps", "tiff", "webp"];
+    let ending = path.extension()?.to_string_lossy().to_ascii_lowercase();
+    (OTHERS.contains(&ending.as_str()) && !path.is_dir()).then_some(ending)
 }
 
 /// `svg` or `png`.
