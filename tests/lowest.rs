@@ -95,9 +95,15 @@ fn no_route_is_higher_than_the_path_that_it_is_for() {
             {"anisotropy": {"K": "2.0673683363429225 meV", "axis": [0, 0, 1]}},
             {"anisotropy": {"K": "-0.8788192774338054 meV", "axis": [1, 0, 0]}},
         ]);
-        let outcome = solve(&chain(sites, true, energy, up(), down()), Effort::None);
+        let mut config = chain(sites, true, energy, up(), down());
+        let outcome = solve(&config, Effort::None);
         assert!((certified(&outcome) - 25.2438).abs() < 1e-3, "{sites} {}", certified(&outcome));
         assert!(outcome.work.force_evaluations < 200_000, "{}", outcome.work.force_evaluations);
+        // where no work is left to find the saddle, the barrier is not certified and the path's height is told
+        config["neb"] = json!({"max_evaluations": 200});
+        let outcome = solve(&config, Effort::None);
+        let told = |w: &String| w.starts_with("not certified") && w.contains("a path that stays below 25.");
+        assert!(!outcome.certified && outcome.warnings.iter().any(told), "{:?}", outcome.warnings);
     }
 }
 

@@ -240,13 +240,13 @@ impl<'a> Run<'a, '_> {
             context: self.context(),
         };
         let gap = connector.connect(&mut self.land, self.minima)?;
-        let slack = slack(&c.band);
-        if gap.is_some() || self.route_mev() <= c.peak_mev() + slack {
+        let (slack, route_mev) = (slack(&c.band), self.route_mev());
+        if gap.is_some() || route_mev <= c.top_mev() + slack {
             return Ok(gap);
         }
         // few images may lead around saddles that a finer look finds
-        let path_mev = highest_between(self.problem.evaluator(), c.band.path()) + slack;
-        if self.route_mev() > path_mev {
+        let path_mev = highest_between(&c.band, route_mev - slack) + slack;
+        if route_mev > path_mev {
             Connector { below_mev: path_mev, ..connector }.connect(&mut self.land, self.minima)?;
         }
         let route_mev = self.route_mev();

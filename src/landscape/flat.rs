@@ -16,7 +16,7 @@ const LOW: f64 = 1e-3;
 /// broader than five sites it does not hold.
 const HOP: f64 = 0.2;
 /// How often a flat way's images are doubled until they are.
-const HALVINGS: usize = 6;
+const DOUBLINGS: usize = 6;
 
 /// A part of a path between two stationary states.
 pub enum Stretch {
@@ -103,7 +103,7 @@ pub fn flat_way(bands: &dyn Bands, band: &Band, c: f64) -> Result<Option<Path>> 
     }
     // images that lie in one minimum each hide what is between these
     let mut path = band.path().clone();
-    for _ in 0..HALVINGS {
+    for _ in 0..DOUBLINGS {
         let mut band = Band::new(h, path);
         bands.tightly(&mut band)?;
         if !(0..band.images()).all(|k| level(&band, k)) {
