@@ -184,7 +184,7 @@ fn stored_link(h: Evaluator, saddle: &SaddlePoint, beside: &[Minimum]) -> Pass {
     let index = spectrum.negative;
     let refined = Refined { arrived: true, state, valley, factorisations: 0, index, spectrum: Some(spectrum.clone()) };
     Pass {
-        saddle: Saddle { top, refined },
+        saddle: Saddle::new(top, refined),
         spectrum,
         before,
         after,

@@ -8,10 +8,12 @@ use super::run::{FEWEST_IMAGES, Run};
 use super::settled::Settled;
 use crate::band::Band;
 use crate::error::Result;
-use crate::landscape::{Assembled, Connector, Doubt, Minimum, Pass, PathEnd, Saddle, assemble, highest_between, peaks};
+use crate::landscape::{
+    Assembled, Connector, Doubt, Minimum, Pass, PathEnd, Peak, Saddle, assemble, highest_between, peaks,
+};
 use crate::path::{RESOLVED, distance, is_within};
 use crate::sphere::SAME;
-use crate::stationary::LOWER;
+use crate::stationary::{FLAT, LOWER};
 
 /// Most images of an automatic path.
 const MOST_IMAGES: usize = 2001;
@@ -280,7 +282,7 @@ impl<'a> Run<'a, '_> {
         }
     }
 
-    /// Every maximum within a tenth of the highest, refined; saddles found twice count once.
+    /// Every maximum within a tenth of the highest, refined, one of a plateau; saddles found twice count once.
     fn all_saddles(&mut self, c: &FirstPath<'a>) -> Result<Vec<Saddle>> {
         let scale = self.scales.stiffness_mev;
         if !self.problem.seeks_saddles() {
@@ -291,9 +293,12 @@ impl<'a> Run<'a, '_> {
         let tops = peaks(&c.band, scale);
         let least = tops.first().map_or(0.0, |top| top.energy_mev) - WINDOW * height(&c.band);
         for top in tops.into_iter().filter(|top| top.energy_mev >= least) {
+            if found.iter().any(|f| is_level(&c.band, [&f.top, &top], scale)) {
+                continue;
+            }
             let from_there = |f: &&Saddle| f.top.m == top.m && f.top.tau == top.tau;
             let f = match c.found.as_ref().filter(|f| is_seated(&c.band, top.image, f) || from_there(f)) {
-                Some(f) => Saddle { top, refined: f.refined.clone() },
+                Some(f) => Saddle { top: top.into(), refined: f.refined.clone() },
                 None => Saddle::recorded(h, top)?,
             };
             if f.is_saddle(scale) && !found.iter().any(|g| is_within(g.spins(), f.spins(), SAME)) {
@@ -327,6 +332,14 @@ impl<'a> Run<'a, '_> {
             self.relax(c, Goal::Loose, evaluations + 40)?;
         }
     }
+}
+
+/// Whether two maxima of a band are of one plateau, which is level to rounding.
+fn is_level(band: &Band, tops: [&Peak; 2], c: f64) -> bool {
+    let [i, j] = tops.map(|top| top.image);
+    let heights = tops.map(|top| top.energy_mev);
+    let all = heights.iter().chain(&band.energies_mev()[i.min(j)..=i.max(j)]);
+    all.into_iter().all(|e| (e - heights[0]).abs() < FLAT * c)
 }
 
 /// Whether a saddle is image k of a band, and higher than its neighbours.

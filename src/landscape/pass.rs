@@ -9,6 +9,7 @@ use crate::spins::Spins;
 use crate::stationary::{FLAT, RELAXED, ROUGHLY, Refined, Spectrum, descend, lowest_eigenvalues_mev, relax_to_minimum};
 use crate::symmetry::{Group, Operation};
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// How many eigenvalues of a saddle are reported.
 const REPORTED: usize = 4;
@@ -47,7 +48,7 @@ pub struct Pass {
     /// How far the energy fell on either side (meV).
     pub fallen_mev: [f64; 2],
     /// The descents: states on the way down to `before` and to `after`, without the two ends.
-    pub ways: [Vec<Spins>; 2],
+    pub ways: [Arc<Vec<Spins>>; 2],
     /// What lies on its two sides was given, not found by descents.
     pub given: bool,
 }
@@ -73,7 +74,7 @@ impl Pass {
         let spectrum = saddle.refined.spectrum.clone().unwrap_or_else(|| Spectrum::of(h, state, 0));
         let sides = rayon::join(|| side(-1.0), || side(1.0));
         let ((before, f, back), (after, g, on)) = (sides.0?, sides.1?);
-        Ok(Pass { spectrum, before, after, fallen_mev: [f, g], ways: [back, on], saddle, given: false })
+        Ok(Pass { spectrum, before, after, fallen_mev: [f, g], ways: [back, on].map(Arc::new), saddle, given: false })
     }
 
     /// A saddle whose spectrum alone tells that it is one, between ends that are kept as they are, minima or not. Nothing if its
@@ -100,7 +101,7 @@ impl Pass {
     /// The saddle's lowest eigenvalues (meV), ascending, as many as are reported: what takes longest to find of all that is told of
     /// it, and no search asks for it.
     pub fn lowest_eigenvalues_mev(&self, h: Evaluator) -> Vec<f64> {
-        let Refined { state, valley, spectrum, .. } = &self.saddle.refined;
+        let Refined { state, valley, spectrum, .. } = &*self.saddle.refined;
         // the direction in which it falls is a mode where a search found it as one
         let lowest = spectrum.as_ref().map(|_| state.basis.coordinates(valley));
         lowest_eigenvalues_mev(h, state, REPORTED, lowest.as_slice())
@@ -127,7 +128,7 @@ impl Pass {
             spectrum: self.spectrum.clone(),
             before: self.before.image(operation),
             after: self.after.image(operation),
-            ways: self.ways.each_ref().map(|way| way.iter().map(spins).collect()),
+            ways: self.ways.each_ref().map(|way| Arc::new(way.iter().map(spins).collect())),
             ..*self
         }
     }

@@ -96,10 +96,13 @@ fn between(band: &Band, profile: &Profile, x: &Extremum, c: f64) -> Peak {
     blend(a, b, x.fraction, &mut m);
     let tau = if x.fraction < 0.5 { direction(&m, b, 1.0) } else { direction(&m, a, -1.0) };
     let image = if x.fraction < 0.5 { x.interval } else { x.interval + 1 };
-    let energy_mev = x.energy + band.energies_mev()[0];
+    let e = band.energies_mev();
     // of the energy that is there: the interpolation may overshoot
-    let floor_mev =
-        floor(band, band.evaluator().difference_mev(&m, band.path().image(0)) + band.energies_mev()[0], image, c);
+    let floor_mev = floor(band, band.evaluator().difference_mev(&m, band.path().image(0)) + e[0], image, c);
+    let interpolated_mev = x.energy + e[0];
+    // where the great circle between images that are far apart leads over the valley, these tell more
+    let leads_over = interpolated_mev < floor_mev;
+    let energy_mev = if leads_over { e[x.interval].max(e[x.interval + 1]) } else { interpolated_mev };
     Peak {
         m,
         tau,

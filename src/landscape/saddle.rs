@@ -6,21 +6,27 @@ use crate::error::Result;
 use crate::stationary::{self, ALIKE, Climb, Limits, Refined, STATIONARY, State, climb, refine};
 use crate::symmetry::Operation;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
-/// Where a refined saddle was looked for, and what was found.
+/// Where a refined saddle was looked for, and what was found: shared by all that hold the saddle, as both are large.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Saddle {
     /// The start.
-    pub top: Peak,
+    pub top: Arc<Peak>,
     /// The end.
-    pub refined: Refined,
+    pub refined: Arc<Refined>,
 }
 
 impl Saddle {
+    /// Of a start and an end.
+    pub fn new(top: Peak, refined: Refined) -> Saddle {
+        Saddle { top: Arc::new(top), refined: Arc::new(refined) }
+    }
+
     /// Refines a top.
     pub fn at(h: Evaluator, top: Peak) -> Saddle {
         let refined = refine(h, &top.m, &top.tau, top.floor_mev);
-        Saddle { top, refined }
+        Saddle::new(top, refined)
     }
 
     /// The saddle of index one that a climb from any state leads to, if it leads to one within the limits.
@@ -37,7 +43,7 @@ impl Saddle {
         };
         let refined =
             Refined { arrived: true, valley: mode, factorisations, index: 1, spectrum: Some(spectrum), state };
-        Some(Saddle { top, refined })
+        Some(Saddle::new(top, refined))
     }
 
     /// Its spins (3N).
@@ -51,10 +57,8 @@ impl Saddle {
         let (m, tau) = (operation.apply(&top.m), operation.apply_field(&top.tau));
         let state = State::at(h, operation.apply(self.spins()));
         let valley = operation.apply_field(&refined.valley);
-        Saddle {
-            top: Peak { m, tau, ..*top },
-            refined: Refined { state, valley, spectrum: refined.spectrum.clone(), ..*refined },
-        }
+        let spectrum = refined.spectrum.clone();
+        Saddle::new(Peak { m, tau, ..**top }, Refined { state, valley, spectrum, ..**refined })
     }
 
     /// The same, as far as it is not on record.

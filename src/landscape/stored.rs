@@ -6,6 +6,7 @@ use crate::energy::{Evaluator, Stored};
 use crate::record::MOST;
 use crate::spins::{Spins, are_unit};
 use crate::stationary::{Refined, Spectrum, State};
+use std::sync::Arc;
 
 /// Largest size of a number that is computed with.
 const LARGEST: f64 = 1e100;
@@ -37,8 +38,8 @@ fn is_tangent(h: Evaluator, v: &[f64]) -> bool {
 
 impl Stored for Saddle {
     fn restored(mut self, h: Evaluator) -> Option<Self> {
-        let Saddle { top: Peak { m, tau, energy_mev, s, image, floor_mev }, refined } = &mut self;
-        let Refined { state, valley, factorisations, index, spectrum, .. } = refined;
+        let Peak { m, tau, energy_mev, s, image, floor_mev } = &*self.top;
+        let Refined { state, valley, factorisations, index, spectrum, .. } = Arc::make_mut(&mut self.refined);
         let is_sound = are_spins(h, m)
             && are_spins(h, &state.m)
             && is_tangent(h, tau)
@@ -76,7 +77,7 @@ impl Stored for Minimum {
 
 impl Stored for Pass {
     fn restored(self, h: Evaluator) -> Option<Self> {
-        self.ways.iter().flatten().all(|spins| fit(h, spins)).then_some(())?;
+        self.ways.iter().flat_map(|way| way.iter()).all(|spins| fit(h, spins)).then_some(())?;
         Some(Pass {
             saddle: self.saddle.restored(h)?,
             spectrum: self.spectrum.restored(h)?,
