@@ -5,47 +5,87 @@ use super::{Check, USAGE, report, worse};
 use crate::config::estimate::Estimate;
 use crate::config::neighbours::{Shell, shells};
 use crate::config::physics::Physics;
-use crate::config::{Loaded, PartMaterial, expected_images, load, memory, needed_bytes};
+use crate::config::{Loaded, PartMaterial, expected_images, load, load_landscape, memory, needed_bytes};
+use crate::drive::survey::SurveyProblem;
 use crate::drive::{Images, Problem, Scales};
 use crate::lattice::Lattice;
 use crate::rates::RateSettings;
 use crate::units::Length;
 use anyhow::Result;
 use std::io::{self, Write};
+use std::path::Path;
 
 /// Checks all configs and prints what each would run.
 pub fn check(arguments: &Check) -> Result<u8> {
     let mut code = 0;
     for path in &arguments.configs {
-        let checked = load(path, &arguments.set).and_then(|loaded| Ok((loaded.problem()?, loaded)));
-        match checked {
-            Ok((problem, loaded)) => print(&mut io::stdout().lock(), &loaded, &problem)?,
+        let out = &mut io::stdout().lock();
+        match checked(path, &arguments.set) {
+            Ok(Checked::Run(loaded, problem)) => print(out, &loaded, "valid", &report_of(&loaded, &problem))?,
+            Ok(Checked::Landscape(loaded, asked)) => {
+                print(out, &loaded, "valid for `spinneb landscape`", &report_of_landscape(&loaded, &asked))?;
+            }
             Err(error) => code = worse(code, report(&error.into()).max(USAGE)),
         }
     }
     Ok(code)
 }
 
-fn print(out: &mut impl Write, loaded: &Loaded, problem: &Problem) -> io::Result<()> {
-    writeln!(out, "{}: valid", loaded.text.file)?;
-    report_of(loaded, problem).iter().try_for_each(|(key, value)| writeln!(out, "  {key:<13}{value}"))
+/// What a config is for.
+enum Checked {
+    /// A path between its two ends.
+    Run(Box<Loaded>, Box<Problem>),
+    /// A landscape alone: it has no two ends.
+    Landscape(Box<Loaded>, Box<SurveyProblem>),
+}
+
+fn checked(path: &Path, set: &[String]) -> crate::error::Result<Checked> {
+    let error = match load(path, set).and_then(|loaded| Ok((loaded.problem()?, loaded))) {
+        Ok((problem, loaded)) => return Ok(Checked::Run(Box::new(loaded), Box::new(problem))),
+        Err(error) => error,
+    };
+    let without_ends = || {
+        // read twice, it has to be a file; ends that are there are wrong for a landscape too
+        let loaded = load_landscape(path, set).ok()?;
+        let asked = loaded.survey().ok()?;
+        let is_one = path != Path::new("-") && loaded.config.landscape.is_some();
+        is_one.then(|| Checked::Landscape(Box::new(loaded), Box::new(asked)))
+    };
+    without_ends().ok_or(error)
+}
+
+fn print(out: &mut impl Write, loaded: &Loaded, verdict: &str, rows: &[(&'static str, String)]) -> io::Result<()> {
+    writeln!(out, "{}: {verdict}", loaded.text.file)?;
+    rows.iter().try_for_each(|(key, value)| writeln!(out, "  {key:<13}{value}"))
+}
+
+/// What a landscape's config asks for, as rows of a key and a value.
+fn report_of_landscape(loaded: &Loaded, asked: &SurveyProblem) -> Vec<(&'static str, String)> {
+    let problem = &asked.problem;
+    let scales = Scales::of_terms(&problem.hamiltonian);
+    let mut rows = lattice_rows(loaded, problem);
+    rows.extend(scale_rows(loaded, problem, &scales));
+    let given = loaded.config.landscape.as_ref().map_or(0, |own| own.states.len());
+    if given > 0 {
+        rows.push(("states", format!("{given} to start from")));
+    }
+    if asked.window_mev.is_finite() {
+        rows.push(("window", format!("{} meV above the lowest minimum", asked.window_mev)));
+    }
+    if !asked.groups.is_empty() {
+        let names: Vec<&str> = asked.groups.iter().map(|(name, _)| name.as_str()).collect();
+        rows.push(("groups", names.join(", ")));
+    }
+    rows.extend(asked.rates.as_ref().map(|rates| ("rates", asked_for(rates))));
+    rows
 }
 
 /// What a config would run, as rows of a key and a value; a row without a key goes on with the one before.
 pub fn report_of(loaded: &Loaded, problem: &Problem) -> Vec<(&'static str, String)> {
     let h = &problem.hamiltonian;
     let scales = Scales::of_terms(h);
-    let mut rows = Vec::new();
+    let mut rows = lattice_rows(loaded, problem);
     let mut row = |key: &'static str, value: String| rows.push((key, value));
-    row("name", loaded.name.clone());
-    row("material", material(loaded));
-    row("lattice", lattice(loaded));
-    for (k, line) in drawing(&loaded.lattice).into_iter().enumerate() {
-        row(if k == 0 { "geometry" } else { "" }, line);
-    }
-    for (k, shell) in shells(h).iter().enumerate() {
-        row(if k == 0 { "shells" } else { "" }, neighbours(h.lattice(), shell));
-    }
     let states = [problem.initial.as_slice(), problem.final_state.as_slice()].map(|m| h.energies_mev(m));
     let numbers = |x: f64| format!("{x:>16.6}");
     row("energies", format!("{:<20}{:>16}{:>16}", "as given (meV)", "initial", "final"));
@@ -54,16 +94,8 @@ pub fn report_of(loaded: &Loaded, problem: &Problem) -> Vec<(&'static str, Strin
     }
     let total = |k: usize| numbers(states[k].iter().map(|(_, e)| e).sum());
     row("", format!("{:<20}{}{}", "total", total(0), total(1)));
-    let physics = Physics::of(loaded, problem, &scales);
-    row("stiffness", format!("{:.6} meV (softest mode of a stable spin)", scales.stiffness_mev));
-    row("exchange", format!("{:.6} meV {}", scales.exchange_mev, stiffness_of(h.lattice())));
-    if let Some(length) = physics.exchange_length_nm {
-        row("l_ex", format!("{length:.4} nm (exchange length √(2A/μ₀Ms²))"));
-    }
-    row("wall width", wall_width(&physics, h.lattice()));
-    row("wall energy", wall_energy(&physics));
-    row("site barrier", site_barrier(&physics));
-    row("dominant", dominant(&physics));
+    rows.extend(scale_rows(loaded, problem, &scales));
+    let mut row = |key: &'static str, value: String| rows.push((key, value));
     row("ends", if problem.relax_ends { "relaxed to minima first" } else { "kept as given" }.into());
     row("guess", problem.guess.as_ref().map_or("all natural ones".into(), |g| g.name().into()));
     row("images", images(problem, &scales));
@@ -76,12 +108,43 @@ pub fn report_of(loaded: &Loaded, problem: &Problem) -> Vec<(&'static str, Strin
     let seconds = estimate.processor_seconds(loaded, problem, &scales);
     row("time", format!("about {} of one processor, by a measured step", duration(seconds)));
     let mut said: Vec<&String> = Vec::new();
+    let physics = Physics::of(loaded, problem, &scales);
     for warning in physics.warnings.iter().chain(&loaded.warnings).chain(&problem.warnings) {
         if !said.contains(&warning) {
             said.push(warning);
             row("warning", warning.clone());
         }
     }
+    rows
+}
+
+/// What there is: name, material, lattice, bonds.
+fn lattice_rows(loaded: &Loaded, problem: &Problem) -> Vec<(&'static str, String)> {
+    let h = &problem.hamiltonian;
+    let mut rows = vec![("name", loaded.name.clone()), ("material", material(loaded)), ("lattice", lattice(loaded))];
+    let mut list = |key: &'static str, lines: Vec<String>| {
+        rows.extend(lines.into_iter().enumerate().map(|(k, line)| (if k == 0 { key } else { "" }, line)));
+    };
+    list("geometry", drawing(&loaded.lattice));
+    list("shells", shells(h).iter().map(|shell| neighbours(h.lattice(), shell)).collect());
+    rows
+}
+
+/// How stiff it is, and what walls in it are like.
+fn scale_rows(loaded: &Loaded, problem: &Problem, scales: &Scales) -> Vec<(&'static str, String)> {
+    let h = &problem.hamiltonian;
+    let mut rows = Vec::new();
+    let mut row = |key: &'static str, value: String| rows.push((key, value));
+    let physics = Physics::of(loaded, problem, scales);
+    row("stiffness", format!("{:.6} meV (softest mode of a stable spin)", scales.stiffness_mev));
+    row("exchange", format!("{:.6} meV {}", scales.exchange_mev, stiffness_of(h.lattice())));
+    if let Some(length) = physics.exchange_length_nm {
+        row("l_ex", format!("{length:.4} nm (exchange length √(2A/μ₀Ms²))"));
+    }
+    row("wall width", wall_width(&physics, h.lattice()));
+    row("wall energy", wall_energy(&physics));
+    row("site barrier", site_barrier(&physics));
+    row("dominant", dominant(&physics));
     rows
 }
 

@@ -124,6 +124,7 @@ impl Loaded {
                 if p == q {
                     continue;
                 }
+                // of a bond that leaves a part half belongs to it
                 let [a, b] = [p, q].map(|k| mev(&exchange[k], i));
                 [shares[p][i], shares[q][i]] = match a * b > 0.0 {
                     true => [b / (a + b), a / (a + b)],
@@ -131,7 +132,7 @@ impl Loaded {
                     // beyond the nearest neighbours the mean with nothing is nothing
                     false if family.shell > 1 && a * b == 0.0 => [0.0; 2],
                     false if mev(&given, i) != 0.0 => [0.0; 2],
-                    false => return Err(self.apart([i, j], family.shell, [p, q], [a, b])),
+                    false => return Err(self.apart([i, j], family.shell, [p, q], [2.0 * a, 2.0 * b])),
                 };
             }
             parts.iter_mut().zip(shares).for_each(|(part, shares)| part.shares.push((family.hop, shares)));

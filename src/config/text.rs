@@ -196,11 +196,18 @@ fn suggestion(one: &str, many: &str, found: &str, known: &[&str]) -> String {
     }
 }
 
+/// Whether a document is an object that has this key.
+fn has_key(text: &str, key: &str) -> bool {
+    serde_json::from_str::<serde_json::Value>(text).is_ok_and(|document| document.get(key).is_some())
+}
+
 /// serde's other messages in plain words; what a type says itself is left as it is.
 fn plain(said: &str, text: &str, node: &Node) -> String {
     let word = |prefix: &str| said.strip_prefix(prefix).and_then(|rest| rest.strip_suffix('`'));
     if let Some(key) = missing(said) {
-        return format!("key \"{key}\" is missing");
+        let of_a_landscape = ["initial", "final"].contains(&key) && has_key(text, "landscape");
+        let way_out = if of_a_landscape { " (`spinneb landscape` takes a config without it)" } else { "" };
+        return format!("key \"{key}\" is missing{way_out}");
     }
     if let Some(key) = word("duplicate field `") {
         return format!("key \"{key}\" appears twice");

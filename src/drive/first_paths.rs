@@ -45,7 +45,11 @@ impl<'a> Run<'a, '_> {
             self.observer.stage(&format!("first path: {name}"));
             let mut c = self.start(name, guess, noise.as_ref(), None, TRIAL)?;
             c.band.rest();
+            let left = self.left(c.band.images());
             tried.push(c);
+            if left == 0 {
+                break;
+            }
         }
         tried.sort_by(|p, q| p.peak_mev().total_cmp(&q.peak_mev()));
         let scale = self.scales.stiffness_mev;
@@ -90,7 +94,7 @@ impl<'a> Run<'a, '_> {
             if relaxes && !c.stop.is_converged() {
                 self.relax(c, Goal::Loose, c.band.evaluations() + LOOSELY)?;
             }
-            if !self.problem.seeks_saddles() {
+            if !self.problem.seeks_saddles() || self.left(c.band.images()) == 0 {
                 break;
             }
             let h = c.band.evaluator();

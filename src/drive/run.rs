@@ -171,7 +171,8 @@ impl<'a, 'o> Run<'a, 'o> {
     }
 
     pub(super) fn relax(&mut self, c: &mut FirstPath<'a>, goal: Goal, limit: usize) -> Result<()> {
-        let limit = limit.min(self.problem.neb.max_evaluations);
+        let left = self.left(c.band.images()) / c.band.images();
+        let limit = limit.min(self.problem.neb.max_evaluations).min(c.band.evaluations() + left);
         let mut relaxation = Relaxation {
             settings: &self.problem.neb,
             climb: self.problem.neb.climb && !self.problem.refine,
@@ -186,6 +187,12 @@ impl<'a, 'o> Run<'a, 'o> {
         self.observer.relaxed(c.band.path(), &c.history);
         c.stop = stop?;
         Ok(())
+    }
+
+    /// How many evaluations of single states are left of what a path of so many images may take with all that is done for it.
+    pub(super) fn left(&self, images: usize) -> usize {
+        let allowed = self.problem.neb.max_evaluations.saturating_mul(images);
+        allowed.saturating_sub(self.problem.evaluator().evaluated().evaluations)
     }
 
     fn prepared(&self) -> Prepared<'_> {

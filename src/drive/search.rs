@@ -90,9 +90,7 @@ impl<'a> Run<'a, '_> {
         let h = self.problem.evaluator();
         let own = h.evaluated();
         let hessians = (FLOPS / factorisation_flops(&h)) as usize;
-        // of the whole run: so many of the whole band
-        let allowed = self.problem.neb.max_evaluations.saturating_mul(images);
-        let left = allowed.saturating_sub(own.evaluations);
+        let left = self.left(images);
         Count { evaluations: (SPINS / h.sites()).max(own.evaluations).min(left), hessians: hessians.max(own.hessians) }
     }
 

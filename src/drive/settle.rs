@@ -181,6 +181,7 @@ impl<'a> Run<'a, '_> {
             let doubt = match (self.problem.certify, self.problem.seeks_saddles()) {
                 (false, _) => Doubt::NotAskedFor,
                 (_, false) => Doubt::NotRefined,
+                _ if self.left(c.band.images()) == 0 => Doubt::Spent,
                 _ => Doubt::NoSaddle,
             };
             return Ok(Proof { ends, links: Vec::new(), doubts: vec![doubt] });
@@ -198,6 +199,10 @@ impl<'a> Run<'a, '_> {
         for saddle in std::iter::once(highest).chain(others) {
             if own.iter().any(|pass| pass.is_on_a_level_with(h, saddle)) {
                 continue;
+            }
+            if self.left(c.band.images()) == 0 {
+                doubts.push(Doubt::Spent);
+                break;
             }
             let mut pass = Pass::recorded(h, saddle.clone(), scale, &ends.each_ref())?;
             match pass.doubt(h) {
@@ -293,6 +298,9 @@ impl<'a> Run<'a, '_> {
         let tops = peaks(&c.band, scale);
         let least = tops.first().map_or(0.0, |top| top.energy_mev) - WINDOW * height(&c.band);
         for top in tops.into_iter().filter(|top| top.energy_mev >= least) {
+            if self.left(c.band.images()) == 0 {
+                break;
+            }
             if found.iter().any(|f| is_level(&c.band, [&f.top, &top], scale)) {
                 continue;
             }

@@ -58,7 +58,7 @@ impl fmt::Display for Stop {
             }
             Stop::MaxEvaluations { evaluations, rotation, tolerance } => write!(
                 f,
-                "not converged: all {evaluations} band evaluations were used; a spin is still predicted to turn by {rotation:.1e} rad (tolerance {tolerance:.1e} rad)"
+                "not converged: stopped after {evaluations} evaluations of the band, all that was allowed; a spin is still predicted to turn by {rotation:.1e} rad (tolerance {tolerance:.1e} rad)"
             ),
             Stop::Stalled { evaluations, rotation, tolerance } => write!(
                 f,

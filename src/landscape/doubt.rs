@@ -18,6 +18,9 @@ pub enum Doubt {
     /// No maximum led to a saddle.
     #[error("no saddle could be refined to machine precision")]
     NoSaddle,
+    /// The work that was allowed is done.
+    #[error("the evaluations that neb.max_evaluations allows were used up")]
+    Spent,
     /// An end is no proven minimum.
     #[error("the {0} state is not proven to be a minimum")]
     NoMinimum(PathEnd),

@@ -5,7 +5,9 @@
 //! there the theories fail by and by, and below k_BT there are none. What lies beyond [`LONGEST_S`] or below [`SHORTEST_S`] is left
 //! out. Levels of 1 s and ten years are marked. One temperature makes no figure.
 
-use super::canvas::{BLUE, Canvas, Colour, GREY, LinePlot, Look, Marker, SMALL_PT, Series, THIN_PT, Text, VERMILLION};
+use super::canvas::{
+    BLUE, Canvas, Colour, GREY, LinePlot, Look, Marker, Rect, SMALL_PT, Series, THIN_PT, Text, VERMILLION,
+};
 use super::{Lifetimes, Plot, PlotData, RateRow};
 use crate::error::Result;
 use crate::rates::{LOW_BARRIER, TEN_YEARS_S, Way};
@@ -69,16 +71,20 @@ pub fn draw_lifetimes(lifetimes: &[Lifetimes], look: &Look) -> Result<Canvas> {
         plot.series.push(Series::line(vec![point]).label(format!("Barrier below {LOW_BARRIER} kT")).colour(GREY));
     }
     let (mut canvas, frame) = plot.draw_frame()?;
+    let mut labels = Vec::new();
     for (level, words) in [(1.0, "1 s"), (TEN_YEARS_S, "10 years")] {
         let place =
             frame.place((frame.x.min, level)).filter(|p| frame.rect.grown(-8.0).contains((frame.rect.x0 + 9.0, p.1)));
         if let Some((_, y)) = place.filter(|_| !plot.series.is_empty()) {
             canvas.dashed(&[(frame.rect.x0, y), (frame.rect.x1, y)], THIN_PT, GREY, (2.0, 2.0));
             // on the hot side, where times are short and the curves low
-            canvas.text((frame.rect.x0 + 5.0, y - 2.0), Text::new(words, SMALL_PT))?;
+            let (x, text) = (frame.rect.x0 + 5.0, Text::new(words, SMALL_PT));
+            labels.push(Rect { x0: x, y0: y - 2.0 - SMALL_PT, x1: x + text.width()?, y1: y });
+            canvas.text((x, y - 2.0), text)?;
         }
     }
-    let obstacles = plot.draw_series(&mut canvas, &frame);
+    let mut obstacles = plot.draw_series(&mut canvas, &frame);
+    labels.into_iter().for_each(|label| obstacles.add_box(label));
     plot.draw_legend(&mut canvas, &frame, &obstacles)?;
     Ok(canvas)
 }

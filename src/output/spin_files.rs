@@ -5,7 +5,7 @@ use super::ovf_mesh::OvfMesh;
 use super::{Format, RunReport, csv};
 use crate::error::{Error, Result};
 use crate::files::{self, Array, OvfData, VtkPoints};
-use crate::geometry::Vector;
+use crate::geometry::{Vector, vector};
 use crate::lattice::Lattice;
 
 /// `path.npz`: spins (image, site, xyz) and the columns of `path.csv`.
@@ -200,9 +200,16 @@ pub(super) fn places(lattice: &Lattice) -> Option<(String, Array)> {
 }
 
 /// The sites as points: a row joined by a line, a film by the triangles between neighbours, a crystal of one atom a cell by hexahedra.
+/// No triangle and no hexahedron leads over a periodic border, from one side of the picture to the other.
 pub(super) fn vtk_points(lattice: &Lattice) -> VtkPoints {
     let n = lattice.sites;
-    let triangles = lattice.triangles();
+    let mut triangles = lattice.triangles();
+    let periods = lattice.periods();
+    let is_near = |i: usize, j: usize| {
+        let way = vector::sub(lattice.place(j), lattice.place(i));
+        vector::norm(vector::sub(periods.shortest(way), way)) < 0.5
+    };
+    triangles.corners.retain(|&[a, b, c]| is_near(a, b) && is_near(b, c) && is_near(c, a));
     VtkPoints {
         positions: (0..n).map(|i| lattice.position(i)).collect(),
         unit: lattice.unit(),
@@ -217,4 +224,22 @@ pub(super) fn without_idle(lattice: &Lattice, mut spins: Vec<Vector>) -> Vec<Vec
     let idle = |i: &usize| lattice.vacant[*i] && !lattice.is_row();
     (0..lattice.sites).filter(idle).for_each(|i| spins[i] = [0.0; 3]);
     spins
+}
+
+#[cfg(test)]
+mod tests {
+    use super::vtk_points;
+    use crate::lattice::LatticeSpec;
+
+    #[test]
+    fn no_triangle_of_a_picture_leads_over_a_periodic_border() {
+        let triangles = |periodic: bool| {
+            let spec = serde_json::json!({"triangular": {"cells": [7, 6], "periodic": periodic}});
+            let lattice = serde_json::from_value::<LatticeSpec>(spec).unwrap().resolve().unwrap();
+            (lattice.triangles().corners.len(), vtk_points(&lattice).triangles)
+        };
+        let ((around, drawn), (open, all)) = (triangles(true), triangles(false));
+        assert_eq!((around, open), (2 * 7 * 6, 2 * 6 * 5));
+        assert_eq!((drawn.len(), all.len()), (open, open));
+    }
 }

@@ -47,6 +47,12 @@ impl Format for SummaryJson {
     }
 }
 
+/// What the result of another command than `run` says that it is.
+#[derive(Deserialize)]
+struct Kind {
+    kind: String,
+}
+
 /// What `summary.json` holds.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(expecting = "the summary of a result")]
@@ -253,6 +259,13 @@ impl Summary {
     pub fn read(dir: &Path) -> Result<Summary> {
         let wrong = |words: String| Error::invalid(shown(dir, MARK), format!("{words}: {WAY_OUT}"));
         let text = text(dir, MARK)?.ok_or_else(|| wrong("is not there".into()))?;
+        if let Ok(Kind { kind }) = serde_json::from_str(&text) {
+            let words = format!(
+                "this is the result of a {kind}, not of a path between two states; its figures are drawn as it is written, and \
+                 `spinneb {kind}` with --force draws them anew"
+            );
+            return Err(Error::invalid(shown(dir, MARK), words));
+        }
         serde_json::from_str(&text).map_err(|e| wrong(format!("is damaged: {e}")))
     }
 
