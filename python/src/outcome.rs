@@ -10,8 +10,9 @@ use pyo3::types::PyDict;
 use spinneb::config::{Loaded, OutputConfig, RatesConfig, Source, Text};
 use spinneb::drive;
 use spinneb::error::Error;
+use spinneb::field::Components;
 use spinneb::files::disk::File;
-use spinneb::output::{Format, Group, KINDS, ReportPage, StoredOutcome, SummaryJson, render_files};
+use spinneb::output::{Certainty, Format, Group, KINDS, ReportPage, StoredOutcome, SummaryJson, render_files};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -26,6 +27,13 @@ pub struct Outcome {
 impl Outcome {
     pub fn new(loaded: Arc<Loaded>, found: drive::Outcome, trouble: Trouble) -> Outcome {
         Outcome { loaded, found: Arc::new(found), trouble }
+    }
+
+    /// The topological charge of each image of a film or crystal.
+    fn charge(&self) -> Option<Vec<f64>> {
+        let (triangles, path) = (self.loaded.lattice.triangles(), &self.found.path);
+        let charge = |k: usize| triangles.charge(Components::new(path.image(k)));
+        (!triangles.corners.is_empty()).then(|| (0..path.images()).map(charge).collect())
     }
 
     /// Renders something of the report, on threads of its own.
@@ -106,8 +114,25 @@ impl Outcome {
             "above_initial_meV" => images(|found| &found.images.above_initial_mev),
             "reaction_coordinate_rad" => images(|found| &found.images.reaction_coordinate_rad),
             "max_perpendicular_torque_meV" => images(|found| &found.images.max_perpendicular_torque_mev),
+            "charge" => self.charge().map(|charge| Buffer::row(&Arc::new(charge), |charge| charge)),
             _ => None,
         }
+    }
+
+    /// The barrier in words, with the digits that are known.
+    fn words(&self) -> String {
+        Certainty::of(&self.found).barrier_words(self.found.barrier)
+    }
+
+    /// An energy of the path (meV) with the digits that are known.
+    fn told(&self, mev: f64) -> String {
+        Certainty::of(&self.found).number(mev, 1.0, 4)
+    }
+
+    /// What must be said beside every figure.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        Certainty::of(&self.found).notes()
     }
 
     /// The energy of each term along the path (meV).

@@ -66,6 +66,38 @@ def test_tables_have_the_columns_of_path_csv(reversal):
     assert float(data["spins"].sel(component="z").isel(image=0, site=3)) == reversal.spins[0, 3, 2]
 
 
+def test_the_table_of_a_film_has_its_charge():
+    system = sn.System(sn.triangular(6, 6), [sn.exchange(J=["5 meV"]), sn.anisotropy(K="1 meV")], moment="3 mu_B")
+    film = sn.barrier(system, sn.uniform("z"), sn.uniform("-z"), effort="none")
+    frame = film.to_dataframe()
+    header = film._core.files(["csv"])["path.csv"].decode().splitlines()[0].split(",")
+    assert list(frame.columns) == header and header[-1] == "charge"
+    assert frame["charge"].to_numpy() == pytest.approx(0, abs=0.6) and "charge" in film.to_xarray()
+
+
+def test_what_is_in_doubt_is_told_in_every_figure(reversal):
+    config = {**reversal.config, "neb": {"max_evaluations": 5}, "path": {"images": 11}}
+    # this wall leaves the chain, the side that is longer stays
+    config |= {"initial": {"domain_wall": {"center": 4}}, "final": {"uniform": {"direction": [0, 0, 1]}}}
+    open_ = sn.run(config)
+    assert not open_.certified
+    title = open_.plot().get_title()
+    assert "not certified" in title and "≈" in title and "initial state relaxed far" in title
+    titles = [axes.get_title() for axes in open_.plot_spins()]
+    assert "relaxed far" in titles[0] and any("not certified" in title for title in titles)
+    assert "about" in repr(open_) and "not certified" in repr(open_)
+    sure = [reversal.plot().get_title(), *(axes.get_title() for axes in reversal.plot_spins())]
+    assert not any("not certified" in title or "≈" in title for title in sure)
+
+
+def test_lifetimes_below_five_kt_are_grey(reversal):
+    axes = sn.rates(reversal, [4.0, 10.0, 20.0, 30.0]).plot()
+    sure, grey = axes.get_lines()[:2]
+    assert np.isnan(sure.get_ydata()).tolist() == [False, False, True, True]
+    assert np.isnan(grey.get_ydata()).tolist() == [True, False, False, False]
+    assert grey.get_color() != sure.get_color()
+
+
 def test_figures_are_drawn_on_axes(reversal):
     axes = reversal.plot()
     assert axes.get_xlabel() == "reaction coordinate (rad)" and "6.2" in axes.get_title()

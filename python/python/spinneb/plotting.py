@@ -120,18 +120,22 @@ def _is_square(r: Array, distance: float) -> bool:
     return bool(np.all(np.min(np.abs(near), axis=1) < 1e-6))
 
 
-def lifetimes(temperatures_K: Array, log10_s: Array, ax: Axes | None = None, **style: Any) -> Axes:
+def lifetimes(temperatures_K: Array, log10_s: Array, low: NDArray[np.bool_], ax: Axes | None = None, **style: Any) -> Axes:
     """See :meth:`spinneb.Rates.plot`."""
     import matplotlib.pyplot as plt
 
     ax = plt.subplots(figsize=(4.8, 3.2), layout="constrained")[1] if ax is None else ax
     style = {"color": CURVE, "marker": "o", "ms": 4, **style}
-    ax.plot(temperatures_K, log10_s, **style)
+    ax.plot(temperatures_K, np.where(low, np.nan, log10_s), **style)
+    # the grey line reaches to the first point of the other
+    reach = low | np.roll(low, 1) & (np.arange(len(low)) > 0) | np.roll(low, -1) & (np.arange(len(low)) < len(low) - 1)
+    if low.any():
+        ax.plot(temperatures_K, np.where(reach, log10_s, np.nan), **{**style, "color": "0.6", "zorder": 1, "label": "barrier below 5 kT"})
     ax.set_xlabel("temperature (K)")
     ax.set_ylabel("log₁₀ lifetime (s)")
     for seconds, words in [(0.0, "1 s"), (np.log10(10 * 365.25 * 86400), "10 years")]:
-        low, high = ax.get_ylim()
-        if low < seconds < high:
+        bottom, top = ax.get_ylim()
+        if bottom < seconds < top:
             ax.axhline(seconds, color="0.7", lw=0.8, zorder=0)
             ax.annotate(words, (1, seconds), xycoords=("axes fraction", "data"), ha="right", va="bottom", fontsize="small", color="0.4")
     return ax

@@ -223,6 +223,7 @@ class Result:
             **{f"{name}_meV": mev for name, mev in self.terms_meV.items()},
             "max_perpendicular_torque_meV": self._column("max_perpendicular_torque_meV"),
             "energy_above_initial_meV": self.above_initial_meV,
+            **({} if (charge := self._core.column("charge")) is None else {"charge": np.asarray(charge)}),
         }
 
     def to_xarray(self) -> xarray.Dataset:
@@ -241,18 +242,20 @@ class Result:
     def plot(self, ax: Axes | None = None, **style: Any) -> Axes:
         """The energy path on matplotlib axes: images, the curve through them, saddles, the barrier.
 
-        ``style`` goes to the curve (``color=``, ``label=``, ``linewidth=`` …).
+        Its title says how certain the barrier is: one that is not certified has the digits that are known, and ends that relaxed
+        far from where they were put are named. ``style`` goes to the curve (``color=``, ``label=``, ``linewidth=`` …).
         """
         from .plotting import energy_path
 
-        doubt = "" if self.certified else " (not certified)"
         words = "no barrier"
         if self.barrier_meV is not None:
             forward, backward = self.barrier_meV["forward"], self.barrier_meV["backward"]
-            words = f"barrier {forward:.4g} meV" + ("" if np.isclose(forward, backward, rtol=1e-6) else f", back {backward:.4g} meV")
+            back = "" if np.isclose(forward, backward, rtol=1e-6) else f", back {self._core.told(backward)} meV"
+            words = f"barrier {self._core.told(forward)} meV{back}"
         saddles = [(saddle.reaction_coordinate_rad, saddle.above_initial_meV) for saddle in self.saddles]
         images = self.reaction_coordinate_rad, self.above_initial_meV
-        return energy_path(self.profile, images, saddles, f"{self.name}: {words}{doubt}", ax, **style)
+        title = "\n".join([f"{self.name}: {words}", *self._core.notes])
+        return energy_path(self.profile, images, saddles, title, ax, **style)
 
     def _chosen(self, images: Sequence[int] | None) -> tuple[list[Array], list[str]]:
         """Images of the path and what they are called: the initial state, those at the saddles and the final state, if none are
@@ -264,7 +267,13 @@ class Result:
             images = sorted({0, *(tops if len(tops) <= 3 else [int(np.argmax(e))]), last})
         picked = [range(len(path))[k] for k in images]
         words = {0: "initial", last: "final"}
-        titles = [f"{words.get(k, 'saddle' if k in tops else f'image {k}')}\n{e[k]:.4g} meV" for k in picked]
+        titles = [f"{words.get(k, 'saddle' if k in tops else f'image {k}')}\n{self._core.told(e[k])} meV" for k in picked]
+        # an end that moved says so over its own spins, all else over the highest
+        for note in self._core.notes:
+            end = next((k for k, name in words.items() if note.startswith(f"the {name} state")), None)
+            place = end if end is not None else max(picked, key=lambda k: e[k], default=0)
+            note = note.removeprefix(f"the {words[end]} state ") if end is not None else note
+            titles = [f"{title}\n{note}" if k == place else title for k, title in zip(picked, titles)]
         return [path[k] for k in picked], titles
 
     def plot_spins(self, images: Sequence[int] | None = None, axes: Sequence[Axes] | None = None) -> list[Axes]:
@@ -329,11 +338,8 @@ class Result:
         return _restored, (self._core.files(_WHOLE), self.summary)
 
     def __repr__(self) -> str:
-        proven = "certified" if self.certified else "not certified"
-        if self.barrier_meV is None:
-            return f"<Result {self.name}: no barrier, {self.stop_reason}>"
-        forward, backward = self.barrier_meV["forward"], self.barrier_meV["backward"]
-        return f"<Result {self.name}: barrier {forward:.6f} meV, back {backward:.6f} meV, {proven}>"
+        why = f", {self.stop_reason}" if self.barrier_meV is None else ""
+        return f"<Result {self.name}: {self._core.words()}{why}>"
 
 
 def _restored(files: Mapping[str, bytes], summary: dict[str, Any]) -> Result:
@@ -492,10 +498,11 @@ class Rates:
         return pandas.DataFrame(rows)
 
     def plot(self, ax: Axes | None = None, **style: Any) -> Axes:
-        """Lifetimes against temperature, on matplotlib axes."""
+        """Lifetimes against temperature, on matplotlib axes; grey where a barrier is below 5 kT, as the theories need more."""
         from .plotting import lifetimes
 
-        return lifetimes(self.temperatures_K, self.lifetimes_s(log10=True), ax, **style)
+        low = np.array([row["barrier_over_kT"] < 5 for row in self._rows("forward")], dtype=bool)
+        return lifetimes(self.temperatures_K, self.lifetimes_s(log10=True), low, ax, **style)
 
     def __repr__(self) -> str:
         lines = [f"<Rates {self.result.name}"]
