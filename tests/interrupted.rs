@@ -125,7 +125,9 @@ fn killed() -> tempfile::TempDir {
 
 #[test]
 fn an_interrupted_run_leaves_a_checkpoint_and_partial_results_and_goes_on() {
-    for (name, expected, word) in [("INT", 130, "interrupted"), ("TERM", 143, "terminated")] {
+    let hangs_up = cfg!(target_os = "linux").then_some(("HUP", 129, "hung up"));
+    for (name, expected, word) in [("INT", 130, "interrupted"), ("TERM", 143, "terminated")].into_iter().chain(hangs_up)
+    {
         let folder = folder();
         let child = at_work(folder.path(), &[]);
         signal(&child, name);
@@ -149,6 +151,22 @@ fn an_interrupted_run_leaves_a_checkpoint_and_partial_results_and_goes_on() {
         assert_eq!(code, undisturbed(folder.path()).0);
         assert!(said.contains("holds the finished result of this config already"), "{said}");
     }
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_run_that_is_to_outlive_its_terminal_does() {
+    let folder = folder();
+    let run = command(folder.path(), &ENDLESS);
+    let mut nohup = Command::new("sh");
+    nohup.args(["-c", "trap '' HUP; exec \"$0\" \"$@\""]).arg(run.get_program()).args(run.get_args());
+    nohup.current_dir(run.get_current_dir().unwrap_or(folder.path()));
+    let child = speaking(nohup);
+    signal(&child, "HUP");
+    std::thread::sleep(Duration::from_millis(100));
+    signal(&child, "INT");
+    let (code, _, said) = ended(child);
+    assert_eq!(code, Some(130), "{said}");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Ctrl-C and the request to terminate: the first ends the run in good order, the second at once.
+//! Ctrl-C, the request to terminate and a terminal that is gone: the first ends the run in good order, the second at once.
 
 use anyhow::{Context, Result};
 use signal_hook::consts::{SIGINT, SIGTERM};
@@ -7,8 +7,13 @@ use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
+/// The number of "hung up"; not every system has it.
+const SIGHUP: i32 = 1;
 /// The signals that are waited for, with their exit codes and names.
-const KNOWN: [(i32, u8, &str); 2] = [(SIGINT, 130, "interrupted"), (SIGTERM, 143, "terminated")];
+const KNOWN: [(i32, u8, &str); 3] =
+    [(SIGINT, 130, "interrupted"), (SIGTERM, 143, "terminated"), (SIGHUP, 129, "hung up")];
+/// Which signals a process ignores, on systems that tell.
+const STATUS: &str = "/proc/self/status";
 
 /// Watches for signals from when it is made.
 pub struct Signals {
@@ -26,7 +31,9 @@ impl Signals {
             flag::register_usize(signal, Arc::clone(&caught), usize::from(code))?;
             flag::register(signal, Arc::clone(&stop)).map(|_| ())
         };
-        KNOWN.into_iter().try_for_each(register).context("signals cannot be watched for")?;
+        // nohup lets a run go on when its terminal is gone
+        let watched = KNOWN.into_iter().filter(|(signal, ..)| *signal != SIGHUP || !is_ignored(SIGHUP));
+        watched.into_iter().try_for_each(register).context("signals cannot be watched for")?;
         Ok(Signals { stop, caught })
     }
 
@@ -50,4 +57,12 @@ impl Signals {
         let code = self.caught.load(Ordering::SeqCst);
         KNOWN.into_iter().find(|known| usize::from(known.1) == code).map(|(_, code, word)| (code, word))
     }
+}
+
+/// Whether whoever started the process had it ignore a signal; where the system does not tell, it is left as it is, as if it were.
+fn is_ignored(signal: i32) -> bool {
+    let status = std::fs::read_to_string(STATUS).unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(u64::MAX);
+    mask >> (signal - 1) & 1 == 1
 }
