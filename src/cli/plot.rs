@@ -192,7 +192,7 @@ fn picture_of(path: &Path) -> Option<Picture> {
 
 /// The ending of a picture of another kind than can be drawn: no folder is meant by that.
 fn not_drawn(path: &Path) -> Option<String> {
-    const OTHERS: [&str; 9] = ["bmp", "eps", "gif", "jpeg", "jpg", "pdf", "ps", "tiff", "webp"];
+    const OTHERS: [&str; 10] = ["bmp", "eps", "gif", "jpeg", "jpg", "pdf", "ps", "tif", "tiff", "webp"];
     let ending = path.extension()?.to_string_lossy().to_ascii_lowercase();
     (OTHERS.contains(&ending.as_str()) && !path.is_dir()).then_some(ending)
 }

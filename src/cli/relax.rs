@@ -7,6 +7,8 @@ use crate::drive::{RelaxedState, relaxed_state};
 use crate::error::Error;
 use crate::files::disk;
 use crate::output::{RelaxReport, relaxed_file_names};
+use crate::path::is_within;
+use crate::sphere::SAME;
 use anyhow::Result;
 use clap::Args;
 use std::fs;
@@ -156,7 +158,9 @@ fn print(arguments: &Relax, found: &RelaxReport, written: bool) -> Result<()> {
         writeln!(out, "{}", found.name)?;
         found.states.iter().try_for_each(|(which, state)| print_state(&mut out, found, which, state))?;
         if found.same_minimum == Some(true) {
-            writeln!(out, "  both states relax to the same minimum")?;
+            let spins = |k: usize| found.states[k].1.minimum.spins.as_slice();
+            let words = if is_within(spins(0), spins(1), SAME) { "" } else { ", turned about an axis of symmetry" };
+            writeln!(out, "  both states relax to the same minimum{words}")?;
         }
     }
     Ok(out.flush()?)

@@ -28,6 +28,11 @@ Theory = Literal["htst", "langer"]
 _WHOLE = ["csv", "npz", "ovf"]
 
 
+def _read_only(numbers: Array) -> Array:
+    numbers.flags.writeable = False
+    return numbers
+
+
 class Saddle:
     """A saddle of a path: the highest point of a pass."""
 
@@ -78,7 +83,7 @@ class Saddle:
     @property
     def lowest_eigenvalues_meV(self) -> Array:
         """Of the Hessian on the spheres."""
-        return np.asarray(self.summary["lowest_eigenvalues_meV"], dtype=np.float64)
+        return _read_only(np.asarray(self.summary["lowest_eigenvalues_meV"], dtype=np.float64))
 
     def __repr__(self) -> str:
         return f"<Saddle {self.above_initial_meV:.6f} meV above the initial state, image {self.image}>"
@@ -383,7 +388,7 @@ class Relaxed:
     @property
     def lowest_eigenvalues_meV(self) -> Array:
         """Of the Hessian on the spheres, zero modes apart."""
-        return np.asarray(self.summary["lowest_eigenvalues_meV"], dtype=np.float64)
+        return _read_only(np.asarray(self.summary["lowest_eigenvalues_meV"], dtype=np.float64))
 
     @property
     def largest_rotation_rad(self) -> float:
@@ -522,7 +527,7 @@ class Landscape:
         self._document: dict[str, Any] = json.loads(self.files["landscape.json"])
         with np.load(io.BytesIO(self.files["landscape.npz"])) as arrays:
             #: landscape.npz
-            self.arrays: dict[str, Array] = {name: arrays[name] for name in arrays.files}
+            self.arrays: dict[str, Array] = {name: _read_only(arrays[name]) for name in arrays.files}
 
     @property
     def summary(self) -> dict[str, Any]:
