@@ -8,7 +8,7 @@ use super::run::{Run, WORTH};
 use super::{Images, Stop};
 use crate::band::Band;
 use crate::error::Result;
-use crate::landscape::{Peak, Saddle, ZOOMS, highest, zoomed};
+use crate::landscape::{Peak, Saddle, ZOOMS, peaks, promising, zoomed};
 use crate::path::Path;
 use crate::path::guess::{GuessSpec, NoiseSpec, add_noise, moving_sites, smooth};
 use crate::stationary::ALIKE;
@@ -129,15 +129,16 @@ impl<'a> Run<'a, '_> {
 
     /// The path's top. One inside the first or last interval is not resolved: the part of the path around it becomes finer.
     fn zoom(&mut self, c: &mut FirstPath<'a>) -> Result<Option<Peak>> {
-        let mut top = highest(&c.band, self.scales.stiffness_mev);
+        let scale = self.scales.stiffness_mev;
+        let mut tops = peaks(&c.band, scale);
         for _ in 0..ZOOMS {
             let images = self.problem.images.asked_for().unwrap_or(c.band.images() + 8);
-            let Some(path) = zoomed(&c.band, top.as_ref(), images) else { break };
+            let Some(path) = zoomed(&c.band, tops.first(), images) else { break };
             c.band = Band::continued(self.problem.evaluator(), path, c.band.evaluations());
             self.relax(c, Goal::Loose, c.band.evaluations() + LOOSELY)?;
-            top = highest(&c.band, self.scales.stiffness_mev);
+            tops = peaks(&c.band, scale);
         }
-        Ok(top)
+        Ok(promising(&c.band, tops))
     }
 
     /// A first path, relaxed from few images to as many as asked for (automatic: as few as resolve it).

@@ -46,7 +46,7 @@ pub use doubt::{Doubt, PathEnd};
 pub use graph::{Edge, Landscape, Route};
 pub use minimum::{Minimum, is_same_state};
 pub use pass::Pass;
-pub use peaks::{Peak, direction, highest, peaks};
+pub use peaks::{Peak, direction, highest, peaks, promising};
 pub use places::{Places, Seen};
 pub use saddle::Saddle;
 pub use search::{Aim, Effort, KINDS, Searched, Settings, Standing, search};

@@ -53,6 +53,16 @@ pub fn highest(band: &Band, c: f64) -> Option<Peak> {
     peaks(band, c).into_iter().next()
 }
 
+/// The highest of a band's maxima from which a saddle is well looked for: not an interpolated one where the great circle between images
+/// that are far apart leads over the valley, as on a plateau that few images cross, if the highest image is a maximum too.
+pub fn promising(band: &Band, mut tops: Vec<Peak>) -> Option<Peak> {
+    let top_mev = band.energies_mev()[band.highest()];
+    let leads_over = |top: &Peak| top.energy_mev < top.floor_mev;
+    let is_image = |top: &Peak| !leads_over(top) && top.energy_mev >= top_mev;
+    let instead = tops.first().filter(|top| leads_over(top)).and_then(|_| tops.iter().position(is_image));
+    (!tops.is_empty()).then(|| tops.swap_remove(instead.unwrap_or(0)))
+}
+
 /// A maximal image, or the interpolated maximum beside it where that can be trusted: its force is below twice the image's (on coarse
 /// plateaus the interpolation overshoots).
 fn beside(band: &Band, profile: &Profile, k: usize, c: f64) -> Peak {
@@ -96,13 +106,10 @@ fn between(band: &Band, profile: &Profile, x: &Extremum, c: f64) -> Peak {
     blend(a, b, x.fraction, &mut m);
     let tau = if x.fraction < 0.5 { direction(&m, b, 1.0) } else { direction(&m, a, -1.0) };
     let image = if x.fraction < 0.5 { x.interval } else { x.interval + 1 };
-    let e = band.energies_mev();
+    let energy_mev = x.energy + band.energies_mev()[0];
     // of the energy that is there: the interpolation may overshoot
-    let floor_mev = floor(band, band.evaluator().difference_mev(&m, band.path().image(0)) + e[0], image, c);
-    let interpolated_mev = x.energy + e[0];
-    // where the great circle between images that are far apart leads over the valley, these tell more
-    let leads_over = interpolated_mev < floor_mev;
-    let energy_mev = if leads_over { e[x.interval].max(e[x.interval + 1]) } else { interpolated_mev };
+    let floor_mev =
+        floor(band, band.evaluator().difference_mev(&m, band.path().image(0)) + band.energies_mev()[0], image, c);
     Peak {
         m,
         tau,
