@@ -13,6 +13,8 @@ use std::process::Command;
 use tempfile::TempDir;
 
 type V = [f64; 3];
+/// Names and texts.
+type Files = Vec<(&'static str, String)>;
 
 const MRY: f64 = 1e-3 * RYDBERG;
 /// Of the ladder of two kinds of atoms, A at 0 and B at ½: from A to B, from B to the next A, from A to the next A (meV).
@@ -101,7 +103,7 @@ fn both() -> Vec<(usize, usize, isize, f64, V)> {
     (0..3).flat_map(one).collect()
 }
 
-fn uppasd(sign: f64) -> Vec<(&'static str, String)> {
+fn uppasd(sign: f64) -> Files {
     let at = [0.0, 0.5];
     let row = |&(i, j, n, x, d): &(usize, usize, isize, f64, V), dmi: bool| {
         let along = n as f64 + at[j] - at[i];
@@ -126,7 +128,7 @@ fn uppasd(sign: f64) -> Vec<(&'static str, String)> {
     ]
 }
 
-fn spirit() -> Vec<(&'static str, String)> {
+fn spirit() -> Files {
     let row = |k: usize| {
         let ((i, j, n), d) = (BONDS[k], D[k].map(|d| -d));
         format!("{i} {j} {n} 0 0 {} {} {} {}\n", J[k], d[0], d[1], d[2])
@@ -142,7 +144,7 @@ fn spirit() -> Vec<(&'static str, String)> {
     vec![("ladder.cfg", input)]
 }
 
-fn vampire() -> Vec<(&'static str, String)> {
+fn vampire() -> Files {
     // −S_i T S_j with T = J − [D]×
     let joule = |x: f64| format!("{:e}", x * 1.602176634e-22);
     let row = |(id, &(i, j, n, x, [p, q, r])): (usize, &(usize, usize, isize, f64, V))| {
@@ -170,7 +172,7 @@ fn vampire() -> Vec<(&'static str, String)> {
     vec![("input", input.into()), ("ladder.mat", materials), ("ladder.ucf", ucf)]
 }
 
-fn tb2j() -> Vec<(&'static str, String)> {
+fn tb2j() -> Files {
     let (line, rule, names) = ("-".repeat(88), "=".repeat(90), ["Fe1", "Fe2"]);
     let row = |&(i, j, n, x, d): &(usize, usize, isize, f64, V)| {
         let d = d.map(|d| -0.5 * d);
@@ -204,7 +206,7 @@ fn borrowed<'a>(files: &'a [(&'static str, String)]) -> Vec<(&'static str, &'a s
 }
 
 /// Each format's files of the ladder, with what has to be said of their convention and the field that is in them.
-fn ladders() -> [(&'static str, Vec<(&'static str, String)>, &'static str, f64); 4] {
+fn ladders() -> [(&'static str, Files, &'static str, f64); 4] {
     [
         ("uppasd", uppasd(-1.0), "-D", 2.0),
         ("spirit", spirit(), "", 2.0),
@@ -241,7 +243,7 @@ fn a_box_of_the_files_is_kept_and_one_is_made_where_there_is_none() {
 }
 
 /// A chain along x with exchange to two neighbours and D along z, in UppASD's files; mRy.
-fn chain(jfile: &str, dmfile: &str) -> Vec<(&'static str, String)> {
+fn chain(jfile: &str, dmfile: &str) -> Files {
     let dm = if dmfile.is_empty() { "" } else { "dm dmfile\n" };
     let input = format!(
         "ncell 12 1 1\nbc P 0 0\ncell 1 0 0 0 1 0 0 0 1\nposfile posfile\nmomfile momfile\nexchange jfile\n{dm}maptype 2\n"

@@ -210,5 +210,6 @@ fn only<'a>(paths: &'a [PathBuf], what: &str) -> Result<&'a Path> {
 
 /// A file that another one names, looked for beside it.
 fn beside(file: &Path, named: &str) -> PathBuf {
-    file.parent().unwrap_or(Path::new("")).join(named.trim_matches(['"', '\'']))
+    let named = named.trim_matches(['"', '\'']);
+    file.parent().unwrap_or(Path::new("")).join(named.strip_prefix("./").unwrap_or(named))
 }

@@ -129,7 +129,9 @@ impl Model {
             let sense = |steps: f64| {
                 // q < 0: the same plane, run through the other way
                 let spiral = of(self, q(steps.abs().max(1e-3)))?;
-                Some(energy(Spiral { q: q(steps), ..spiral }))
+                // what rounding leaves of 0 is not to be printed as −0
+                let mev = energy(Spiral { q: q(steps), ..spiral });
+                Some(if mev.abs() < 5e-7 { 0.0 } else { mev })
             };
             let quarter = 0.5 * f64::from(STEPS);
             let both = [quarter, -quarter].map(|steps| sense(steps).unwrap_or(f64::NAN));

@@ -90,11 +90,9 @@ pub fn in_words(c: Convention, dmi: bool) -> [String; 2] {
         Counting::BothDirections => 2.0,
     };
     let (j, d) = (c.energy.factor(), c.dmi.factor());
-    let in_front = |factor: f64, name: &str| match (factor < 0.0, factor.abs()) {
-        (minus, size) => {
-            let size = if size == 1.0 { String::new() } else { format!("{size} ") };
-            format!("{} Σ {size}{name}", if minus { "−" } else { "+" })
-        }
+    let in_front = |factor: f64, name: &str| {
+        let size = if factor.abs() == 1.0 { String::new() } else { format!("{} ", factor.abs()) };
+        format!("{} Σ {size}{name}", if factor < 0.0 { "−" } else { "+" })
     };
     let anti = if dmi { format!(" {}·(m_i × m_j)", in_front(d, "D")) } else { String::new() };
     let formula = format!("E = {} m_i·m_j{anti}, {counted}", in_front(j, "J"));

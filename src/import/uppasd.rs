@@ -97,7 +97,7 @@ fn read(paths: &[PathBuf], told: Told) -> Result<Model> {
     input.refuse_others()?;
     let (cell, positions) = input.cell()?;
     let jfile = input.file("exchange")?;
-    let dmfile = if input.has("dm") { Some(input.file("dm")?) } else { None };
+    let dmfile = input.optional("dm")?;
     let own = Convention { counting: Counting::BothDirections, energy: EnergyForm::Minus, dmi: DmiForm::Minus };
     if dmfile.is_some() && told.dmi.is_none() {
         return Err(input.lines[input.find("dm").unwrap_or(0)].error(0, "dm", SIGN_OF_D));
@@ -111,10 +111,7 @@ fn read(paths: &[PathBuf], told: Told) -> Result<Model> {
         let plain = Couplings { group: vec![UNIT], ..exchange };
         bonds.extend(merge(dmfile, &plain.dmi(dmfile)?, convention.counting, 0.0)?);
     }
-    let (momfile, kfile) = (input.file("momfile")?, input.file("anisotropy").ok().filter(|_| input.has("anisotropy")));
-    if input.has("anisotropy") && kfile.is_none() {
-        input.file("anisotropy")?;
-    }
+    let (momfile, kfile) = (input.file("momfile")?, input.optional("anisotropy")?);
     let mut atoms = moments(&cell, &momfile)?;
     if let Some(kfile) = &kfile {
         anisotropies(kfile, &mut atoms, told)?;
@@ -158,8 +155,9 @@ impl<'a> Input<'a> {
         self.lines.iter().position(|line| line.first().eq_ignore_ascii_case(keyword))
     }
 
-    fn has(&self, keyword: &str) -> bool {
-        self.find(keyword).is_some()
+    /// The file that a keyword names, if it is there.
+    fn optional(&self, keyword: &str) -> Result<Option<Text>> {
+        self.find(keyword).map(|_| self.file(keyword)).transpose()
     }
 
     fn line(&self, keyword: &str) -> Option<&Line<'a>> {
@@ -210,7 +208,7 @@ impl<'a> Input<'a> {
                 let value = line.get(1).unwrap_or_default().to_ascii_lowercase();
                 // what is a number may be written in many ways
                 let equal = |f: &&str| **f == value || value.parse::<f64>().ok().is_some_and(|v| f.parse() == Ok(v));
-                if !fine.iter().any(|f| equal(&f)) {
+                if !fine.iter().any(equal) {
                     let message =
                         format!("found \"{value}\", but only models with {} are imported", fine[0].to_uppercase());
                     return Err(line.error(1, &word, message));
