@@ -4,6 +4,7 @@ mod check;
 mod collect;
 mod docs;
 mod drawing;
+mod import;
 mod jobs;
 mod landscape;
 mod list;
@@ -64,6 +65,7 @@ pub fn main(program: &[OsString], arguments: impl IntoIterator<Item = OsString>)
         Command::Docs(arguments) => docs::docs(&arguments),
         Command::Rate(arguments) => rate::rate(&arguments),
         Command::Plot(arguments) => plot::plot(&arguments),
+        Command::Import(arguments) => import::import(&arguments),
         Command::Init(arguments) => start::init(&arguments),
         Command::Schema(arguments) => start::print_schema(&arguments),
         Command::Completions(arguments) => start::completions(&arguments),
@@ -120,6 +122,8 @@ pub(crate) enum Command {
     Rate(Rate),
     /// Draw the figures of results that are there already, or several energy paths over each other
     Plot(Plot),
+    /// Make a config of the files of another code: UppASD, VAMPIRE, TB2J, Spirit
+    Import(import::Arguments),
     /// Write a starter config with explanations, and the schema beside it
     Init(Init),
     /// Print the JSON Schema of a config, a sweep or a landscape, for editors that complete and check it

@@ -12,6 +12,7 @@
 //! |---|---|
 //! | `cli` | the program `spinneb`; the feature `cli`, which is on unless default features are off |
 //! | [`config`] | the JSON of a run |
+//! | [`import`] | models from the files of other codes |
 //! | [`output`] | files and figures |
 //! | [`drive`] | a whole run: ends, first paths, band, saddles, proof |
 //! | [`landscape`] | minima, the passes between them, and the routes over these |
@@ -61,6 +62,7 @@ pub mod field;
 pub mod files;
 pub mod geometry;
 pub mod hessian;
+pub mod import;
 pub mod landscape;
 pub mod lattice;
 pub mod linalg;

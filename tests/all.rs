@@ -25,6 +25,7 @@ mod fuzz;
 mod gallery;
 mod geometry;
 mod guesses;
+mod import;
 mod interrupted;
 mod kills;
 mod landscape_command;

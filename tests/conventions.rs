@@ -54,7 +54,7 @@ fn theirs(code: &str, m: &[V]) -> [f64; 3] {
     let [once, both] = [true, false].map(|once| sums(m, once));
     match code {
         "Spirit" => [-once[0], -once[1], -once[2]],
-        "UppASD" => [-both[0], both[1], once[2]],
+        "UppASD" => [-both[0], -both[1], once[2]],
         "Vampire" => [-once[0], 0.0, -once[2]],
         "Fidimag, atomistic" => [-once[0], once[1], -once[2]],
         "Matjes" => [-both[0], 0.0, 0.0],

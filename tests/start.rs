@@ -252,8 +252,21 @@ fn starter_configs_are_valid_and_find_certified_paths() {
 
 #[test]
 fn completions_and_man_pages_tell_of_every_command() {
-    let commands =
-        ["run", "relax", "sweep", "collect", "check", "list", "docs", "rate", "init", "schema", "completions", "man"];
+    let commands = [
+        "run",
+        "relax",
+        "sweep",
+        "collect",
+        "check",
+        "list",
+        "docs",
+        "rate",
+        "import",
+        "init",
+        "schema",
+        "completions",
+        "man",
+    ];
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
         let script = said(&spinneb(&root(), &["completions", shell]));
         for command in commands {

@@ -140,7 +140,8 @@ pub enum DmiForm {
 }
 
 impl EnergyForm {
-    fn factor(self) -> f64 {
+    /// What the number is multiplied by in the energy.
+    pub fn factor(self) -> f64 {
         match self {
             EnergyForm::Minus => -1.0,
             EnergyForm::Plus => 1.0,
@@ -153,7 +154,8 @@ impl EnergyForm {
 }
 
 impl DmiForm {
-    fn factor(self) -> f64 {
+    /// What the number is multiplied by in the energy.
+    pub fn factor(self) -> f64 {
         match self {
             DmiForm::Plus => 1.0,
             DmiForm::Minus => -1.0,
