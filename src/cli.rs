@@ -57,9 +57,16 @@ pub fn main(program: &[OsString], arguments: impl IntoIterator<Item = OsString>)
     let done = match command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Relax(arguments) => relax::relax(&arguments),
-        Command::Landscape(arguments) => landscape::landscape(&arguments),
+        Command::Landscape(arguments) => match arguments.index {
+            Some(index) => shares::take(&arguments, index),
+            None => landscape::landscape(&arguments),
+        },
         Command::Sweep(arguments) => sweep::sweep(&arguments, program),
-        Command::Collect(arguments) => collect::collect(&arguments),
+        Command::Collect(arguments) => match shares::is_landscape(&arguments.target) {
+            Ok(true) => shares::collect(&arguments),
+            Ok(false) => collect::collect(&arguments),
+            Err(error) => Err(error),
+        },
         Command::Check(arguments) => check::check(&arguments),
         Command::List(arguments) => list::list(&arguments),
         Command::Docs(arguments) => docs::docs(&arguments),

@@ -1,7 +1,7 @@
 //! `collect`: the results of a sweep as one table and one figure; the shares of a landscape as its results.
 
 use super::points::{checked, folder};
-use super::{UNFINISHED, USAGE, note, shares};
+use super::{UNFINISHED, USAGE, note};
 use crate::config::sweep::Sweep;
 use crate::files::disk::File;
 use crate::output::Picture;
@@ -54,11 +54,8 @@ pub struct Collect {
     pub json: bool,
 }
 
-/// Collects a sweep's results, or a landscape's.
+/// Collects a sweep's results.
 pub fn collect(arguments: &Collect) -> Result<u8> {
-    if shares::is_landscape(&arguments.target)? {
-        return shares::collect(arguments);
-    }
     let (index, dir) = if arguments.target.is_dir() {
         let dir = arguments.target.clone();
         let Some(index) = SweepIndex::read(&dir)? else {

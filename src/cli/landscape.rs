@@ -1,8 +1,8 @@
 //! `landscape`: all minima and saddles of a config below an energy.
 
+use super::points::{ShareOf, share};
 use super::progress::Progress;
 use super::run::{Keeping, checkpoint};
-use super::shares::{ShareOf, share, take};
 use super::signals::Signals;
 use super::threads::start_threads;
 use super::{EVERY, Interval, Looking, UNFINISHED, interval, note, report};
@@ -89,9 +89,6 @@ pub struct Arguments {
 /// Surveys a config into its folder, or says that it is done.
 pub fn landscape(arguments: &Arguments) -> Result<u8> {
     start_threads(arguments.threads)?;
-    if let Some(index) = arguments.index {
-        return take(arguments, index);
-    }
     let loaded = load_landscape(&arguments.config, &arguments.set())?;
     let name = &loaded.name;
     let directory = folder_of(name, arguments.out.as_deref());

@@ -69,3 +69,28 @@ pub(super) fn part(text: &str) -> std::result::Result<Part, String> {
         }
     }
 }
+
+/// Most shares.
+const MOST: usize = 1000;
+
+/// Shares, and how many there are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShareOf {
+    /// Which.
+    pub part: Part,
+    /// Of how many.
+    pub shares: usize,
+}
+
+/// `3/8` or `0-3/8`.
+pub(super) fn share(text: &str) -> std::result::Result<ShareOf, String> {
+    let wrong = || format!("found {text:?}, expected a share and how many there are: 3/8, or 0-3/8");
+    let (own, shares) = text.split_once('/').ok_or_else(wrong)?;
+    let shares: usize = shares.parse().map_err(|_| wrong())?;
+    let part = part(own).map_err(|_| wrong())?;
+    match shares {
+        1..=MOST if part.last < shares => Ok(ShareOf { part, shares }),
+        1..=MOST => Err(format!("found {text}, but of {shares} shares the last is {}", shares - 1)),
+        _ => Err(format!("found {text}, but shares are 1 to {MOST}")),
+    }
+}

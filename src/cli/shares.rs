@@ -2,9 +2,10 @@
 
 use super::collect::Collect;
 use super::landscape::{Arguments, folder_of, print, write};
-use super::points::{Part, part};
+use super::points::ShareOf;
 use super::progress::Progress;
 use super::signals::Signals;
+use super::threads::start_threads;
 use super::{UNFINISHED, USAGE, note};
 use crate::config::{Loaded, VERSION, discard_leftovers, load_landscape};
 use crate::drive::survey::{survey, take_part};
@@ -16,31 +17,9 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// Most shares.
-const MOST: usize = 1000;
-
-/// Shares, and how many there are.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ShareOf {
-    part: Part,
-    shares: usize,
-}
-
-/// `3/8` or `0-3/8`.
-pub(super) fn share(text: &str) -> std::result::Result<ShareOf, String> {
-    let wrong = || format!("found {text:?}, expected a share and how many there are: 3/8, or 0-3/8");
-    let (own, shares) = text.split_once('/').ok_or_else(wrong)?;
-    let shares: usize = shares.parse().map_err(|_| wrong())?;
-    let part = part(own).map_err(|_| wrong())?;
-    match shares {
-        1..=MOST if part.last < shares => Ok(ShareOf { part, shares }),
-        1..=MOST => Err(format!("found {text}, but of {shares} shares the last is {}", shares - 1)),
-        _ => Err(format!("found {text}, but shares are 1 to {MOST}")),
-    }
-}
-
 /// Makes shares of a search.
 pub(super) fn take(arguments: &Arguments, of: ShareOf) -> Result<u8> {
+    start_threads(arguments.threads)?;
     let set = arguments.set();
     let loaded = load_landscape(&arguments.config, &set)?;
     let (name, directory) = (&loaded.name, folder_of(&loaded.name, arguments.out.as_deref()));

@@ -45,9 +45,10 @@ pub use parts::PartMaterial;
 pub use path::{ImageCount, PathConfig};
 pub use rates::{RatesConfig, Temperatures};
 pub use results::{VERSION, discard_leftovers};
-pub use schema::{Key, SCHEMA_FILE, keys, landscape_schema, schema, sweep_schema};
+pub use schema::{Key, SCHEMA_FILE, keys, landscape_schema, schema};
 pub use search::SearchConfig;
 pub use source::Source;
+pub use sweep::sweep_schema;
 pub use text::Text;
 
 use crate::energy::TermSpec;

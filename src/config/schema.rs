@@ -5,7 +5,6 @@
 use super::Config;
 use super::json::Step;
 use super::refusals::inline;
-use super::sweep::SweepFile;
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema, json_schema};
 use serde_json::Value;
@@ -29,16 +28,12 @@ pub fn landscape_schema() -> String {
     format!("{schema:#}\n")
 }
 
-/// The schema of a sweep as text.
-pub fn sweep_schema() -> String {
-    format!("{:#}\n", of::<SweepFile>("a sweep of spinneb"))
-}
-
 pub(super) fn value() -> Value {
     of::<Config>("a config of spinneb")
 }
 
-fn of<T: JsonSchema>(title: &str) -> Value {
+/// Of any part, with this title.
+pub(super) fn of<T: JsonSchema>(title: &str) -> Value {
     let mut schema = SchemaSettings::draft07().into_generator().into_root_schema_for::<T>();
     schema.insert("title".into(), title.into());
     schema.to_value()

@@ -1,11 +1,13 @@
 //! Which rotations and reflections of spins are worth trying: the 48 that take the axes of a frame to each other, in the frames
 //! that an energy may be symmetric in.
 
-use super::operation::SAME;
 use crate::energy::Hamiltonian;
 use crate::geometry::matrix::{UNIT, apart, determinant, product, times, transposed};
 use crate::geometry::{Matrix, Vector, vector};
 use crate::linalg::eigen_symmetric;
+
+/// Entries of two matrices that are the same differ by less.
+pub(super) const SAME: f64 = 1e-9;
 
 /// At most so many frames.
 const MOST: usize = 8;

@@ -1,15 +1,12 @@
 //! One operation: spins moved to other sites and turned or reflected, all alike.
 
-use super::frames::are_alike;
+use super::frames::{SAME, are_alike};
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::matrix::{UNIT, apart, determinant, opposite, product, times, transposed};
 use crate::geometry::{Direction, Matrix, Vector, vector};
 use crate::lattice::{Lattice, Motion};
 use std::fmt;
 use std::sync::Arc;
-
-/// Entries of two matrices that are the same differ by less.
-pub(super) const SAME: f64 = 1e-9;
 
 /// m ↦ m' with m'_i = R m_p(i), R orthogonal. What has no spin of its own to move, a vacant site or one that is frozen, stays as it is.
 #[derive(Clone, Debug)]

@@ -1,8 +1,8 @@
 //! The search for a group: marks of sites and sums of gradients say what is worth trying, one random state decides.
 
-use super::frames::{Frame, Permutation, along, are_alike, frames};
+use super::frames::{Frame, Permutation, SAME, along, are_alike, frames};
 use super::marks::Marks;
-use super::operation::{Operation, SAME};
+use super::operation::Operation;
 use super::shift::Shift;
 use crate::energy::Hamiltonian;
 use crate::field::{Components, ComponentsMut};

@@ -20,6 +20,7 @@ mod range;
 
 use super::json::{Holds, Step, steps};
 use super::load::{Loaded, load_text, not_a};
+use super::schema;
 use super::source::read;
 use super::text::{Text, apply_set, at, tree};
 use super::{Comment, Name};
@@ -37,11 +38,16 @@ use std::path::{Path, PathBuf};
 /// Most points of a sweep.
 const MOST: usize = 1_000_000;
 
+/// The JSON Schema of a sweep as text.
+pub fn sweep_schema() -> String {
+    format!("{:#}\n", schema::of::<SweepFile>("a sweep of spinneb"))
+}
+
 /// A sweep's file: a config at many values of some of its keys.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("oneOf" = [{"required": ["grid"]}, {"required": ["zip"]}]))]
-pub(super) struct SweepFile {
+struct SweepFile {
     /// Where editors find the schema; not used here.
     #[serde(default, rename = "$schema")]
     _schema: Option<String>,

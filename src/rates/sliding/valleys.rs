@@ -3,9 +3,10 @@
 use super::super::Unstable;
 use super::super::bordered::Bordered;
 use super::pinning::Pinning;
-use super::ways::towards;
 use crate::energy::Evaluator;
+use crate::field::Components;
 use crate::linalg::{Factors, Matrix, combination, eigen_symmetric, orthonormal, remove, slab};
+use crate::sphere::write_logs;
 use crate::stationary::{Pin, Point, State, move_free, pin};
 
 /// What turns the spins by less (rad) moves nothing.
@@ -142,6 +143,13 @@ impl<'a> Held<'a> {
         };
         values.into_iter().zip(&vectors).map(valley).collect()
     }
+}
+
+/// The geodesic from a state to another (3N), spin by spin.
+pub(super) fn towards(from: &[f64], to: &[f64]) -> Vec<f64> {
+    let (a, b, mut field) = (Components::new(from), Components::new(to), vec![0.0; from.len()]);
+    write_logs(a, b, &mut field);
+    field
 }
 
 /// A vector divided by its length.

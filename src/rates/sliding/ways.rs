@@ -1,14 +1,14 @@
 //! The ways in which a state may slide: shifts of its lattice, and a turn about an axis.
 
 use super::pinning::Pinning;
-use super::valleys::{Held, unit};
+use super::valleys::{Held, towards, unit};
 use crate::energy::{Evaluator, Hamiltonian};
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::matrix::UNIT;
 use crate::geometry::{Direction, Vector, log, vector};
 use crate::lattice::Lattice;
 use crate::linalg::slab;
-use crate::sphere::{rotate_sites, write_logs};
+use crate::sphere::rotate_sites;
 use crate::stationary::Point;
 use crate::symmetry::{Group, Operation};
 use std::f64::consts::PI;
@@ -135,13 +135,6 @@ fn fold(group: &Group, axis: Vector) -> usize {
 pub(super) fn shift_along(group: &Group, direction: usize) -> Option<(usize, &Operation)> {
     let goes = |o: &Operation| o.motion.shifts_by().filter(|_| o.moves_sites_alone())?.iter().position(|by| *by != 0);
     group.shifts().iter().map(|s| &s.operation).enumerate().find(|(_, o)| goes(o) == Some(direction))
-}
-
-/// The geodesic from a state to another (3N), spin by spin.
-pub(super) fn towards(from: &[f64], to: &[f64]) -> Vec<f64> {
-    let (a, b, mut field) = (Components::new(from), Components::new(to), vec![0.0; from.len()]);
-    write_logs(a, b, &mut field);
-    field
 }
 
 /// Whether a state goes on by this hop to the next place in the direction in which it came from the one before.
