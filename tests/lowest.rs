@@ -99,11 +99,13 @@ fn no_route_is_higher_than_the_path_that_it_is_for() {
         let outcome = solve(&config, Effort::None);
         assert!((certified(&outcome) - 25.2438).abs() < 1e-3, "{sites} {}", certified(&outcome));
         assert!(outcome.work.force_evaluations < 200_000, "{}", outcome.work.force_evaluations);
-        // where no work is left to find the saddle, the barrier is not certified and the path's height is told
-        config["neb"] = json!({"max_evaluations": 200});
+        // where the work that is allowed ends before the saddle is found, the higher route is not told in its place
+        config["neb"] = json!({"max_evaluations": 300});
         let outcome = solve(&config, Effort::None);
-        let told = |w: &String| w.starts_with("not certified") && w.contains("a path that stays below 25.");
+        let told = |w: &String| w.starts_with("not certified") && w.contains("used up");
         assert!(!outcome.certified && outcome.warnings.iter().any(told), "{:?}", outcome.warnings);
+        let barrier = outcome.barrier.expect("a barrier").forward_mev;
+        assert!((barrier - 25.2438).abs() < 0.01, "{sites} {barrier}");
     }
 }
 
