@@ -176,6 +176,10 @@ fn absurd_sizes_are_refused_before_anything_is_allocated() {
     }
     let images = format!("(18446744073709551615, {MAX_SITES}, 3)");
     assert!(refused("m.npy", &npy(&images)).contains("more than there can be"));
+    // of the length of "False,"
+    let garbled = String::from_utf8_lossy(&npy("(2, 3)")[10..]).replace("False,", "Trues ").into_bytes();
+    let garbled = [&npy("(2, 3)")[..10], &garbled].concat();
+    assert!(refused("m.npy", &garbled).contains("fortran_order is True or False"));
 }
 
 #[test]

@@ -124,9 +124,10 @@ impl Header {
             ">" => true,
             _ => return Err(format!("the byte order of {} is not known", quoted(descr))),
         };
-        let fortran = match value(text, "fortran_order").ok_or_else(|| missing("fortran_order"))? {
-            v if v.starts_with("True") => true,
-            v if v.starts_with("False") => false,
+        let fortran = value(text, "fortran_order").ok_or_else(|| missing("fortran_order"))?;
+        let fortran = match fortran.split([',', '}']).next().unwrap_or_default().trim() {
+            "True" => true,
+            "False" => false,
             v => return Err(format!("fortran_order is True or False, found {}", quoted(v))),
         };
         let tuple = value(text, "shape").and_then(|v| v.strip_prefix('(')?.split_once(')'));
