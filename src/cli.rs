@@ -26,6 +26,7 @@ pub use threads::check_threads;
 
 use crate::config::rates;
 use crate::error::Error;
+use crate::files::disk::Kind;
 use crate::output::Picture;
 use crate::output::canvas::Style;
 use crate::rates::Theory;
@@ -481,6 +482,18 @@ pub(crate) fn report(error: &anyhow::Error) -> u8 {
 pub(crate) fn worse(a: u8, b: u8) -> u8 {
     let rank = |code: u8| [0, UNFINISHED, USAGE].iter().position(|c| *c == code).unwrap_or(3);
     if rank(b) > rank(a) { b } else { a }
+}
+
+/// Why a file may not be written in the place of what is there, if it may not; what would do is another `what`.
+pub(crate) fn in_the_way(there: Kind, force: bool, what: &str) -> Option<String> {
+    match there {
+        Kind::Nothing => None,
+        Kind::File if force => None,
+        Kind::File => Some(format!("exists already; use --force to replace it, or another {what} with --out")),
+        Kind::Link | Kind::Folder | Kind::Other => Some(format!(
+            "is a symbolic link, a folder or a device, and is not replaced; give another {what} with --out"
+        )),
+    }
 }
 
 /// A line on stderr. There is nowhere to say that it cannot be written.

@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use spinneb::config::load_text;
 use std::path::Path;
 
-type V = [f64; 3];
+pub(crate) type V = [f64; 3];
 
 const SITES: usize = 4;
 /// What the other code calls J and K, its unit of energy apart, and its D from each site to the next.
@@ -16,15 +16,15 @@ const K: f64 = 0.7;
 const D: V = [0.4, -1.1, 0.3];
 const AXIS: V = [0.6, 0.0, 0.8];
 
-fn dot(a: V, b: V) -> f64 {
+pub(crate) fn dot(a: V, b: V) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-fn cross(a: V, b: V) -> V {
+pub(crate) fn cross(a: V, b: V) -> V {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-fn random(sites: usize, seed: u64) -> Vec<V> {
+pub(crate) fn random(sites: usize, seed: u64) -> Vec<V> {
     let mut r = ChaCha8Rng::seed_from_u64(seed);
     let spin = |r: &mut ChaCha8Rng| {
         let v: V = [0, 1, 2].map(|_| r.random_range(-1.0..1.0));

@@ -1,5 +1,6 @@
 //! `spinneb import`: the Hamiltonians of other codes' files, against closed forms and sums over bonds written out here.
 
+use crate::conventions::{V, cross, dot, random};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use spinneb::config::{Source, load_text};
@@ -12,7 +13,6 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use tempfile::TempDir;
 
-type V = [f64; 3];
 /// Names and texts.
 type Files = Vec<(&'static str, String)>;
 
@@ -59,25 +59,8 @@ fn energy(model: &Model, m: &[V]) -> f64 {
     problem.hamiltonian.energy_mev(problem.initial.as_slice())
 }
 
-fn dot(a: V, b: V) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: V, b: V) -> V {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
 fn close(a: f64, b: f64) {
     assert!((a - b).abs() < 1e-9 * (1.0 + a.abs().max(b.abs())), "{a} {b}");
-}
-
-fn random(sites: usize, seed: u64) -> Vec<V> {
-    let mut r = ChaCha8Rng::seed_from_u64(seed);
-    let spin = |r: &mut ChaCha8Rng| {
-        let v: V = [0, 1, 2].map(|_| r.random_range(-1.0..1.0));
-        v.map(|c| c / dot(v, v).sqrt())
-    };
-    (0..sites).map(|_| spin(&mut r)).collect()
 }
 
 /// The ladder's energy, by its definition; sites count with the cells fastest.

@@ -285,6 +285,25 @@ fn what_a_landscape_cannot_be_is_said_with_its_place() {
 }
 
 #[test]
+fn other_commands_say_what_a_landscape_is_for() {
+    let (_, folder) = landscape(&chain(3), &["--effort", "quick"]);
+    let run = |arguments: &[&str]| spinneb(folder.path(), arguments);
+    let (code, out, said) = run(&["check", "chain.json"]);
+    assert!(code == Some(0) && out.contains("chain.json: valid for `spinneb landscape`"), "{out}{said}");
+    assert!(out.contains("groups") && out.contains("down, up") && out.contains("at 2 temperatures"), "{out}");
+    let (code, _, said) = run(&["run", "chain.json"]);
+    assert!(code == Some(2) && said.contains("`spinneb landscape` takes a config without it"), "{said}");
+    let (code, _, said) = run(&["plot", "found"]);
+    assert!(code == Some(2) && said.contains("the result of a landscape, not of a path"), "{said}");
+    // with both ends it is a run's config, and what is wrong for that is told
+    let ends = ["initial", "final"].map(|end| format!(r#"{end}={{"uniform": {{"direction": [0, 0, 1]}}}}"#));
+    let wrong = r#"path={"images": 1}"#;
+    let set: Vec<&str> = ends.iter().map(String::as_str).chain([wrong]).flat_map(|set| ["--set", set]).collect();
+    let (code, out, said) = run(&[&["check", "chain.json"], &set[..]].concat());
+    assert!(code == Some(2) && out.is_empty() && said.contains("path.images"), "{code:?} {out}{said}");
+}
+
+#[test]
 fn a_saddle_without_a_rate_has_no_part_in_times_that_others_give() {
     // at 60 K a wall along the film wanders over a third of its length
     let film = r#"{"material": {"name": "toy", "moment": "2 mu_B", "energy": [{"exchange": {"J": ["10 meV"]}},

@@ -86,6 +86,18 @@ fn a_narrow_wall_on_a_long_plateau_is_certified_with_few_images_too() {
 }
 
 #[test]
+fn few_images_on_a_long_plateau_take_no_more_than_the_relaxation_of_their_band() {
+    // a hundred walls would fit: great circles between neighbours lead over the valley, whose top is any image
+    let energy =
+        json!([{"exchange": {"J": ["10 meV"]}}, {"anisotropy": {"K": "0.005555555555555556 meV", "axis": [0, 0, 1]}}]);
+    let mut config = chain(3000, false, energy, up(), down());
+    config["path"] = json!({"images": 15});
+    let outcome = solve(&config, Effort::None);
+    assert!((certified(&outcome) - 0.6666357971800622).abs() < 1e-12);
+    assert!(outcome.work.iterations <= 8, "{}", outcome.work.iterations);
+}
+
+#[test]
 fn no_route_is_higher_than_the_path_that_it_is_for() {
     // a coarse path from hop to hop leads around the saddle of a single spin's reversal, 27.54 meV, which a route over all of its
     // minima need not pass

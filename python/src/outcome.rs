@@ -10,7 +10,6 @@ use pyo3::types::PyDict;
 use spinneb::config::{Loaded, OutputConfig, RatesConfig, Source, Text};
 use spinneb::drive;
 use spinneb::error::Error;
-use spinneb::field::Components;
 use spinneb::files::disk::File;
 use spinneb::output::{Certainty, Format, Group, KINDS, ReportPage, StoredOutcome, SummaryJson, render_files};
 use std::path::PathBuf;
@@ -31,9 +30,8 @@ impl Outcome {
 
     /// The topological charge of each image of a film or crystal.
     fn charge(&self) -> Option<Vec<f64>> {
-        let (triangles, path) = (self.loaded.lattice.triangles(), &self.found.path);
-        let charge = |k: usize| triangles.charge(Components::new(path.image(k)));
-        (!triangles.corners.is_empty()).then(|| (0..path.images()).map(charge).collect())
+        let path = &self.found.path;
+        self.loaded.lattice.triangles().charges((0..path.images()).map(|k| path.image(k)))
     }
 
     /// Renders something of the report, on threads of its own.

@@ -5,7 +5,7 @@ use super::{Check, USAGE, report, worse};
 use crate::config::estimate::Estimate;
 use crate::config::neighbours::{Shell, shells};
 use crate::config::physics::Physics;
-use crate::config::{Loaded, PartMaterial, expected_images, load, load_landscape, memory, needed_bytes};
+use crate::config::{Loaded, PartMaterial, Source, expected_images, memory, needed_bytes};
 use crate::drive::survey::SurveyProblem;
 use crate::drive::{Images, Problem, Scales};
 use crate::lattice::Lattice;
@@ -40,18 +40,15 @@ enum Checked {
 }
 
 fn checked(path: &Path, set: &[String]) -> crate::error::Result<Checked> {
-    let error = match load(path, set).and_then(|loaded| Ok((loaded.problem()?, loaded))) {
-        Ok((problem, loaded)) => return Ok(Checked::Run(Box::new(loaded), Box::new(problem))),
-        Err(error) => error,
-    };
-    let without_ends = || {
-        // read twice, it has to be a file; ends that are there are wrong for a landscape too
-        let loaded = load_landscape(path, set).ok()?;
-        let asked = loaded.survey().ok()?;
-        let is_one = path != Path::new("-") && loaded.config.landscape.is_some();
-        is_one.then(|| Checked::Landscape(Box::new(loaded), Box::new(asked)))
-    };
-    without_ends().ok_or(error)
+    let source = Source::file(path)?.set(set)?;
+    if source.is_of_a_landscape_alone()? {
+        let loaded = source.load_landscape()?;
+        let asked = loaded.survey()?;
+        return Ok(Checked::Landscape(Box::new(loaded), Box::new(asked)));
+    }
+    let loaded = source.load()?;
+    let problem = loaded.problem()?;
+    Ok(Checked::Run(Box::new(loaded), Box::new(problem)))
 }
 
 fn print(out: &mut impl Write, loaded: &Loaded, verdict: &str, rows: &[(&'static str, String)]) -> io::Result<()> {
@@ -64,7 +61,7 @@ fn report_of_landscape(loaded: &Loaded, asked: &SurveyProblem) -> Vec<(&'static 
     let problem = &asked.problem;
     let scales = Scales::of_terms(&problem.hamiltonian);
     let mut rows = lattice_rows(loaded, problem);
-    rows.extend(scale_rows(loaded, problem, &scales));
+    rows.extend(scale_rows(&Physics::of(loaded, problem, &scales), problem, &scales));
     let given = loaded.config.landscape.as_ref().map_or(0, |own| own.states.len());
     if given > 0 {
         rows.push(("states", format!("{given} to start from")));
@@ -94,7 +91,8 @@ pub fn report_of(loaded: &Loaded, problem: &Problem) -> Vec<(&'static str, Strin
     }
     let total = |k: usize| numbers(states[k].iter().map(|(_, e)| e).sum());
     row("", format!("{:<20}{}{}", "total", total(0), total(1)));
-    rows.extend(scale_rows(loaded, problem, &scales));
+    let physics = Physics::of(loaded, problem, &scales);
+    rows.extend(scale_rows(&physics, problem, &scales));
     let mut row = |key: &'static str, value: String| rows.push((key, value));
     row("ends", if problem.relax_ends { "relaxed to minima first" } else { "kept as given" }.into());
     row("guess", problem.guess.as_ref().map_or("all natural ones".into(), |g| g.name().into()));
@@ -108,7 +106,6 @@ pub fn report_of(loaded: &Loaded, problem: &Problem) -> Vec<(&'static str, Strin
     let seconds = estimate.processor_seconds(loaded, problem, &scales);
     row("time", format!("about {} of one processor, by a measured step", duration(seconds)));
     let mut said: Vec<&String> = Vec::new();
-    let physics = Physics::of(loaded, problem, &scales);
     for warning in physics.warnings.iter().chain(&loaded.warnings).chain(&problem.warnings) {
         if !said.contains(&warning) {
             said.push(warning);
@@ -131,20 +128,19 @@ fn lattice_rows(loaded: &Loaded, problem: &Problem) -> Vec<(&'static str, String
 }
 
 /// How stiff it is, and what walls in it are like.
-fn scale_rows(loaded: &Loaded, problem: &Problem, scales: &Scales) -> Vec<(&'static str, String)> {
+fn scale_rows(physics: &Physics, problem: &Problem, scales: &Scales) -> Vec<(&'static str, String)> {
     let h = &problem.hamiltonian;
     let mut rows = Vec::new();
     let mut row = |key: &'static str, value: String| rows.push((key, value));
-    let physics = Physics::of(loaded, problem, scales);
     row("stiffness", format!("{:.6} meV (softest mode of a stable spin)", scales.stiffness_mev));
     row("exchange", format!("{:.6} meV {}", scales.exchange_mev, stiffness_of(h.lattice())));
     if let Some(length) = physics.exchange_length_nm {
         row("l_ex", format!("{length:.4} nm (exchange length √(2A/μ₀Ms²))"));
     }
-    row("wall width", wall_width(&physics, h.lattice()));
-    row("wall energy", wall_energy(&physics));
-    row("site barrier", site_barrier(&physics));
-    row("dominant", dominant(&physics));
+    row("wall width", wall_width(physics, h.lattice()));
+    row("wall energy", wall_energy(physics));
+    row("site barrier", site_barrier(physics));
+    row("dominant", dominant(physics));
     rows
 }
 

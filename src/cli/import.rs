@@ -1,6 +1,6 @@
 //! `import`: a config from the files of another code.
 
-use super::{USAGE, note};
+use super::{USAGE, in_the_way, note};
 use crate::config::Source;
 use crate::error::Error;
 use crate::files::disk;
@@ -66,19 +66,9 @@ fn cells(text: &str) -> Result<Cells, String> {
 pub fn import(arguments: &Arguments) -> Result<u8> {
     let file = arguments.out.clone().unwrap_or_else(|| default_name(&arguments.paths[0]));
     let shown = file.display();
-    match disk::kind(&file)? {
-        disk::Kind::Nothing => {}
-        disk::Kind::File if arguments.force => {}
-        disk::Kind::Link | disk::Kind::Folder | disk::Kind::Other => {
-            note(&format!(
-                "error: {shown} is a symbolic link, a folder or a device, and is not replaced: give another name with --out"
-            ));
-            return Ok(USAGE);
-        }
-        disk::Kind::File => {
-            note(&format!("error: {shown} exists already; use --force to replace it, or another name with --out"));
-            return Ok(USAGE);
-        }
+    if let Some(words) = in_the_way(disk::kind(&file)?, arguments.force, "name") {
+        note(&format!("error: {shown} {words}"));
+        return Ok(USAGE);
     }
     // a wrong file is no failure of the machine, so that all that is wrong with it exits alike
     let model = match read(arguments) {

@@ -1,7 +1,7 @@
 //! `relax`: the ends of a path by themselves, what they relax to and whether that is a minimum.
 
 use super::threads::start_threads;
-use super::{UNFINISHED, note, report, worse};
+use super::{UNFINISHED, in_the_way, note, report, worse};
 use crate::config::{Loaded, load_states};
 use crate::drive::{RelaxedState, relaxed_state};
 use crate::error::Error;
@@ -137,13 +137,14 @@ fn free(dir: &Path, names: &[String], force: bool, made_from: &[PathBuf]) -> Res
     for path in names.iter().map(|name| dir.join(name)) {
         let own = |path: &Path| fs::canonicalize(path).is_ok_and(|path| made_from.contains(&path));
         let words = match disk::kind(&path)? {
-            disk::Kind::Nothing => continue,
-            disk::Kind::File if own(&path) => "is a file that the states are made from; give another folder with --out",
-            disk::Kind::File if force => continue,
-            disk::Kind::File => "exists already; use --force to replace it, or another folder with --out",
-            _ => "is a symbolic link, a folder or a device, and is not replaced; give another folder with --out",
+            disk::Kind::File if own(&path) => {
+                Some("is a file that the states are made from; give another folder with --out".to_string())
+            }
+            kind => in_the_way(kind, force, "folder"),
         };
-        return Err(Error::Io { path, source: io::Error::new(ErrorKind::AlreadyExists, words) }.into());
+        if let Some(words) = words {
+            return Err(Error::Io { path, source: io::Error::new(ErrorKind::AlreadyExists, words) }.into());
+        }
     }
     Ok(())
 }

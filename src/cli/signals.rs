@@ -32,8 +32,8 @@ impl Signals {
             flag::register(signal, Arc::clone(&stop)).map(|_| ())
         };
         // nohup lets a run go on when its terminal is gone
-        let watched = KNOWN.into_iter().filter(|(signal, ..)| *signal != SIGHUP || !is_ignored(SIGHUP));
-        watched.into_iter().try_for_each(register).context("signals cannot be watched for")?;
+        let mut watched = KNOWN.into_iter().filter(|(signal, ..)| *signal != SIGHUP || !is_ignored(SIGHUP));
+        watched.try_for_each(register).context("signals cannot be watched for")?;
         Ok(Signals { stop, caught })
     }
 

@@ -85,6 +85,13 @@ impl Source {
         self.with_states(["initial", "final"])?.0.load()
     }
 
+    /// Whether only `spinneb landscape` takes it: it asks for one, and has not two ends.
+    pub fn is_of_a_landscape_alone(&self) -> Result<bool> {
+        let value: Value = self.text.parse()?;
+        let has = |key: &str| value.get(key).is_some();
+        Ok(has("landscape") && !(has("initial") && has("final")))
+    }
+
     /// With some state where it lacks one of these; whether it has each.
     fn with_states<const N: usize>(mut self, states: [&str; N]) -> Result<(Source, [bool; N])> {
         let value: Value = self.text.parse()?;

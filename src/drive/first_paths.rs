@@ -45,9 +45,9 @@ impl<'a> Run<'a, '_> {
             self.observer.stage(&format!("first path: {name}"));
             let mut c = self.start(name, guess, noise.as_ref(), None, TRIAL)?;
             c.band.rest();
-            let left = self.left(c.band.images());
+            let is_spent = self.is_spent(&c.band);
             tried.push(c);
-            if left == 0 {
+            if is_spent {
                 break;
             }
         }
@@ -94,7 +94,7 @@ impl<'a> Run<'a, '_> {
             if relaxes && !c.stop.is_converged() {
                 self.relax(c, Goal::Loose, c.band.evaluations() + LOOSELY)?;
             }
-            if !self.problem.seeks_saddles() || self.left(c.band.images()) == 0 {
+            if !self.problem.seeks_saddles() || self.is_spent(&c.band) {
                 break;
             }
             let h = c.band.evaluator();

@@ -171,7 +171,7 @@ impl<'a, 'o> Run<'a, 'o> {
     }
 
     pub(super) fn relax(&mut self, c: &mut FirstPath<'a>, goal: Goal, limit: usize) -> Result<()> {
-        let left = self.left(c.band.images()) / c.band.images();
+        let left = self.left(&c.band) / c.band.images();
         let limit = limit.min(self.problem.neb.max_evaluations).min(c.band.evaluations() + left);
         let mut relaxation = Relaxation {
             settings: &self.problem.neb,
@@ -189,10 +189,15 @@ impl<'a, 'o> Run<'a, 'o> {
         Ok(())
     }
 
-    /// How many evaluations of single states are left of what a path of so many images may take with all that is done for it.
-    pub(super) fn left(&self, images: usize) -> usize {
-        let allowed = self.problem.neb.max_evaluations.saturating_mul(images);
+    /// How many evaluations of single states are left of what a band may take with all that is done for it.
+    pub(super) fn left(&self, band: &Band) -> usize {
+        let allowed = self.problem.neb.max_evaluations.saturating_mul(band.images());
         allowed.saturating_sub(self.problem.evaluator().evaluated().evaluations)
+    }
+
+    /// Whether none are.
+    pub(super) fn is_spent(&self, band: &Band) -> bool {
+        self.left(band) == 0
     }
 
     fn prepared(&self) -> Prepared<'_> {

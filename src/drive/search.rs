@@ -7,6 +7,7 @@ use super::relaxation::height;
 use super::report::Proof;
 use super::run::Run;
 use super::settled::Settled;
+use crate::band::Band;
 use crate::energy::Hamiltonian;
 use crate::error::Result;
 use crate::geometry::Vector;
@@ -34,7 +35,7 @@ impl<'a> Run<'a, '_> {
             return Ok(report);
         }
         self.observer.stage("looking for lower passes");
-        let most = self.allowance(best.first.band.images());
+        let most = self.allowance(&best.first.band);
         let ends = self.minima;
         if ends[0] == ends[1] {
             return Ok(report);
@@ -85,12 +86,12 @@ impl<'a> Run<'a, '_> {
         Ok(report)
     }
 
-    /// What the search may evaluate after all that was evaluated for a path of so many images.
-    fn allowance(&self, images: usize) -> Count {
+    /// What the search may evaluate after all that was evaluated for a band.
+    fn allowance(&self, band: &Band) -> Count {
         let h = self.problem.evaluator();
         let own = h.evaluated();
         let hessians = (FLOPS / factorisation_flops(&h)) as usize;
-        let left = self.left(images);
+        let left = self.left(band);
         Count { evaluations: (SPINS / h.sites()).max(own.evaluations).min(left), hessians: hessians.max(own.hessians) }
     }
 

@@ -181,7 +181,7 @@ impl<'a> Run<'a, '_> {
             let doubt = match (self.problem.certify, self.problem.seeks_saddles()) {
                 (false, _) => Doubt::NotAskedFor,
                 (_, false) => Doubt::NotRefined,
-                _ if self.left(c.band.images()) == 0 => Doubt::Spent,
+                _ if self.is_spent(&c.band) => Doubt::Spent,
                 _ => Doubt::NoSaddle,
             };
             return Ok(Proof { ends, links: Vec::new(), doubts: vec![doubt] });
@@ -200,16 +200,14 @@ impl<'a> Run<'a, '_> {
             if own.iter().any(|pass| pass.is_on_a_level_with(h, saddle)) {
                 continue;
             }
-            if self.left(c.band.images()) == 0 {
+            if self.is_spent(&c.band) {
                 doubts.push(Doubt::Spent);
                 break;
             }
-            let mut pass = Pass::recorded(h, saddle.clone(), scale, &ends.each_ref())?;
+            let pass = Pass::recorded(h, saddle.clone(), scale, &ends.each_ref())?;
             match pass.doubt(h) {
                 None => {
-                    // the landscape alone keeps its ways
-                    let ways = std::mem::take(&mut pass.ways);
-                    self.land.add(Pass { ways, ..pass.clone() });
+                    self.land.add(pass.clone());
                 }
                 Some(doubt) => doubts.push(doubt),
             }
@@ -298,7 +296,7 @@ impl<'a> Run<'a, '_> {
         let tops = peaks(&c.band, scale);
         let least = tops.first().map_or(0.0, |top| top.energy_mev) - WINDOW * height(&c.band);
         for top in tops.into_iter().filter(|top| top.energy_mev >= least) {
-            if self.left(c.band.images()) == 0 {
+            if self.is_spent(&c.band) {
                 break;
             }
             if found.iter().any(|f| is_level(&c.band, [&f.top, &top], scale)) {

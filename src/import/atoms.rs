@@ -1,6 +1,6 @@
 //! Which atom stands where.
 
-use crate::geometry::matrix::{Matrix, determinant};
+use crate::geometry::matrix::{Matrix, determinant, times};
 use crate::geometry::{Vector, vector};
 use crate::lattice::Shift;
 
@@ -10,11 +10,16 @@ pub fn place(vectors: &Matrix, f: Vector) -> Vector {
     vector::add(vector::scale(f[0], a), vector::add(vector::scale(f[1], b), vector::scale(f[2], c)))
 }
 
-/// The f of Σ f_k a_k = r, by the reciprocal vectors: f₁ = r·(a₂ × a₃)/det. The vectors span a cell.
-pub fn coordinates(vectors: &Matrix, r: Vector) -> Vector {
+/// The reciprocal vectors without 2π, a_j·b_k = δ_jk: b₁ = (a₂ × a₃)/det. The vectors span a cell.
+pub fn reciprocal(vectors: &Matrix) -> Matrix {
     let [a, b, c] = *vectors;
     let volume = determinant(vectors);
-    [vector::cross(b, c), vector::cross(c, a), vector::cross(a, b)].map(|normal| vector::dot(r, normal) / volume)
+    [vector::cross(b, c), vector::cross(c, a), vector::cross(a, b)].map(|normal| vector::scale(1.0 / volume, normal))
+}
+
+/// The f of Σ f_k a_k = r.
+pub fn coordinates(vectors: &Matrix, r: Vector) -> Vector {
+    times(&reciprocal(vectors), r)
 }
 
 /// The atom at r, within `tolerance` in the unit of the vectors, and how many cells on: the nearest one.

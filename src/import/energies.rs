@@ -7,8 +7,9 @@
 //! ```
 //! With q = 0 and v = 0 instead of the average it is the ferromagnet along u. For J alone that is E(q) = −Σ J cos φ.
 
+use super::atoms::{place, reciprocal};
 use super::{Anisotropy, Model};
-use crate::geometry::matrix::{Matrix, determinant, times};
+use crate::geometry::matrix::times;
 use crate::geometry::{Vector, vector};
 use std::f64::consts::TAU;
 
@@ -57,7 +58,7 @@ impl Model {
 
     /// The direction of a wave vector given in units of the reciprocal vectors.
     fn direction(&self, q: Vector) -> Option<Vector> {
-        vector::unit(times_transposed(&reciprocal(&self.vectors), q))
+        vector::unit(place(&reciprocal(&self.vectors), q))
     }
 
     /// The cycloid of a wave vector, its spins in the plane of q and z (of z and x, where q is along z).
@@ -77,16 +78,4 @@ impl Model {
         let u = vector::unit(vector::normal_part(seed, along))?;
         Some(Spiral { q, u, v: vector::cross(along, u) })
     }
-}
-
-/// b_k with a_j·b_k = 2π δ_jk, row by row.
-fn reciprocal(vectors: &Matrix) -> Matrix {
-    let [a, b, c] = *vectors;
-    let scale = TAU / determinant(vectors);
-    [vector::cross(b, c), vector::cross(c, a), vector::cross(a, b)].map(|v| vector::scale(scale, v))
-}
-
-/// Σ q_k b_k.
-fn times_transposed(rows: &Matrix, q: Vector) -> Vector {
-    super::atoms::place(rows, q)
 }

@@ -31,6 +31,11 @@ pub struct Triangles {
 }
 
 impl Triangles {
+    /// The topological charge of each of some states (3N); nothing in a row, which has none.
+    pub fn charges<'m>(&self, states: impl Iterator<Item = &'m [f64]>) -> Option<Vec<f64>> {
+        (!self.corners.is_empty()).then(|| states.map(|m| self.charge(Components::new(m))).collect())
+    }
+
     /// The topological charge; of several layers the mean, so that a tube through all has that of each.
     pub fn charge(&self, m: Components) -> f64 {
         let solid = |corners: &[usize; 3]| {

@@ -6,7 +6,6 @@
 use super::{Format, RunReport};
 use crate::drive::Outcome;
 use crate::error::{Error, Result};
-use crate::field::Components;
 use std::fmt::Write;
 
 /// What `csv` writes.
@@ -98,11 +97,8 @@ pub(super) fn path_columns(run: &RunReport) -> Vec<(String, Vec<f64>)> {
     columns.extend(t.terms_mev.iter().map(|(term, energy)| (format!("{}_meV", column_name(term)), energy.clone())));
     columns.push(("max_perpendicular_torque_meV".into(), t.max_perpendicular_torque_mev.clone()));
     columns.push(("energy_above_initial_meV".into(), t.above_initial_mev.clone()));
-    let triangles = run.lattice.triangles();
-    if !triangles.corners.is_empty() {
-        let charge = |k: usize| triangles.charge(Components::new(path.image(k)));
-        columns.push((CHARGE.into(), (0..path.images()).map(charge).collect()));
-    }
+    let charges = run.lattice.triangles().charges((0..path.images()).map(|k| path.image(k)));
+    columns.extend(charges.map(|charges| (CHARGE.into(), charges)));
     columns
 }
 

@@ -203,18 +203,19 @@ pub(super) fn places(lattice: &Lattice) -> Option<(String, Array)> {
 /// No triangle and no hexahedron leads over a periodic border, from one side of the picture to the other.
 pub(super) fn vtk_points(lattice: &Lattice) -> VtkPoints {
     let n = lattice.sites;
-    let mut triangles = lattice.triangles();
+    let triangles = lattice.triangles();
+    let mut drawn = if triangles.layers == 1 { triangles.corners } else { Vec::new() };
     let periods = lattice.periods();
     let is_near = |i: usize, j: usize| {
         let way = vector::sub(lattice.place(j), lattice.place(i));
         vector::norm(vector::sub(periods.shortest(way), way)) < 0.5
     };
-    triangles.corners.retain(|&[a, b, c]| is_near(a, b) && is_near(b, c) && is_near(c, a));
+    drawn.retain(|&[a, b, c]| is_near(a, b) && is_near(b, c) && is_near(c, a));
     VtkPoints {
         positions: (0..n).map(|i| lattice.position(i)).collect(),
         unit: lattice.unit(),
         line: if lattice.is_row() && n > 1 { (0..n).chain(lattice.is_ring().then_some(0)).collect() } else { vec![] },
-        triangles: if triangles.layers == 1 { triangles.corners } else { Vec::new() },
+        triangles: drawn,
         hexahedra: lattice.hexahedra(),
     }
 }

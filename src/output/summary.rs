@@ -259,14 +259,16 @@ impl Summary {
     pub fn read(dir: &Path) -> Result<Summary> {
         let wrong = |words: String| Error::invalid(shown(dir, MARK), format!("{words}: {WAY_OUT}"));
         let text = text(dir, MARK)?.ok_or_else(|| wrong("is not there".into()))?;
-        if let Ok(Kind { kind }) = serde_json::from_str(&text) {
-            let words = format!(
-                "this is the result of a {kind}, not of a path between two states; its figures are drawn as it is written, and \
-                 `spinneb {kind}` with --force draws them anew"
-            );
-            return Err(Error::invalid(shown(dir, MARK), words));
-        }
-        serde_json::from_str(&text).map_err(|e| wrong(format!("is damaged: {e}")))
+        serde_json::from_str(&text).map_err(|e| match serde_json::from_str(&text) {
+            Ok(Kind { kind }) => {
+                let words = format!(
+                    "this is the result of a {kind}, not of a path between two states; its figures are drawn as it is written, and \
+                     `spinneb {kind}` with --force draws them anew"
+                );
+                Error::invalid(shown(dir, MARK), words)
+            }
+            Err(_) => wrong(format!("is damaged: {e}")),
+        })
     }
 
     /// By what negative directions were told, with the bound.

@@ -128,7 +128,9 @@ def lifetimes(temperatures_K: Array, log10_s: Array, low: NDArray[np.bool_], ax:
     style = {"color": CURVE, "marker": "o", "ms": 4, **style}
     ax.plot(temperatures_K, np.where(low, np.nan, log10_s), **style)
     # the grey line reaches to the first point of the other
-    reach = low | np.roll(low, 1) & (np.arange(len(low)) > 0) | np.roll(low, -1) & (np.arange(len(low)) < len(low) - 1)
+    reach = low.copy()
+    reach[1:] |= low[:-1]
+    reach[:-1] |= low[1:]
     if low.any():
         ax.plot(temperatures_K, np.where(reach, log10_s, np.nan), **{**style, "color": "0.6", "zorder": 1, "label": "barrier below 5 kT"})
     ax.set_xlabel("temperature (K)")

@@ -3,7 +3,6 @@
 use super::LandscapeReport;
 use crate::drive::survey::Lifetime;
 use crate::error::Result;
-use crate::field::Components;
 use crate::files::{self, Array};
 use crate::geometry::Vector;
 use crate::output::csv::{CHARGE, Cell, Table};
@@ -24,9 +23,8 @@ pub(super) fn minima(report: &LandscapeReport) -> Result<Vec<u8>> {
     for (c, name) in ["mean_spin_x", "mean_spin_y", "mean_spin_z"].into_iter().enumerate() {
         table.real(name, means.iter().map(|mean| mean[c]));
     }
-    let triangles = report.lattice.triangles();
-    if !triangles.corners.is_empty() {
-        table.real(CHARGE, s.minima.iter().map(|m| triangles.charge(Components::new(m.spins.as_slice()))));
+    if let Some(charges) = report.lattice.triangles().charges(s.minima.iter().map(|m| m.spins.as_slice())) {
+        table.real(CHARGE, charges.into_iter());
     }
     if s.has_places() {
         table.whole("places", all().map(|k| kind(k).places));
