@@ -24,7 +24,7 @@ pub(super) fn minima(report: &LandscapeReport) -> Result<Vec<u8>> {
         table.real(name, means.iter().map(|mean| mean[c]));
     }
     if let Some(charges) = report.lattice.triangles().charges(s.minima.iter().map(|m| m.spins.as_slice())) {
-        table.real(CHARGE, charges.into_iter());
+        table.real(CHARGE, charges);
     }
     if s.has_places() {
         table.whole("places", all().map(|k| kind(k).places));
