@@ -14,7 +14,7 @@
 use super::domain_wall::width;
 use super::sense::Sense;
 use super::size::{first_minimum, least};
-use super::texture::{Polar, Texture, auto_or_angle, auto_or_angle_schema, once};
+use super::texture::{Around, Texture, auto_or_angle, auto_or_angle_schema, once};
 use super::{StateBuilder, StateContext};
 use crate::energy::Hamiltonian;
 use crate::error::{Error, Result};
@@ -71,14 +71,14 @@ impl Described for Skyrmion {
 /// A skyrmion whose places are known.
 struct Placed<'a> {
     texture: Texture<'a>,
-    places: Vec<Polar>,
+    around: Around,
     through: Vector,
     odd: Option<&'a dyn Fn(usize) -> bool>,
 }
 
 impl Placed<'_> {
     fn vectors(&self, radius: f64, width: f64) -> Vec<Vector> {
-        let mut all = self.texture.spins(&self.places, self.through, |r| theta(r, radius, width));
+        let mut all = self.texture.spins(&self.around, self.through, |r| theta(r, radius, width));
         if let Some(odd) = self.odd {
             all.iter_mut().enumerate().filter(|(i, _)| odd(*i)).for_each(|(_, m)| *m = vector::scale(-1.0, *m));
         }
@@ -134,7 +134,7 @@ impl Skyrmion {
                     Some(width) => placed.energy(h, radius, width),
                     None => placed.best_width(h, radius).1,
                 };
-                let furthest = placed.places.iter().map(|place| place.r).fold(0.0, f64::max);
+                let furthest = placed.around.furthest();
                 let radius = first_minimum(SMALLEST, furthest, energy).ok_or_else(|| {
                     let message = "no size of this skyrmion is stable here, its energy falls all the way to nothing or to the whole \
                                    lattice: give it a \"radius\"";
@@ -149,13 +149,12 @@ impl Skyrmion {
 impl StateBuilder for Skyrmion {
     fn vectors(&self, context: &StateContext) -> Result<Vec<Vector>> {
         let texture = self.texture();
-        let (places, through) = (texture.polar(context)?, texture.through(context, &self.senses(context)));
+        let (around, through) = (texture.around(context)?, texture.through(context, &self.senses(context)));
         let is_odd = |i: usize| context.lattice.is_odd(i);
-        let mut placed = Placed { texture, places, through, odd: self.staggered.then_some(&is_odd) };
+        let mut placed = Placed { texture, around, through, odd: self.staggered.then_some(&is_odd) };
         let [radius, width] = self.size(context, &placed)?;
         placed.odd = None;
-        let nearest = placed.places.iter().map(|place| place.r).fold(f64::INFINITY, f64::min);
-        if PI - theta(nearest, radius, width) < NO_TRACE * PI {
+        if PI - theta(placed.around.nearest(), radius, width) < NO_TRACE * PI {
             let key = if self.center.is_some() { "center" } else { "radius" };
             let message = "a skyrmion there lies wholly outside the lattice or between its sites, and leaves no trace in it: move it \
                            inside or make it larger, or write {\"uniform\": {\"direction\": […]}}";

@@ -11,7 +11,7 @@ use super::sense::Sense;
 use crate::error::{Error, Result};
 use crate::geometry::{Direction, Quaternion, Vector, vector};
 use crate::lattice::Lattice;
-use crate::units::{Angle, Place};
+use crate::units::{self, Angle};
 use serde::de::{self, Deserialize, Deserializer, IntoDeserializer, Visitor};
 use std::fmt;
 
@@ -20,21 +20,40 @@ const ON_THE_LINE: f64 = 1e-9;
 
 /// A texture but for θ(r).
 pub(super) struct Texture<'a> {
-    pub(super) center: Option<&'a Place>,
+    pub(super) center: Option<&'a units::Place>,
     pub(super) core: Vector,
     pub(super) helicity: Option<Angle>,
     pub(super) vorticity: i32,
 }
 
-/// Where a site is: its distance from the line, and cos vφ and sin vφ.
-pub(super) struct Polar {
-    pub(super) r: f64,
+/// Where all sites are about the line. Many are equally far away, and θ is computed once for all of them.
+pub(super) struct Around {
+    /// The distances that there are (spacings), in rising order.
+    radii: Vec<f64>,
+    places: Vec<Place>,
+}
+
+/// Where a site is: which distance is its own, and cos vφ and sin vφ.
+struct Place {
+    ring: usize,
     turned: [f64; 2],
+}
+
+impl Around {
+    /// The distance of the nearest site (spacings).
+    pub(super) fn nearest(&self) -> f64 {
+        self.radii.first().copied().unwrap_or(f64::INFINITY)
+    }
+
+    /// That of the furthest.
+    pub(super) fn furthest(&self) -> f64 {
+        self.radii.last().copied().unwrap_or(0.0)
+    }
 }
 
 impl Texture<'_> {
     /// Where all sites are.
-    pub(super) fn polar(&self, context: &StateContext) -> Result<Vec<Polar>> {
+    pub(super) fn around(&self, context: &StateContext) -> Result<Around> {
         if self.vorticity == 0 {
             return Err(Error::invalid("vorticity", "found 0, but spins turn at least once around: give 1 or -1"));
         }
@@ -44,14 +63,21 @@ impl Texture<'_> {
             None => middle(lattice),
         };
         let periods = lattice.periods();
-        let of = |i: usize| {
+        let away = |i: usize| {
             let [x, y, _] = periods.shortest(vector::sub(lattice.place(i), center));
-            let r = (x * x + y * y).sqrt();
+            ([x, y], (x * x + y * y).sqrt())
+        };
+        let mut radii: Vec<f64> = (0..lattice.sites).map(|i| away(i).1).collect();
+        radii.sort_unstable_by(f64::total_cmp);
+        radii.dedup();
+        let place = |i: usize| {
+            let ([x, y], r) = away(i);
             let phi = if r > ON_THE_LINE { libm::atan2(y, x) } else { 0.0 };
             let (sin, cos) = libm::sincos(f64::from(self.vorticity) * phi);
-            Polar { r, turned: [cos, sin] }
+            Place { ring: radii.partition_point(|ring| *ring < r), turned: [cos, sin] }
         };
-        Ok((0..lattice.sites).map(of).collect())
+        let places = (0..lattice.sites).map(place).collect();
+        Ok(Around { radii, places })
     }
 
     /// The axes x, y and k of the spins.
@@ -83,16 +109,17 @@ impl Texture<'_> {
     }
 
     /// The spins, from θ(r) (rad).
-    pub(super) fn spins(&self, places: &[Polar], through: Vector, theta: impl Fn(f64) -> f64) -> Vec<Vector> {
+    pub(super) fn spins(&self, around: &Around, through: Vector, theta: impl Fn(f64) -> f64) -> Vec<Vector> {
         let across = vector::cross(self.axes()[2], through);
-        let spin = |place: &Polar| {
-            let (sin, cos) = libm::sincos(theta(place.r));
+        let rings: Vec<(f64, f64)> = around.radii.iter().map(|r| libm::sincos(theta(*r))).collect();
+        let spin = |place: &Place| {
+            let (sin, cos) = rings[place.ring];
             let [c, s] = place.turned.map(|part| sin * part);
             let turned = vector::add(vector::scale(c, through), vector::scale(s, across));
             let m = vector::add(vector::scale(cos, self.core), turned);
             vector::unit_or(m, self.core)
         };
-        places.iter().map(spin).collect()
+        around.places.iter().map(spin).collect()
     }
 }
 

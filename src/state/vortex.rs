@@ -73,10 +73,10 @@ fn theta(r: f64, core: f64) -> f64 {
 impl StateBuilder for Vortex {
     fn vectors(&self, context: &StateContext) -> Result<Vec<Vector>> {
         let texture = self.texture();
-        let (places, through) = (texture.polar(context)?, texture.through(context, &self.senses(context)));
-        let with = |core: f64| texture.spins(&places, through, |r| theta(r, core));
+        let (around, through) = (texture.around(context)?, texture.through(context, &self.senses(context)));
+        let with = |core: f64| texture.spins(&around, through, |r| theta(r, core));
         let given = width(self.radius, context.lattice).map_err(|e| e.within("radius"))?;
-        let furthest = places.iter().map(|place| place.r).fold(2.0 * SMALLEST, f64::max);
+        let furthest = around.furthest().max(2.0 * SMALLEST);
         let core = match (given, context.hamiltonian) {
             (Some(core), _) => core,
             (None, None) => USUAL,
@@ -84,7 +84,7 @@ impl StateBuilder for Vortex {
                 least(SMALLEST, furthest, |a| h.energy_mev(Spins::from_unit_vectors(&with(a)).as_slice())).0
             }
         };
-        if !places.iter().any(|place| place.r <= core.max(INSIDE)) {
+        if around.nearest() > core.max(INSIDE) {
             let message = "a vortex there has its core wholly outside the lattice: move it inside";
             return Err(Error::invalid("center", message));
         }
