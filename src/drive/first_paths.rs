@@ -15,6 +15,8 @@ use crate::stationary::ALIKE;
 
 /// Evaluations after which first paths are compared.
 const TRIAL: usize = 8;
+/// On a film, where saddles are found from farther away.
+const TRIAL_ON_A_FILM: usize = 4;
 
 /// Rounds of leaving a saddle of higher index.
 const ESCAPES: usize = 3;
@@ -37,13 +39,15 @@ impl<'a> Run<'a, '_> {
         let mut tried = Vec::new();
         let context = self.context();
         self.problem.control.check()?;
+        let is_row = self.problem.hamiltonian.lattice().is_row();
+        let trial = if is_row { TRIAL } else { TRIAL_ON_A_FILM };
         let guesses = natural_guesses(self.problem, &self.ends[0].spins, &self.ends[1].spins, &context);
         for (guess, noise) in &guesses {
             let namesakes =
                 guesses.iter().filter(|(other, _)| describe(other, false) == describe(guess, false)).count();
             let name = describe(guess, namesakes > 1);
             self.observer.stage(&format!("first path: {name}"));
-            let mut c = self.start(name, guess, noise.as_ref(), None, TRIAL)?;
+            let mut c = self.start(name, guess, noise.as_ref(), None, trial)?;
             c.band.rest();
             let is_spent = self.is_spent(&c.band);
             tried.push(c);
@@ -53,7 +57,6 @@ impl<'a> Run<'a, '_> {
         }
         tried.sort_by(|p, q| p.peak_mev().total_cmp(&q.peak_mev()));
         let scale = self.scales.stiffness_mev;
-        let is_row = self.problem.hamiltonian.lattice().is_row();
         let (mut finished, mut lowest_barrier) = (0, f64::INFINITY);
         let mut kinds: Vec<String> = vec!["geodesic".into()];
         for c in &mut tried {
