@@ -35,7 +35,7 @@ pub fn drawing(lattice: &Lattice) -> Vec<String> {
         return Vec::new();
     }
     let places: Vec<[f64; 3]> = (0..lattice.sites).map(|i| lattice.place(i)).collect();
-    let [(left, across), (bottom, up)] = scales(&places);
+    let ([(left, across), (bottom, up)], coarse) = scales(&places);
     let marks = marks(lattice);
     let mut letters: BTreeMap<(usize, usize), Mark> = BTreeMap::new();
     for (place, mark) in places.iter().zip(&marks) {
@@ -49,7 +49,7 @@ pub fn drawing(lattice: &Lattice) -> Vec<String> {
         row.fold(String::new(), |line, ((_, column), mark)| format!("{line:<column$}{}", mark.letter()))
     };
     let mut lines: Vec<String> = (0..=top).rev().map(line).collect();
-    lines.push(legend(lattice, &marks));
+    lines.push(legend(lattice, &marks, coarse));
     lines
 }
 
@@ -65,8 +65,8 @@ fn marks(lattice: &Lattice) -> Vec<Mark> {
     marks
 }
 
-/// "o 392 sites, a 25 of region pin, # 12 frozen, x 3 vacant; x to the right, y upwards".
-fn legend(lattice: &Lattice, marks: &[Mark]) -> String {
+/// "o 392 sites, a 25 of region pin, # 12 frozen, x 3 vacant; x to the right, y upwards", and what is not seen.
+fn legend(lattice: &Lattice, marks: &[Mark], coarse: bool) -> String {
     let named = |k: u8| lattice.regions.keys().nth(usize::from(k)).cloned().unwrap_or_default();
     let mut counts: BTreeMap<Mark, usize> = BTreeMap::new();
     marks.iter().for_each(|mark| *counts.entry(*mark).or_default() += 1);
@@ -81,12 +81,13 @@ fn legend(lattice: &Lattice, marks: &[Mark]) -> String {
     };
     let parts: Vec<String> = counts.iter().map(part).collect();
     let behind = if lattice.grid.size[2] > 1 { ", all layers along z as one" } else { "" };
-    format!("{}; x to the right, y upwards{behind}", parts.join(", "))
+    let together = if coarse { ", neighbours under one letter" } else { "" };
+    format!("{}; x to the right, y upwards{behind}{together}", parts.join(", "))
 }
 
 /// Where the drawing begins along x and y, and what a letter and a line are: a line as high as two letters are wide. A letter of its
-/// own for every place, where there is room for all.
-fn scales(places: &[[f64; 3]]) -> [(f64, f64); 2] {
+/// own for every place, where there is room for all; else whole spacings, and that it is so.
+fn scales(places: &[[f64; 3]]) -> ([(f64, f64); 2], bool) {
     let axis = |c: usize| {
         let mut all: Vec<f64> = places.iter().map(|p| p[c]).collect();
         all.sort_by(f64::total_cmp);
@@ -98,10 +99,11 @@ fn scales(places: &[[f64; 3]]) -> [(f64, f64); 2] {
     let finer = across / (2.0 * across / up).round().max(1.0);
     let fits = |unit: f64| width / unit <= WIDE;
     if height / up <= HIGH && (fits(finer) || fits(across)) {
-        return [(left, if fits(finer) { finer } else { across }), (bottom, up)];
+        return ([(left, if fits(finer) { finer } else { across }), (bottom, up)], false);
     }
-    let line = (height / HIGH).max(2.0 * width / WIDE);
-    [(left, 0.5 * line), (bottom, line)]
+    let line = up * ((height / HIGH).max(2.0 * width / WIDE) / up).ceil();
+    let letter = across * (width / WIDE / across).ceil().max((0.5 * line / across).round());
+    ([(left, letter), (bottom, line)], true)
 }
 
 #[cfg(test)]
@@ -135,8 +137,9 @@ mod tests {
     #[test]
     fn a_large_film_fits_and_keeps_its_proportions() {
         for (text, wide, high) in [
-            (r#"{"square": {"cells": [300, 300]}}"#, 59, 30),
-            (r#"{"square": {"cells": [400, 40]}}"#, 72, 4),
+            (r#"{"square": {"cells": [40, 40]}}"#, 40, 21),
+            (r#"{"square": {"cells": [300, 300]}}"#, 51, 28),
+            (r#"{"square": {"cells": [400, 40]}}"#, 68, 4),
             (r#"{"honeycomb": {"cells": [60, 60], "periodic": true}}"#, 0, 0),
             (r#"{"fcc": {"cells": [40, 8, 3]}}"#, 0, 0),
         ] {
@@ -145,6 +148,9 @@ mod tests {
             assert!(widest <= 73 && lines.len() <= 32, "{text}: {widest} × {}", lines.len());
             if wide > 0 {
                 assert_eq!((widest, lines.len() - 1), (wide, high), "{text}");
+                // every letter stands for as many sites as its neighbour
+                assert!(lines[..high].iter().all(|line| !line.contains(' ')), "{lines:?}");
+                assert!(lines[high].ends_with("y upwards, neighbours under one letter"), "{lines:?}");
             }
         }
     }

@@ -59,9 +59,13 @@ fn rate_one(arguments: &Rate, directory: &Path) -> Result<u8> {
     if !arguments.quiet {
         outcome.warnings.iter().for_each(|warning| note(&format!("{name}: warning: {warning}")));
         if outcome.rates.is_some() {
-            note(&format!(
-                "{name}: rates are in {place}: summary.json, and the table and the figure that its config asks for"
-            ));
+            let figure = if ["svg", "png"].iter().any(|kind| directory.join("arrhenius").with_extension(kind).exists())
+            {
+                "the table and the figure that its config asks for"
+            } else {
+                "the table that its config asks for; no figure: that takes times at two temperatures"
+            };
+            note(&format!("{name}: rates are in {place}: summary.json, and {figure}"));
         }
     }
     print(arguments, name, directory, &outcome)

@@ -128,9 +128,10 @@ pub(super) fn run_one(arguments: &Run, signals: &Signals, loaded: &Loaded, direc
                 if let Err(error) = leave_partial(loaded, &problem, band.as_ref(), directory, &stage, word) {
                     report(&error);
                 }
-                let on = match Checkpoint::exists(directory) {
-                    true => "--resume goes on from there",
-                    false => "there is no checkpoint to go on from",
+                let on = match (Checkpoint::exists(directory), arguments.resume) {
+                    (true, true) => "the same command goes on from there",
+                    (true, false) => "--resume goes on from there",
+                    (false, _) => "there is no checkpoint to go on from",
                 };
                 say(&format!("{name}: {word} while {stage}; {on}; partial results in {place}"));
                 return Ok(code);
@@ -177,13 +178,7 @@ pub(super) fn checkpoint(
     let Some(every) = keeping.every.0 else { return Ok(None) };
     let new = || Checkpoint::new(directory, VERSION, &loaded.sha256, every, progress.speaker());
     let mut say = progress.speaker();
-    if !keeping.resume {
-        if Checkpoint::exists(directory) {
-            say("starting anew; --resume would have gone on from the checkpoint that is there");
-        }
-        return Ok(Some(new()));
-    }
-    let checkpoint = match new().resume() {
+    let checkpoint = match if keeping.resume { new().resume() } else { new().anew() } {
         Err(e) if keeping.force => {
             say(&format!("starting anew: {e}"));
             new()

@@ -3,7 +3,7 @@
 use super::json::{Holds, Node, Step, position, scan, steps};
 use super::text::tree;
 use crate::error::{Error, Result};
-use crate::words::quoted;
+use crate::words::{nearest, quoted};
 
 /// The text with each assignment (`path.images=21`, `energy[0].anisotropy.K="1 meV"`, `energy.0.…`) carried out in
 /// turn; `file` is the name that messages about the text begin with.
@@ -68,7 +68,14 @@ fn edit(root: &Node, steps: &[Step], value: &str) -> std::result::Result<(usize,
     for step in rest.iter().rev() {
         match step {
             Step::Key(key) => new = format!("{{{}: {new}}}", serde_json::Value::from(key.as_str())),
-            Step::Index(i) => return Err(format!("there is no array to take [{i}] of: give the whole array")),
+            Step::Index(i) => {
+                let hint = match (&node.holds, next) {
+                    (Holds::Members(members), Step::Key(key)) => nearest(key, members.iter().map(|m| m.key.as_str())),
+                    _ => None,
+                };
+                let hint = hint.map_or("give the whole array".into(), |near| format!("did you mean {}?", quoted(near)));
+                return Err(format!("there is no array to take [{i}] of: {hint}"));
+            }
         }
     }
     let here = super::json::written(&steps[..depth]);

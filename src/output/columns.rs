@@ -73,8 +73,7 @@ impl Columns {
 }
 
 /// What to do about a file that is damaged.
-pub(super) const WAY_OUT: &str =
-    "the file is damaged; `spinneb run` with --force on the result's config.json writes it anew";
+pub(super) const WAY_OUT: &str = "the file is damaged; `spinneb run` on the result's config.json, with --force and --out naming its folder, writes it anew";
 
 #[cfg(test)]
 mod tests {

@@ -116,7 +116,10 @@ pub fn prepare(dir: &Path, intent: &Intent) -> Result<Destination> {
 /// The finished result in `dir`, if there is one. A damaged one is an error; only files whose names `matter` can show that.
 pub fn stored_result(dir: &Path, matter: impl Fn(&str) -> bool) -> Result<Option<StoredResult>> {
     let folder = Folder::open(dir)?;
-    folder.refuse_damage(matter, "; `spinneb run` with --force on its config writes it anew")?;
+    folder.refuse_damage(
+        matter,
+        &format!("; `spinneb run` on its config with --force and --out {} writes it anew", dir.display()),
+    )?;
     Ok(folder.stored)
 }
 

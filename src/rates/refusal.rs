@@ -95,8 +95,9 @@ pub enum UnknownModes {
     },
     /// A translation over a lattice that does not repeat along it, all but free.
     #[error(
-        "a translation that nothing holds: k_BT at {kelvin} K moves it by {cells:.1} cells along a direction in which the lattice does not \
-         repeat, so how far it reaches is not known; a periodic lattice, or something that pins the state, would tell"
+        "a translation that nothing holds: k_BT at {} moves it by {cells:.1} cells along a direction in which the lattice does not \
+         repeat, so how far it reaches is not known; a periodic lattice, or something that pins the state, would tell",
+        super::validity::kelvin(*kelvin)
     )]
     Wanders {
         /// How far (cells of the lattice, root mean square).

@@ -201,7 +201,7 @@ fn vague_curvature(vague: f64, langer: Option<Prefactor>) -> Option<String> {
 }
 
 /// A temperature in a few digits.
-fn kelvin(t: f64) -> String {
+pub(super) fn kelvin(t: f64) -> String {
     if t < 0.01 { format!("{t:.1e} K") } else { format!("{t:.4} K") }
 }
 

@@ -57,6 +57,13 @@ impl Identity {
     }
 }
 
+/// The frames of a journal behind the first, and who recorded it; nothing where that cannot be read.
+fn begun(file: &File, size: u64) -> io::Result<Option<(Frames<BufReader<&File>>, Identity)>> {
+    let Some(mut frames) = Frames::of(BufReader::with_capacity(1 << 16, file), size)? else { return Ok(None) };
+    let identity = frames.next_frame()?.and_then(|json| serde_json::from_slice(&json).ok());
+    Ok(identity.map(|identity| (frames, identity)))
+}
+
 /// Check value of the running program, also where its file has been replaced meanwhile.
 fn program() -> io::Result<u32> {
     let running = Path::new("/proc/self/exe");
@@ -183,29 +190,50 @@ impl Checkpoint {
     /// ([`ErrorKind::AlreadyExists`]); one that is damaged is used as far as it is whole.
     pub fn resume(mut self) -> Result<Checkpoint> {
         let path = self.folder.join(JOURNAL);
-        let file = match OpenOptions::new().read(true).write(true).open(&path) {
-            Ok(file) => file,
-            Err(e) if matches!(e.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
-                (self.say)("no checkpoint to go on from: starting anew");
-                return Ok(self);
-            }
-            Err(e) => return Err(Error::Io { path, source: e }),
+        let Some(file) = self.there()? else {
+            (self.say)("no checkpoint to go on from: starting anew");
+            return Ok(self);
         };
-        let read = self.scan(&file).map_err(|source| Error::Io { path: path.clone(), source })?;
-        let Some(found) = read else {
+        let Some(found) = self.scan(&file).map_err(|source| Error::Io { path: path.clone(), source })? else {
             (self.say)(&format!("{} is damaged and cannot be used: starting anew", path.display()));
             return Ok(self);
         };
-        if let Some(other) = self.identity().differs(&found) {
-            let words = format!(
-                "is the checkpoint of {other}, from which this run cannot go on; without --resume the run starts anew \
-                 and replaces it, or give another directory with --out"
-            );
-            return Err(Error::Io { path: self.folder, source: io::Error::new(ErrorKind::AlreadyExists, words) });
-        }
+        self.refuse_other(&found)?;
         self.journal = Some(file);
         self.read_snapshots();
         Ok(self)
+    }
+
+    /// Begins anew in the place of what the folder has, of which only this run's own gives way: a checkpoint of another config, version or
+    /// build is an error as it is for [`resume`](Self::resume).
+    pub fn anew(mut self) -> Result<Checkpoint> {
+        if let Some(file) = self.there()? {
+            let found = file.metadata().and_then(|data| Ok(begun(&file, data.len())?.map(|(_, found)| found)));
+            if let Some(found) = found.map_err(|source| Error::Io { path: self.folder.join(JOURNAL), source })? {
+                self.refuse_other(&found)?;
+                (self.say)("starting anew; --resume would have gone on from the checkpoint that is there");
+            }
+        }
+        Ok(self)
+    }
+
+    /// The journal that is there.
+    fn there(&self) -> Result<Option<File>> {
+        let path = self.folder.join(JOURNAL);
+        match OpenOptions::new().read(true).write(true).open(&path) {
+            Ok(file) => Ok(Some(file)),
+            Err(e) if matches!(e.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => Ok(None),
+            Err(source) => Err(Error::Io { path, source }),
+        }
+    }
+
+    fn refuse_other(&mut self, found: &Identity) -> Result<()> {
+        let Some(other) = self.identity().differs(found) else { return Ok(()) };
+        let words = format!(
+            "is the checkpoint of {other}, from which this run cannot go on: --force starts anew and replaces it, or give another \
+             directory with --out"
+        );
+        Err(Error::Io { path: self.folder.clone(), source: io::Error::new(ErrorKind::AlreadyExists, words) })
     }
 
     /// How many finished computations there are to go on from.
@@ -226,10 +254,7 @@ impl Checkpoint {
     /// Finds the whole frames of a journal; who recorded it.
     fn scan(&mut self, file: &File) -> io::Result<Option<Identity>> {
         let size = file.metadata()?.len();
-        let Some(mut frames) = Frames::of(BufReader::with_capacity(1 << 16, file), size)? else { return Ok(None) };
-        let Some(identity) = frames.next_frame()?.and_then(|json| serde_json::from_slice(&json).ok()) else {
-            return Ok(None);
-        };
+        let Some((mut frames, identity)) = begun(file, size)? else { return Ok(None) };
         self.start = frames.end;
         let mut begin = frames.end;
         while frames.next_frame()?.is_some() {

@@ -418,6 +418,7 @@ fn assignments_that_cannot_be_made_say_why() {
         ("energy.K=1", "--set energy.K: energy is an array: an index is expected, such as [0]"),
         ("path[0]=1", "--set path[0]: path is an object: it has keys and no [0]"),
         ("new[0]=1", "--set new[0]: there is no array to take [0] of: give the whole array"),
+        ("energi[0]=1", "--set energi[0]: there is no array to take [0] of: did you mean \"energy\"?"),
         (
             "material=materials/x.json",
             r#"--set material: "materials/x.json" is not JSON; a string is written --set 'material="materials/x.json"'"#,
