@@ -206,10 +206,12 @@ impl Sheet {
                 (u, v) = (v, u);
             }
             let times = (dot(u, v) / dot(u, u)).round();
-            if times == 0.0 {
+            let w = [v[0] - times * u[0], v[1] - times * u[1]];
+            // of a triangular lattice u and v − u are as long as v, and rounding would lead from one to the other for ever
+            if dot(w, w) > dot(v, v) * (1.0 - ALIKE) {
                 return (dot(u, u) + dot(v, v)).sqrt();
             }
-            v = [v[0] - times * u[0], v[1] - times * u[1]];
+            v = w;
         }
     }
 }
@@ -233,6 +235,20 @@ fn left_of(q: [f64; 2], near: &[(Corner, [f64; 2])]) -> Option<Vec<(Corner, [f64
 mod tests {
     use super::*;
     use crate::lattice::LatticeSpec;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    #[test]
+    fn the_shortest_vectors_of_a_turned_triangular_lattice_are_found_whichever_way_they_are_rounded() {
+        let mut r = ChaCha8Rng::seed_from_u64(7);
+        for _ in 0..2000 {
+            let (angle, size) = (r.random_range(0.0..6.3), r.random_range(0.5..2.0));
+            let [u, v] = [angle, angle + PI / 3.0].map(|a: f64| [size * a.cos(), size * a.sin()]);
+            let by = f64::from(r.random_range(-3..4i32));
+            let sheet = Sheet { vectors: [u, [v[0] + by * u[0], v[1] + by * u[1]]], atoms: vec![], parts: vec![] };
+            assert!((sheet.diagonal() - 2f64.sqrt() * size).abs() < 1e-12 * size);
+        }
+    }
 
     fn lattice(text: &str) -> Lattice {
         serde_json::from_str::<LatticeSpec>(text).unwrap().resolve().unwrap()
