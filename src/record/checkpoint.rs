@@ -57,11 +57,9 @@ impl Identity {
     }
 }
 
-/// The frames of a journal behind the first, and who recorded it; nothing where that cannot be read.
-fn begun(file: &File, size: u64) -> io::Result<Option<(Frames<BufReader<&File>>, Identity)>> {
-    let Some(mut frames) = Frames::of(BufReader::with_capacity(1 << 16, file), size)? else { return Ok(None) };
-    let identity = frames.next_frame()?.and_then(|json| serde_json::from_slice(&json).ok());
-    Ok(identity.map(|identity| (frames, identity)))
+/// Who recorded what these frames begin with; nothing where that cannot be read.
+fn who(frames: &mut Frames<impl Read>) -> io::Result<Option<Identity>> {
+    Ok(frames.next_frame()?.and_then(|json| serde_json::from_slice(&json).ok()))
 }
 
 /// Check value of the running program, also where its file has been replaced meanwhile.
@@ -208,7 +206,9 @@ impl Checkpoint {
     /// build is an error as it is for [`resume`](Self::resume).
     pub fn anew(mut self) -> Result<Checkpoint> {
         if let Some(file) = self.there()? {
-            let found = file.metadata().and_then(|data| Ok(begun(&file, data.len())?.map(|(_, found)| found)));
+            let size = |file: &File| file.metadata().map(|data| data.len());
+            let frames = size(&file).and_then(|size| Frames::of(BufReader::new(&file), size));
+            let found = frames.and_then(|frames| frames.map_or(Ok(None), |mut frames| who(&mut frames)));
             if let Some(found) = found.map_err(|source| Error::Io { path: self.folder.join(JOURNAL), source })? {
                 self.refuse_other(&found)?;
                 (self.say)("starting anew; --resume would have gone on from the checkpoint that is there");
@@ -254,7 +254,8 @@ impl Checkpoint {
     /// Finds the whole frames of a journal; who recorded it.
     fn scan(&mut self, file: &File) -> io::Result<Option<Identity>> {
         let size = file.metadata()?.len();
-        let Some((mut frames, identity)) = begun(file, size)? else { return Ok(None) };
+        let Some(mut frames) = Frames::of(BufReader::with_capacity(1 << 16, file), size)? else { return Ok(None) };
+        let Some(identity) = who(&mut frames)? else { return Ok(None) };
         self.start = frames.end;
         let mut begin = frames.end;
         while frames.next_frame()?.is_some() {
@@ -295,10 +296,7 @@ impl Checkpoint {
         let file = File::open(path)?;
         let size = file.metadata()?.len();
         let Some(mut frames) = Frames::of(BufReader::new(file), size)? else { return Ok(None) };
-        let Some(identity) = frames.next_frame()?.and_then(|json| serde_json::from_slice::<Identity>(&json).ok())
-        else {
-            return Ok(None);
-        };
+        let Some(identity) = who(&mut frames)? else { return Ok(None) };
         if identity != *self.identity() {
             return Ok(None);
         }
