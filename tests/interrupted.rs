@@ -247,10 +247,12 @@ fn a_checkpoint_of_another_config_is_refused_and_left_as_it_is() {
     assert_eq!(code, Some(2), "{said}");
     assert!(said.contains("error: out/checkpoint: is the checkpoint of another config"), "{said}");
     assert_eq!(fs::read(&journal).unwrap(), before);
-    // nor does a run that asks for nothing of it take it away
-    let (code, _, said) = run(folder.path(), &other[1..]);
-    assert!(code == Some(2) && said.contains("is the checkpoint of another config"), "{said}");
-    assert_eq!(fs::read(&journal).unwrap(), before);
+    // nor does a run that asks for nothing of it take it away, or one that records nothing
+    for unrecorded in [&[][..], &["--checkpoint-every", "off"]] {
+        let (code, _, said) = run(folder.path(), &[&other[1..], unrecorded].concat());
+        assert!(code == Some(2) && said.contains("is the checkpoint of another config"), "{said}");
+        assert_eq!(fs::read(&journal).unwrap(), before);
+    }
     let (code, _, said) = run(folder.path(), &[&other[..], &["--force"]].concat());
     assert!(matches!(code, Some(0 | 3)), "{said}");
     assert!(said.contains("starting anew: out/checkpoint: is the checkpoint of another config"), "{said}");

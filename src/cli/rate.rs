@@ -6,7 +6,7 @@ use super::write::{Earlier, write};
 use super::{Rate, UNFINISHED, USAGE, note, report, worse};
 use crate::config::{Loaded, RatesConfig, load};
 use crate::drive::{self, Outcome, Problem};
-use crate::output::{StoredOutcome, folder};
+use crate::output::{Picture, StoredOutcome, folder};
 use crate::rates::{Row, Theory, TransitionRow, Way, digits};
 use crate::record::Lock;
 use anyhow::Result;
@@ -59,11 +59,12 @@ fn rate_one(arguments: &Rate, directory: &Path) -> Result<u8> {
     if !arguments.quiet {
         outcome.warnings.iter().for_each(|warning| note(&format!("{name}: warning: {warning}")));
         if outcome.rates.is_some() {
-            let figure = if ["svg", "png"].iter().any(|kind| directory.join("arrhenius").with_extension(kind).exists())
-            {
-                "the table and the figure that its config asks for"
-            } else {
-                "the table that its config asks for; no figure: that takes times at two temperatures"
+            let is_there = |kind: Picture| directory.join("arrhenius").with_extension(kind.extension()).exists();
+            let figure = match [Picture::Svg, Picture::Png].into_iter().any(is_there) {
+                true => "the table and the figure that its config asks for",
+                false => {
+                    "the table that its config asks for; no figure, which takes a config that asks for it and times at two temperatures"
+                }
             };
             note(&format!("{name}: rates are in {place}: summary.json, and {figure}"));
         }

@@ -168,17 +168,19 @@ pub(super) fn run_one(arguments: &Run, signals: &Signals, loaded: &Loaded, direc
     print(arguments, name, directory)
 }
 
-/// Where the run is recorded, if that is asked for, with what it goes on from.
+/// Where the run is recorded, if that is asked for, with what it goes on from. Whether it is or not, the checkpoint of another run gives
+/// way only by force.
 pub(super) fn checkpoint(
     keeping: &Keeping,
     loaded: &Loaded,
     directory: &Path,
     progress: &Progress,
 ) -> Result<Option<Checkpoint>> {
-    let Some(every) = keeping.every.0 else { return Ok(None) };
-    let new = || Checkpoint::new(directory, VERSION, &loaded.sha256, every, progress.speaker());
+    let every = keeping.every.0;
+    let new = || Checkpoint::new(directory, VERSION, &loaded.sha256, every.unwrap_or_default(), progress.speaker());
     let mut say = progress.speaker();
-    let checkpoint = match if keeping.resume { new().resume() } else { new().anew() } {
+    let found = if keeping.resume && every.is_some() { new().resume() } else { new().anew() };
+    let checkpoint = match found {
         Err(e) if keeping.force => {
             say(&format!("starting anew: {e}"));
             new()
@@ -188,7 +190,7 @@ pub(super) fn checkpoint(
     if !checkpoint.is_empty() {
         say(&format!("going on from the checkpoint, with {} finished steps", checkpoint.len()));
     }
-    Ok(Some(checkpoint))
+    Ok(every.map(|_| checkpoint))
 }
 
 /// What is known of a run that was stopped.

@@ -16,7 +16,8 @@ use crate::stationary::ALIKE;
 /// Evaluations after which first paths are compared.
 const TRIAL: usize = 8;
 /// On a film, where saddles are found from farther away, if no lower pass is looked for: to the search a first path that is more
-/// relaxed is worth its work (of 100 disordered films in eight forms each, those of one differ, with half the evaluations those of 4).
+/// relaxed is worth its work (of 100 disordered films in eight forms each those of 4 differ with half the evaluations, of these none with
+/// all).
 const BRIEF_TRIAL: usize = 4;
 
 /// Rounds of leaving a saddle of higher index.

@@ -73,7 +73,8 @@ impl Columns {
 }
 
 /// What to do about a file that is damaged.
-pub(super) const WAY_OUT: &str = "the file is damaged; `spinneb run` on the result's config.json, with --force and --out naming its folder, writes it anew";
+pub(super) const WAY_OUT: &str = "the file is damaged; `spinneb run` on the result's config.json, with --force and --out naming \
+                                  its folder, writes it anew";
 
 #[cfg(test)]
 mod tests {

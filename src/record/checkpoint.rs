@@ -57,9 +57,15 @@ impl Identity {
     }
 }
 
-/// Who recorded what these frames begin with; nothing where that cannot be read.
-fn who(frames: &mut Frames<impl Read>) -> io::Result<Option<Identity>> {
-    Ok(frames.next_frame()?.and_then(|json| serde_json::from_slice(&json).ok()))
+/// The frames of a file behind the first, and who recorded it, which that one tells.
+type Begun<'f> = (Frames<BufReader<&'f File>>, Identity);
+
+/// Reads who recorded a journal or a snapshot; nothing where that cannot be read.
+fn begun(file: &File) -> io::Result<Option<Begun<'_>>> {
+    let size = file.metadata()?.len();
+    let Some(mut frames) = Frames::of(BufReader::with_capacity(1 << 16, file), size)? else { return Ok(None) };
+    let identity = frames.next_frame()?.and_then(|json| serde_json::from_slice(&json).ok());
+    Ok(identity.map(|identity| (frames, identity)))
 }
 
 /// Check value of the running program, also where its file has been replaced meanwhile.
@@ -206,10 +212,8 @@ impl Checkpoint {
     /// build is an error as it is for [`resume`](Self::resume).
     pub fn anew(mut self) -> Result<Checkpoint> {
         if let Some(file) = self.there()? {
-            let size = |file: &File| file.metadata().map(|data| data.len());
-            let frames = size(&file).and_then(|size| Frames::of(BufReader::new(&file), size));
-            let found = frames.and_then(|frames| frames.map_or(Ok(None), |mut frames| who(&mut frames)));
-            if let Some(found) = found.map_err(|source| Error::Io { path: self.folder.join(JOURNAL), source })? {
+            let unreadable = |source| Error::Io { path: self.folder.join(JOURNAL), source };
+            if let Some((_, found)) = begun(&file).map_err(unreadable)? {
                 self.refuse_other(&found)?;
                 (self.say)("starting anew; --resume would have gone on from the checkpoint that is there");
             }
@@ -253,9 +257,7 @@ impl Checkpoint {
 
     /// Finds the whole frames of a journal; who recorded it.
     fn scan(&mut self, file: &File) -> io::Result<Option<Identity>> {
-        let size = file.metadata()?.len();
-        let Some(mut frames) = Frames::of(BufReader::with_capacity(1 << 16, file), size)? else { return Ok(None) };
-        let Some(identity) = who(&mut frames)? else { return Ok(None) };
+        let Some((mut frames, identity)) = begun(file)? else { return Ok(None) };
         self.start = frames.end;
         let mut begin = frames.end;
         while frames.next_frame()?.is_some() {
@@ -294,9 +296,7 @@ impl Checkpoint {
 
     fn read_snapshot(&mut self, path: &Path) -> io::Result<Option<(u64, Vec<u8>)>> {
         let file = File::open(path)?;
-        let size = file.metadata()?.len();
-        let Some(mut frames) = Frames::of(BufReader::new(file), size)? else { return Ok(None) };
-        let Some(identity) = who(&mut frames)? else { return Ok(None) };
+        let Some((mut frames, identity)) = begun(&file)? else { return Ok(None) };
         if identity != *self.identity() {
             return Ok(None);
         }

@@ -67,16 +67,16 @@ impl Texture<'_> {
             let [x, y, _] = periods.shortest(vector::sub(lattice.place(i), center));
             ([x, y], (x * x + y * y).sqrt())
         };
-        let mut radii: Vec<f64> = (0..lattice.sites).map(|i| away(i).1).collect();
+        let sites: Vec<([f64; 2], f64)> = (0..lattice.sites).map(away).collect();
+        let mut radii: Vec<f64> = sites.iter().map(|(_, r)| *r).collect();
         radii.sort_unstable_by(f64::total_cmp);
         radii.dedup();
-        let place = |i: usize| {
-            let ([x, y], r) = away(i);
+        let place = |([x, y], r): ([f64; 2], f64)| {
             let phi = if r > ON_THE_LINE { libm::atan2(y, x) } else { 0.0 };
             let (sin, cos) = libm::sincos(f64::from(self.vorticity) * phi);
             Place { ring: radii.partition_point(|ring| *ring < r), turned: [cos, sin] }
         };
-        let places = (0..lattice.sites).map(place).collect();
+        let places = sites.into_iter().map(place).collect();
         Ok(Around { radii, places })
     }
 
