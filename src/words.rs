@@ -7,7 +7,9 @@ const SHOWN: usize = 60;
 const LONGEST: usize = 64;
 
 /// The candidate nearest to `word` in Damerau–Levenshtein distance (insertions, deletions, substitutions and swaps of
-/// neighbours count one each), case set aside; nothing where all are more than a third of the word's letters away.
+/// neighbours count one each), case set aside; nothing where all are more than a third of the word's letters away. A candidate that
+/// consists of whole parts of the word, as `zeeman` does of those of `zeeman_field`, is one edit away, and one of which the word is
+/// such a part two.
 ///
 /// The first of equally near candidates wins.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
@@ -24,7 +26,7 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         if other.len() > LONGEST {
             continue;
         }
-        let distance = edits(&letters, &other);
+        let distance = edits(&letters, &other).min(parts_left_out(&letters, &other));
         // A word of which no letter is left is not a misspelling.
         let usable = distance <= allowed && distance < letters.len().max(other.len());
         if usable && best.is_none_or(|(d, _)| distance < d) {
@@ -36,6 +38,21 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
 
 fn lowered(word: &str) -> Vec<char> {
     word.chars().flat_map(char::to_lowercase).collect()
+}
+
+/// What it counts that one word consists of some of the other's parts, which underscores, hyphens and blanks separate.
+fn parts_left_out(word: &[char], candidate: &[char]) -> usize {
+    let is_part = |c: &char| c.is_alphanumeric();
+    let parts = |letters: &'_ [char]| -> Vec<String> {
+        letters.split(|c| !is_part(c)).map(|part| part.iter().collect()).collect()
+    };
+    let [word, candidate] = [word, candidate].map(parts);
+    let holds = |long: &[String], short: &[String]| long.windows(short.len()).any(|some| some == short);
+    match () {
+        () if holds(&word, &candidate) => 1,
+        () if holds(&candidate, &word) => 2,
+        () => usize::MAX,
+    }
 }
 
 /// Damerau–Levenshtein distance in the restricted form (no letter is edited twice).
@@ -93,8 +110,26 @@ mod tests {
             ("A", None),
             ("colour", None),
             ("", None),
+            ("sites_number", Some("sites")),
+            ("section", Some("cross_section")),
+            ("cross-section", Some("cross_section")),
         ] {
             assert_eq!(nearest(word, keys), expected, "{word}");
+        }
+    }
+
+    #[test]
+    fn a_word_of_which_another_is_a_part_is_nearer_than_one_that_looks_like_it() {
+        let kinds = ["exchange", "anisotropy", "cubic_anisotropy", "dmi", "zeeman"];
+        for (word, expected) in [
+            ("uniaxial_anisotropy", Some("anisotropy")),
+            ("cubic", Some("cubic_anisotropy")),
+            ("Zeeman field", Some("zeeman")),
+            ("bulk_dmi", Some("dmi")),
+            ("exchanges", Some("exchange")),
+            ("an", None),
+        ] {
+            assert_eq!(nearest(word, kinds), expected, "{word}");
         }
     }
 
