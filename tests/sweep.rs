@@ -303,15 +303,12 @@ fn at_work(folder: &Path, at_least: u64) -> usize {
 
 #[test]
 #[cfg(target_os = "linux")]
-fn a_killed_sweep_leaves_no_points_at_work_and_they_go_on_afterwards() {
+fn a_sweep_that_is_killed_or_terminated_leaves_no_points_at_work_and_they_go_on_afterwards() {
     use std::time::{Duration, Instant};
     let folder = folder(
         r#"{"config": "chain.json", "grid": {"lattice.chain.sites": [2000, 2001]},
             "set": {"neb": {"optimiser": {"velocity_projection": {}}, "tolerance": 1e-300, "max_evaluations": 2000000}}}"#,
     );
-    let mut sweep = Command::new(env!("CARGO_BIN_EXE_spinneb"));
-    sweep.current_dir(folder.path()).args(["sweep", "many.json", "--jobs", "2"]).stderr(std::process::Stdio::null());
-    let mut sweep = sweep.spawn().unwrap();
     let wait = |what: &str, is_so: &dyn Fn() -> bool| {
         let started = Instant::now();
         while !is_so() {
@@ -319,11 +316,19 @@ fn a_killed_sweep_leaves_no_points_at_work_and_they_go_on_afterwards() {
             std::thread::sleep(Duration::from_millis(20));
         }
     };
-    // by then a point is long past its beginning, however busy the machine
-    wait("two points at work", &|| at_work(folder.path(), 30) == 2);
-    sweep.kill().unwrap();
-    sweep.wait().unwrap();
-    wait("none at work", &|| at_work(folder.path(), 0) == 0);
+    for signal in ["KILL", "TERM"] {
+        let mut sweep = Command::new(env!("CARGO_BIN_EXE_spinneb"));
+        sweep.current_dir(folder.path()).args(["sweep", "many.json", "--jobs", "2"]).stderr(std::process::Stdio::piped());
+        let sweep = sweep.spawn().unwrap();
+        // by then a point is long past its beginning, however busy the machine
+        wait("two points at work", &|| at_work(folder.path(), 30) == 2);
+        assert!(Command::new("kill").args(["-s", signal, &sweep.id().to_string()]).status().unwrap().success());
+        let ended = sweep.wait_with_output().unwrap();
+        let said = String::from_utf8(ended.stderr).unwrap();
+        let told = said.contains("many: terminated; what is done is kept, and the same command goes on from there");
+        assert_eq!((told, ended.status.code()), if signal == "TERM" { (true, Some(143)) } else { (false, None) }, "{said}");
+        wait("none at work", &|| at_work(folder.path(), 0) == 0);
+    }
     for sites in ["2000", "2001"] {
         let point = folder.path().join("results/many").join(format!("sites_{sites}"));
         assert!(point.join("partial.json").is_file() && point.join("checkpoint/journal").is_file(), "{sites}");

@@ -6,12 +6,15 @@ use signal_hook::flag;
 use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::time::Duration;
 
 /// The number of "hung up"; not every system has it.
 const SIGHUP: i32 = 1;
 /// The signals that are waited for, with their exit codes and names.
 const KNOWN: [(i32, u8, &str); 3] =
     [(SIGINT, 130, "interrupted"), (SIGTERM, 143, "terminated"), (SIGHUP, 129, "hung up")];
+/// How long a signal may go unnoticed by a thread that waits for one.
+const NOTICED_AFTER: Duration = Duration::from_millis(20);
 /// Which signals a process ignores, on systems that tell.
 const STATUS: &str = "/proc/self/status";
 
@@ -44,6 +47,19 @@ impl Signals {
             let _ = io::copy(&mut io::stdin(), &mut io::sink());
             caught.store(usize::from(KNOWN[1].1), Ordering::SeqCst);
             stop.store(true, Ordering::SeqCst);
+        });
+    }
+
+    /// From now on the first signal ends the program, once something was said of what it did, in a word.
+    pub fn end_saying(self, say: impl Fn(&str) + Send + 'static) {
+        std::thread::spawn(move || {
+            loop {
+                if let Some((code, word)) = self.caught() {
+                    say(word);
+                    std::process::exit(i32::from(code));
+                }
+                std::thread::sleep(NOTICED_AFTER);
+            }
         });
     }
 

@@ -235,6 +235,13 @@ fn several(
     let cores = available_parallelism().map_or(1, NonZeroUsize::get);
     let jobs = arguments.jobs.map_or((cores / threads).max(1), NonZeroUsize::get);
     let (name, total) = (&index.name, todo.len());
+    let (interrupted, quiet) = (name.clone(), arguments.quiet);
+    let again = if arguments.force { "the same command without --force" } else { "the same command" };
+    Signals::watch()?.end_saying(move |word| {
+        if !quiet {
+            note(&format!("{interrupted}: {word}; what is done is kept, and {again} goes on from there"));
+        }
+    });
     if total < points.len() {
         arguments.say(&format!("{name}: {} of {} points are done already", points.len() - total, points.len()));
     }
