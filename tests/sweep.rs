@@ -318,7 +318,10 @@ fn a_sweep_that_is_killed_or_terminated_leaves_no_points_at_work_and_they_go_on_
     };
     for signal in ["KILL", "TERM"] {
         let mut sweep = Command::new(env!("CARGO_BIN_EXE_spinneb"));
-        sweep.current_dir(folder.path()).args(["sweep", "many.json", "--jobs", "2"]).stderr(std::process::Stdio::piped());
+        sweep
+            .current_dir(folder.path())
+            .args(["sweep", "many.json", "--jobs", "2"])
+            .stderr(std::process::Stdio::piped());
         let sweep = sweep.spawn().unwrap();
         // by then a point is long past its beginning, however busy the machine
         wait("two points at work", &|| at_work(folder.path(), 30) == 2);
@@ -326,7 +329,11 @@ fn a_sweep_that_is_killed_or_terminated_leaves_no_points_at_work_and_they_go_on_
         let ended = sweep.wait_with_output().unwrap();
         let said = String::from_utf8(ended.stderr).unwrap();
         let told = said.contains("many: terminated; what is done is kept, and the same command goes on from there");
-        assert_eq!((told, ended.status.code()), if signal == "TERM" { (true, Some(143)) } else { (false, None) }, "{said}");
+        assert_eq!(
+            (told, ended.status.code()),
+            if signal == "TERM" { (true, Some(143)) } else { (false, None) },
+            "{said}"
+        );
         wait("none at work", &|| at_work(folder.path(), 0) == 0);
     }
     for sites in ["2000", "2001"] {

@@ -106,7 +106,8 @@ pub fn outcome(
     });
     let flat = flat_warnings(&proof.ends, &proof.links);
     let of_rates = rates.iter().flat_map(rates::warnings);
-    let warnings = run.warnings(doubts.iter().map(Doubt::warning).chain(flat).chain(of_rates));
+    let lower = lower_maxima(band, &saddles);
+    let warnings = run.warnings(doubts.iter().map(Doubt::warning).chain(flat).chain(lower).chain(of_rates));
     let (certified, iterations) = (doubts.is_empty() && barrier.is_some(), band.evaluations());
     let beside = links.iter().flat_map(|link| [&link.before, &link.after]).chain(&proof.ends);
     let spectra = links.iter().map(|link| &link.spectrum).chain(beside.map(|minimum| &minimum.spectrum));
@@ -372,6 +373,20 @@ fn image_state(band: &Band, k: usize) -> EndPoint {
         zero_modes: None,
         moved_rad: None,
     }
+}
+
+/// Says that a path over proven saddles has other maxima: where a slope forks, a relaxed path may leave the descent for another valley.
+fn lower_maxima(band: &Band, saddles: &[SaddlePoint]) -> Option<String> {
+    let e = band.energies_mev();
+    let is_other = |k: &usize| saddles.iter().all(|saddle| saddle.image.abs_diff(*k) > 1);
+    let others = prominent_maxima(e, LOWER * height(band)).into_iter().filter(is_other);
+    let (count, highest) = others.fold((0, f64::NEG_INFINITY), |(n, high), k| (n + 1, f64::max(high, e[k] - e[0])));
+    (count > 0 && !saddles.is_empty()).then(|| {
+        format!(
+            "the path has {count} more maxima than the saddles that are told, the highest {highest:.6} meV above the initial \
+             state: below the barrier, and not refined"
+        )
+    })
 }
 
 /// Interior images that are prominent minima of the path.

@@ -12,7 +12,7 @@
 //! Where all passes below an energy are looked for, T is that, every new saddle is news, and the number of searches without any
 //! grows with the number of passes known: of n that are found equally often, q searches miss one with a chance of e^(−q/n).
 
-use super::rivals::{Cut, Rival, rivals, scouts};
+use super::rivals::{Cut, Rival, rivals, scouts, vanguard};
 use super::{Landscape, Pass, Saddle};
 use crate::energy::{Evaluator, Stored, recorded_each};
 use crate::error::Result;
@@ -165,7 +165,10 @@ pub fn search(
     let h = land.evaluator();
     land.unfold();
     let mut done = Searched::default();
-    let mut turns = Turns::of(if aim.ends().is_some() { rivals() } else { scouts() });
+    let mut turns = match aim {
+        Aim::Route(..) => Turns::of(None, rivals(h.lattice())),
+        Aim::All(_) => Turns::of(Some(vanguard()), scouts()),
+    };
     let passes = land.edges().len();
     let mut lowest = f64::INFINITY;
     let before = h.evaluated();
@@ -202,24 +205,23 @@ pub fn search(
 
 /// Whose turn it is to name a start.
 struct Turns {
+    first: Option<Box<dyn Rival>>,
     rivals: Vec<Box<dyn Rival>>,
     turn: usize,
     random: ChaCha8Rng,
 }
 
 impl Turns {
-    fn of(rivals: Vec<Box<dyn Rival>>) -> Turns {
-        Turns { rivals, turn: 0, random: ChaCha8Rng::seed_from_u64(SEED) }
+    fn of(first: Option<Box<dyn Rival>>, rivals: Vec<Box<dyn Rival>>) -> Turns {
+        Turns { first, rivals, turn: 0, random: ChaCha8Rng::seed_from_u64(SEED) }
     }
 
     /// The next start, and whether a search from there that brings no news counts as quiet.
     fn next(&mut self, cut: &Cut) -> Option<(Vec<f64>, bool)> {
-        let count = self.rivals.len();
-        if let Some(k) = (0..count).find(|k| self.rivals[*k].goes_first())
-            && let Some(start) = self.rivals[k].start(cut, &mut self.random)
-        {
+        if let Some(start) = self.first.as_mut().and_then(|first| first.start(cut, &mut self.random)) {
             return Some((start, false));
         }
+        let count = self.rivals.len();
         let mut by_turns = (self.turn..self.turn + count).map(|k| k % count);
         let (by, start) = by_turns.find_map(|k| Some((k, self.rivals[k].start(cut, &mut self.random)?)))?;
         self.turn = by + 1;

@@ -6,34 +6,35 @@ mod near;
 mod push;
 
 use super::Landscape;
+use crate::lattice::Lattice;
 use crate::path::guess::GuessContext;
 use rand_chacha::ChaCha8Rng;
 use std::fmt::Debug;
 
-/// All rivals, in the order of their turns.
-pub(super) fn rivals() -> Vec<Box<dyn Rival>> {
-    vec![Box::<near::Near>::default(), Box::<push::Push>::default()]
+/// Those that look for a route, in the order of their turns. In a film a texture moves in ways that no block of its sites does: there
+/// modes are followed too. In a row blocks reach what modes do.
+pub(super) fn rivals(lattice: &Lattice) -> Vec<Box<dyn Rival>> {
+    let mut rivals: Vec<Box<dyn Rival>> = vec![Box::<near::Near>::default(), Box::<push::Push>::default()];
+    if !lattice.is_row() {
+        rivals.push(Box::<modes::Modes>::default());
+    }
+    rivals
 }
 
 /// Those that look for all there is.
 pub(super) fn scouts() -> Vec<Box<dyn Rival>> {
-    vec![
-        Box::<modes::Modes>::default(),
-        Box::<near::Near>::default(),
-        Box::<push::Push>::default(),
-        Box::<melt::Melt>::default(),
-    ]
+    vec![Box::<near::Near>::default(), Box::<push::Push>::default(), Box::<melt::Melt>::default()]
+}
+
+/// The one that goes before them, through all that it has; that one of its starts brings no news says little.
+pub(super) fn vanguard() -> Box<dyn Rival> {
+    Box::<modes::Modes>::default()
 }
 
 /// Names states from which climbs may lead to passes below the top.
 pub trait Rival: Debug {
     /// The next one (3N); nothing if there is none to try.
     fn start(&mut self, cut: &Cut, random: &mut ChaCha8Rng) -> Option<Vec<f64>>;
-
-    /// Whether it goes through a list of starts, before all others' turns; that one of these brings no news says little.
-    fn goes_first(&self) -> bool {
-        false
-    }
 }
 
 /// The landscape as the height T cuts it.

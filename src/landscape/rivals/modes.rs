@@ -15,7 +15,7 @@ const MODES: usize = 4;
 const FARTHEST: f64 = FRAC_PI_2;
 const STEPS: usize = 10;
 
-/// Which minima were left, and the starts that wait.
+/// Which orbits were left, and the starts that wait.
 #[derive(Debug, Default)]
 pub struct Modes {
     left: BTreeSet<usize>,
@@ -25,8 +25,9 @@ pub struct Modes {
 impl Rival for Modes {
     fn start(&mut self, cut: &Cut, _: &mut ChaCha8Rng) -> Option<Vec<f64>> {
         while self.next.is_empty() {
-            let minimum = cut.starts().find(|k| !self.left.contains(k))?;
-            self.left.insert(minimum);
+            // what leads from an image by symmetry is an image of what leads from the other
+            let minimum = cut.starts().find(|k| !self.left.contains(&cut.land.orbit(*k)))?;
+            self.left.insert(cut.land.orbit(minimum));
             let h = cut.land.evaluator();
             let state = State::at(h, cut.land.minima()[minimum].spins.as_slice().to_vec());
             for mode in state.lowest_modes(h, MODES) {
@@ -35,10 +36,6 @@ impl Rival for Modes {
             }
         }
         self.next.pop_front()
-    }
-
-    fn goes_first(&self) -> bool {
-        true
     }
 }
 
