@@ -4,7 +4,7 @@ use serde_json::json;
 use spinneb::error::{Error, Result};
 use spinneb::files::disk::{self, File};
 use spinneb::output::file_names;
-use spinneb::output::folder::{self, Destination, Intent, NewResult};
+use spinneb::output::folder::{self, Destination, Intent, Kept, NewResult};
 use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
@@ -128,7 +128,8 @@ fn a_run_of_the_same_source_keeps_the_earlier_result_and_one_of_no_source_is_ref
         let files = result(&hash, &content);
         let kept = folder::write_result(&dir, &new(&files, source)).unwrap();
         assert_eq!(table(&dir), content);
-        assert_eq!(kept, (k > 1).then(|| earlier.clone()));
+        let expected = (k > 1).then(|| Kept { place: earlier.clone(), another_gave_way: k > 2 });
+        assert_eq!(kept, expected);
         if k > 1 {
             assert_eq!(table(&earlier), format!("table {}", k - 1));
             assert_eq!(names(&earlier), ["path.csv", "summary.json"]);

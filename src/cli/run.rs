@@ -142,7 +142,10 @@ pub(super) fn run_one(arguments: &Run, signals: &Signals, loaded: &Loaded, direc
     drop(progress);
     let earlier = if arguments.force { Earlier::GivesWay } else { Earlier::IsKept };
     match write(loaded, &outcome, directory, earlier(loaded.source_name().as_deref()), arguments.force) {
-        Ok(Some(kept)) => say(&format!("{name}: the earlier result is kept in {}", kept.display())),
+        Ok(Some(kept)) => {
+            let still_earlier = if kept.another_gave_way { ", in the place of a still earlier one" } else { "" };
+            say(&format!("{name}: the earlier result is kept in {}{still_earlier}", kept.place.display()));
+        }
         Ok(None) => {}
         Err(error) => {
             // what was computed is not lost with the files

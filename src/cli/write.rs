@@ -2,8 +2,8 @@
 
 use crate::config::Loaded;
 use crate::drive::Outcome;
-use crate::output::folder::{self, NewResult};
-use std::path::{Path, PathBuf};
+use crate::output::folder::{self, Kept, NewResult};
+use std::path::Path;
 
 /// What happens with an earlier result, and the source of the new one.
 #[derive(Clone, Copy, Debug)]
@@ -21,7 +21,7 @@ pub(super) fn write(
     directory: &Path,
     earlier: Earlier,
     force: bool,
-) -> crate::error::Result<Option<PathBuf>> {
+) -> crate::error::Result<Option<Kept>> {
     let files = loaded.files(outcome)?;
     let (Earlier::IsKept(source) | Earlier::GivesWay(source)) = earlier;
     let keep_earlier = matches!(earlier, Earlier::IsKept(_));

@@ -129,8 +129,17 @@ pub fn are_free(dir: &Path, names: &[String]) -> Result<()> {
     names.iter().try_for_each(|name| folder.free(name, &[], false))
 }
 
-/// Writes a result in the place of the one that is there; the folder of that, if it is kept.
-pub fn write_result(dir: &Path, new: &NewResult) -> Result<Option<PathBuf>> {
+/// Where an earlier result is kept.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Kept {
+    /// The folder.
+    pub place: PathBuf,
+    /// It held a still earlier one, which is gone.
+    pub another_gave_way: bool,
+}
+
+/// Writes a result in the place of the one that is there; where that is kept, if it is.
+pub fn write_result(dir: &Path, new: &NewResult) -> Result<Option<Kept>> {
     disk::create(dir)?;
     let folder = Folder::open(dir)?;
     let others = || new.files.iter().filter(|file| file.name != MARK);
@@ -353,9 +362,11 @@ impl Folder {
     }
 
     /// Keeps the result that is here as the earlier one; where.
-    fn keep(&self) -> Result<PathBuf> {
+    fn keep(&self) -> Result<Kept> {
         let (path, name) = beside(&self.dir)?;
-        let Some(mut manifest) = self.stored.as_ref().and_then(|s| s.manifest.clone()) else { return Ok(path) };
+        let Some(mut manifest) = self.stored.as_ref().and_then(|s| s.manifest.clone()) else {
+            return Ok(Kept { place: path, another_gave_way: false });
+        };
         self.earlier()?;
         disk::create(&path)?;
         let _lock = Lock::of(&path)?;
@@ -374,8 +385,9 @@ impl Folder {
         let same = |(name, hash)| Content { name, hash: String::clone(hash), bytes: Bytes::Of(self.dir.join(name)) };
         let contents = manifest.files.iter().map(|(name, hash)| (name.as_str(), hash)).map(same);
         let staged = target.stage(contents.chain([Content::of(MARK, &summary)]).collect())?;
+        let another_gave_way = target.stored.is_some();
         target.put(staged, Some(name))?;
-        Ok(path)
+        Ok(Kept { place: path, another_gave_way })
     }
 
     fn stage(&self, contents: Vec<Content>) -> Result<Vec<Staged>> {
