@@ -180,6 +180,23 @@ fn films_whose_ends_relax_to_stripes_have_their_lowest_known_barriers() {
     }
 }
 
+/// The slope below one saddle of this film forks: its descent goes one way, and the relaxed path the other, over a lower maximum.
+#[test]
+fn a_path_with_more_maxima_than_saddles_says_so() {
+    let lattice = json!({"triangular": {"cells": [7, 9], "periodic": true}});
+    let config = soft_film(lattice, "0.639 meV", "0.083 meV", "0.63 T", [skyrmion(3, [3, 5]), down()]);
+    let outcome = solve(&config, Effort::Normal);
+    assert!((certified(&outcome) - 14.2919251476).abs() < 1e-8, "{}", certified(&outcome));
+    let e = &outcome.images.above_initial_mev;
+    let maxima: Vec<usize> = (1..e.len() - 1).filter(|k| e[*k] > e[k - 1] && e[*k] > e[k + 1]).collect();
+    let saddles: Vec<usize> = outcome.saddles.iter().map(|saddle| saddle.image).collect();
+    let others: Vec<usize> = maxima.into_iter().filter(|k| !saddles.contains(k)).collect();
+    assert_eq!(others.len(), 1, "{others:?} {saddles:?}");
+    let told =
+        format!("the path has 1 more maxima than the saddles that are told, the highest {:.6} meV above", e[others[0]]);
+    assert!(outcome.warnings.iter().any(|w| w.starts_with(&told)), "{told}: {:?}", outcome.warnings);
+}
+
 /// A droplet that is pinned by 1e-9 meV: along the way that it slides Newton's steps turn spins by 0.05 rad, and cost torque across it.
 #[test]
 fn a_saddle_that_all_but_slides_is_found_to_the_last_digits() {

@@ -25,7 +25,7 @@ pub struct Modes {
 impl Rival for Modes {
     fn start(&mut self, cut: &Cut, _: &mut ChaCha8Rng) -> Option<Vec<f64>> {
         while self.next.is_empty() {
-            // what leads from an image by symmetry is an image of what leads from the other
+            // from an image of a minimum its modes lead to images of what they lead to from that
             let minimum = cut.starts().find(|k| !self.left.contains(&cut.land.orbit(*k)))?;
             self.left.insert(cut.land.orbit(minimum));
             let h = cut.land.evaluator();
