@@ -197,6 +197,17 @@ fn a_path_with_more_maxima_than_saddles_says_so() {
     assert!(outcome.warnings.iter().any(|w| w.starts_with(&told)), "{told}: {:?}", outcome.warnings);
 }
 
+/// The image beside this minimum has a torque of 2e-3 meV.
+#[test]
+fn a_minimum_on_a_path_over_one_saddle_is_the_state_and_not_the_image_beside_it() {
+    let lattice = json!({"square": {"cells": [10, 9]}});
+    let config = soft_film(lattice, "0.503 meV", "0.235 meV", "0.48 T", [down(), skyrmion(2, [3, 6])]);
+    let outcome = solve(&config, Effort::None);
+    assert!((certified(&outcome) - 0.4072862483).abs() < 1e-8, "{}", certified(&outcome));
+    let [minimum] = &outcome.intermediate_minima[..] else { panic!("{:?}", outcome.intermediate_minima) };
+    assert!(minimum.state.max_torque_mev < 1e-12 && minimum.state.negative_modes == Some(0), "{:?}", minimum.state);
+}
+
 /// A droplet that is pinned by 1e-9 meV: along the way that it slides Newton's steps turn spins by 0.05 rad, and cost torque across it.
 #[test]
 fn a_saddle_that_all_but_slides_is_found_to_the_last_digits() {

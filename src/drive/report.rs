@@ -13,9 +13,9 @@ use crate::landscape::Saddle;
 use crate::landscape::{Doubt, Effort};
 use crate::landscape::{Minimum, Pass};
 use crate::linalg::slab;
-use crate::path::Path;
+use crate::path::{Path, RESOLVED, is_within};
 use crate::spins::Spins;
-use crate::stationary::{LOWER, Relaxed};
+use crate::stationary::{LOWER, RELAXED, Relaxed, relax_to_minimum};
 use crate::threads::{MADE, apiece};
 use rayon::prelude::*;
 use std::time::Instant;
@@ -94,8 +94,8 @@ pub fn outcome(
         rates::of_path(&Known { h, links, saddles: &saddles, above_final, doubts: &doubts, no_barrier }, settings)
     });
     let behind = proof.links.iter().zip(places.iter().skip(1).step_by(2));
-    let intermediate_minima = match proof.links.len() {
-        0 | 1 => band_minima(band),
+    let intermediate_minima: Vec<IntermediateMinimum> = match proof.links.len() {
+        0 | 1 => band_minima(band).into_iter().map(|image| at_rest(run.problem, band, image)).collect(),
         _ => behind.map(|(link, place)| minimum_of(link, *place)).collect(),
     };
     let highest_climb = barrier.map(|b| {
@@ -402,6 +402,24 @@ fn band_minima(band: &Band) -> Vec<IntermediateMinimum> {
             state: image_state(band, k),
         })
         .collect()
+}
+
+/// The minimum that an image of a path between relaxed ends all but is; the image as it is where none is beside it.
+fn at_rest(problem: &Problem, band: &Band, image: IntermediateMinimum) -> IntermediateMinimum {
+    let h = problem.evaluator();
+    let asked = problem.certify && problem.relax_ends;
+    let relaxed = asked.then(|| relax_to_minimum(h, &image.spins, RELAXED * h.stiffness_mev()).ok()).flatten();
+    let beside = |m: &Minimum| is_within(m.spins.as_slice(), image.spins.as_slice(), RESOLVED);
+    let found =
+        relaxed.map(|relaxed| Minimum::of(h, &relaxed)).filter(|minimum| minimum.is_proven() && beside(minimum));
+    let Some(minimum) = found else { return image };
+    let place = nearest(band.path(), minimum.spins.as_slice());
+    IntermediateMinimum {
+        image: place.image,
+        reaction_coordinate_rad: place.s,
+        state: end_of(&minimum),
+        spins: minimum.spins,
+    }
 }
 
 fn image_table(h: Evaluator, band: &Band) -> ImageTable {
