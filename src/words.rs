@@ -42,9 +42,8 @@ fn lowered(word: &str) -> Vec<char> {
 
 /// What it counts that one word consists of some of the other's parts, which underscores, hyphens and blanks separate.
 fn parts_left_out(word: &[char], candidate: &[char]) -> usize {
-    let is_part = |c: &char| c.is_alphanumeric();
-    let parts = |letters: &'_ [char]| -> Vec<String> {
-        letters.split(|c| !is_part(c)).map(|part| part.iter().collect()).collect()
+    let parts = |letters: &[char]| -> Vec<String> {
+        letters.split(|c| matches!(c, '_' | '-' | ' ')).map(|part| part.iter().collect()).collect()
     };
     let [word, candidate] = [word, candidate].map(parts);
     let holds = |long: &[String], short: &[String]| long.windows(short.len()).any(|some| some == short);
@@ -128,6 +127,7 @@ mod tests {
             ("bulk_dmi", Some("dmi")),
             ("exchanges", Some("exchange")),
             ("an", None),
+            ("exchange.J", None),
         ] {
             assert_eq!(nearest(word, kinds), expected, "{word}");
         }
