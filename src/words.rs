@@ -127,7 +127,7 @@ mod tests {
             ("bulk_dmi", Some("dmi")),
             ("exchanges", Some("exchange")),
             ("an", None),
-            ("exchange.J", None),
+            ("dmi.D_of_all", None),
         ] {
             assert_eq!(nearest(word, kinds), expected, "{word}");
         }
