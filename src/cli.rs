@@ -426,7 +426,7 @@ pub(crate) enum Looking {
     Quick,
     /// Until 24 searches in a row brought no news, 40 once something was found
     Normal,
-    /// Until 100 searches in a row brought no news
+    /// Until 400 searches in a row brought no news
     Thorough,
 }
 

@@ -166,8 +166,11 @@ impl Outcome {
 
     /// The same with rates, which are asked for in the JSON of a config.
     fn with_rates(&self, py: Python, json: String) -> PyResult<Outcome> {
-        let rates: RatesConfig = Text::new("", json).parse().map_err(|e| raised(py, e.within("rates")))?;
+        let mut rates: RatesConfig = Text::new("", json.clone()).parse().map_err(|e| raised(py, e.within("rates")))?;
         let (mut loaded, found) = ((*self.loaded).clone(), self.found.clone());
+        if let Some(earlier) = loaded.config.rates.take() {
+            rates = left_open(&json, rates, earlier);
+        }
         loaded.config.rates = Some(rates);
         let own = loaded.clone();
         let done = supervised(py, None, None, &self.trouble, move |_| {
@@ -178,6 +181,18 @@ impl Outcome {
         })?;
         let found = done.map_err(|why| failed(py, why))?;
         Ok(Outcome { loaded: Arc::new(loaded), found: Arc::new(found), trouble: self.trouble.clone() })
+    }
+}
+
+/// What was asked for, and where that leaves a key open what was asked for before.
+fn left_open(json: &str, asked: RatesConfig, earlier: RatesConfig) -> RatesConfig {
+    let keys: serde_json::Value = serde_json::from_str(json).unwrap_or_default();
+    let said = |key: &str| keys.get(key).is_some();
+    RatesConfig {
+        damping: if said("damping") { asked.damping } else { earlier.damping },
+        g_factor: if said("g_factor") { asked.g_factor } else { earlier.g_factor },
+        theory: if said("theory") { asked.theory } else { earlier.theory },
+        temperatures: asked.temperatures,
     }
 }
 

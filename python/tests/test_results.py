@@ -56,6 +56,14 @@ def test_a_run_with_temperatures_has_the_rates_that_are_made_of_it_later(chain, 
     assert result.rates.lifetimes_s() == pytest.approx(sn.rates(reversal, 4.0).lifetimes_s(), rel=1e-12)
 
 
+def test_rates_made_later_keep_what_the_config_says_of_them(chain):
+    ends = [sn.uniform("z"), sn.uniform("-z")]
+    result = sn.barrier(chain, *ends, rates={"temperatures": ["4 K"], "damping": 0.5, "theory": ["langer"]})
+    lifetimes = result.rates.lifetimes_s()
+    assert sn.rates(result, 4.0).lifetimes_s() == pytest.approx(lifetimes, rel=1e-12)
+    assert sn.rates(result, 4.0, damping=0.1).lifetimes_s() != pytest.approx(lifetimes, rel=1e-3)
+
+
 def test_tables_have_the_columns_of_path_csv(reversal):
     frame = reversal.to_dataframe()
     header = reversal._core.files(["csv"])["path.csv"].decode().splitlines()[0].split(",")

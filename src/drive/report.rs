@@ -450,58 +450,73 @@ fn profile(band: &Band) -> Vec<ProfilePoint> {
     band.profile().samples(PROFILE).into_iter().map(point).collect()
 }
 
-/// The interpolated energy of each term: cubic pieces as the total's, which they add up to. A term's slope is that of the parabola
-/// through an image and its neighbours; what then lacks to the total's is shared out by how much each term bends there. (A term's own
-/// gradient along the tangent would not do: only the total is stationary across the path, so only its slope forgives a tangent that
+/// The interpolated energy of each term: cubic pieces as the total's, which they add up to. A term's slope is that of the polynomial
+/// through an image and two neighbours on each side; what then lacks to the total's is shared out by how far off each may be. (A term's
+/// own gradient along the tangent would not do: only the total is stationary across the path, so only its slope forgives a tangent that
 /// is a chord.)
 fn profile_terms(total: &Profile, images: &ImageTable) -> Vec<(String, Vec<f64>)> {
     let terms = &images.terms_mev;
-    let bent: Vec<Vec<Bend>> = terms.iter().map(|(_, energy)| bends(&total.s, energy)).collect();
-    let slope = |j: usize, k: usize| {
-        let sum = |value: fn(&Bend) -> f64| bent.iter().map(|term| value(&term[k])).sum::<f64>();
-        let (lacks, bend) = (total.slope[k] - sum(|b| b.slope), sum(|b| b.bend));
-        let share = if bend > 0.0 { bent[j][k].bend / bend } else { 1.0 / terms.len() as f64 };
-        bent[j][k].slope + share * lacks
+    let (s, count) = (&total.s, terms.len() as f64);
+    let slopes = |k: usize| -> Vec<f64> {
+        let told: Vec<f64> = terms.iter().map(|(_, energy)| slope_through(s, energy, k, 2)).collect();
+        let off = |(told, (_, energy)): (&f64, &(String, Vec<f64>))| (told - slope_through(s, energy, k, 1)).abs();
+        let off: Vec<f64> = told.iter().zip(terms).map(off).collect();
+        let (lacks, all) = (total.slope[k] - slab::sum(&told), slab::sum(&off));
+        let share = |off: f64| if all > 0.0 { off / all } else { 1.0 / count };
+        told.iter().zip(off).map(|(told, off)| told + share(off) * lacks).collect()
     };
+    let slopes: Vec<Vec<f64>> = (0..s.len()).map(slopes).collect();
     let term = |(j, (name, energy)): (usize, &(String, Vec<f64>))| {
         let above = energy.iter().map(|e| e - energy[0]).collect();
-        let slopes = (0..energy.len()).map(|k| slope(j, k)).collect();
-        let pieces = Profile { s: total.s.clone(), energy: above, slope: slopes };
+        let pieces = Profile { s: s.clone(), energy: above, slope: slopes.iter().map(|terms| terms[j]).collect() };
         (name.clone(), pieces.samples(PROFILE).into_iter().map(|(_, e)| e).collect())
     };
     terms.iter().enumerate().map(term).collect()
 }
 
-/// A curve at one of its points: slope, and how much it changes there (both a unit of s).
-struct Bend {
-    slope: f64,
-    bend: f64,
-}
-
-/// By the parabola through each point and its neighbours, or at an end the two next to it.
-fn bends(s: &[f64], energy: &[f64]) -> Vec<Bend> {
-    let last = s.len() - 1;
-    let secant = |k: usize| {
-        let h = s[k + 1] - s[k];
-        if h > 0.0 { (energy[k + 1] - energy[k]) / h } else { 0.0 }
-    };
-    let at = |k: usize| {
-        if last < 2 {
-            return Bend { slope: secant(0), bend: 0.0 };
-        }
-        let middle = k.clamp(1, last - 1);
-        let (before, after) = (s[middle] - s[middle - 1], s[middle + 1] - s[middle]);
-        let (p, q) = (secant(middle - 1), secant(middle));
-        let curvature = if before + after > 0.0 { (q - p) / (before + after) } else { 0.0 };
-        let slope = p + curvature * before + 2.0 * curvature * (s[k] - s[middle]);
-        Bend { slope, bend: (q - p).abs() }
-    };
-    (0..=last).map(at).collect()
+/// The slope at a point of the polynomial through it and so many neighbours on either side, at an end the nearest on the other; 0
+/// where points coincide.
+fn slope_through(s: &[f64], energy: &[f64], k: usize, neighbours: usize) -> f64 {
+    let width = (2 * neighbours + 1).min(s.len());
+    let first = k.saturating_sub(neighbours).min(s.len() - width);
+    let points = first..first + width;
+    let weight = |j: usize| points.clone().filter(|i| *i != j).map(|i| s[j] - s[i]).product::<f64>();
+    let here = weight(k);
+    let part = |j: usize| here / weight(j) / (s[k] - s[j]) * (energy[j] - energy[k]);
+    let slope: f64 = points.clone().filter(|j| *j != k).map(part).sum();
+    if slope.is_finite() { slope } else { 0.0 }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::PI;
+
+    #[test]
+    fn few_images_of_a_coherent_rotation_tell_how_each_of_its_terms_goes() {
+        let s: Vec<f64> = (0..5).map(|k| f64::from(k) * PI / 4.0).collect();
+        let terms: [fn(f64) -> f64; 2] = [|x| x.sin().powi(2), |x| x.cos() - 1.0];
+        let table = |term: fn(f64) -> f64| s.iter().map(|x| term(*x)).collect::<Vec<f64>>();
+        let images = ImageTable {
+            terms_mev: terms.iter().map(|term| (String::new(), table(*term))).collect(),
+            reaction_coordinate_rad: s.clone(),
+            ..ImageTable::default()
+        };
+        let energy = s.iter().map(|x| terms[0](*x) + terms[1](*x)).collect();
+        let slope = s.iter().map(|x| (2.0 * x).sin() - x.sin()).collect();
+        let total = Profile { s: s.clone(), energy, slope };
+        for ((_, told), term) in profile_terms(&total, &images).iter().zip(terms) {
+            for (k, told) in told.iter().enumerate() {
+                let exact = term(PI * k as f64 / (told_points(&s) - 1.0));
+                assert!((told - exact).abs() < 0.06, "{k}: {told} {exact}");
+            }
+        }
+    }
+
+    /// How many points a profile has.
+    fn told_points(s: &[f64]) -> f64 {
+        ((s.len() - 1) * PROFILE + 1) as f64
+    }
 
     #[test]
     fn the_highest_climb_starts_from_the_deepest_minimum_before_a_saddle() {

@@ -94,8 +94,8 @@ impl Mean {
             let (spins, table) = (path.images(), data.energy.images.len());
             return Err(Error::Numerical(format!("magnetisation: spins of {spins} images, energies of {table}")));
         }
-        let [uniform, alternating] = [false, true].map(|staggered| means(path, staggered, &data.vacant));
-        let staggered = is_staggered(path, &data.vacant);
+        let [uniform, alternating] = [false, true].map(|staggered| means(path, staggered, &data.kinds));
+        let staggered = is_staggered(path, &data.kinds);
         let axis = axis(if staggered { &alternating } else { &uniform });
         Ok(Mean { uniform, alternating, staggered, axis })
     }
@@ -149,6 +149,8 @@ fn at(points: &[(f64, f64)], x: f64) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::energy::test_terms;
+    use crate::output::staggered::SiteKinds;
     use crate::path::Path;
     use crate::spins::Spins;
 
@@ -181,10 +183,22 @@ mod tests {
     }
 
     #[test]
+    fn on_a_film_the_sublattices_are_those_of_a_staggered_state() {
+        let lattice = test_terms::lattice(r#"{"square": {"cells": [4, 2]}}"#);
+        let up = |i: usize| [0.0, 0.0, if lattice.is_odd(i) { -1.0 } else { 1.0 }];
+        let neel: Vec<Vector> = (0..8).map(up).collect();
+        let turned: Vec<Vector> = neel.iter().map(|m| m.map(|c| -c)).collect();
+        let film = path(&[&neel, &turned]);
+        let mean = Mean::of(&PlotData { kinds: SiteKinds::of(&lattice), ..data(&film) }).unwrap();
+        assert!(mean.staggered);
+        assert_eq!(mean.along_axis(), [1.0, -1.0]);
+    }
+
+    #[test]
     fn an_antiferromagnet_shows_its_staggered_mean_and_a_vacancy_counts_for_nothing() {
         let (up, down, x) = ([0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]);
         let neel = path(&[&[up, down, up], &[x, x, x], &[down, up, x]]);
-        let vacant = PlotData { vacant: vec![false, false, true], ..data(&neel) };
+        let vacant = PlotData { kinds: SiteKinds { vacant: vec![false, false, true], odd: Vec::new() }, ..data(&neel) };
         let mean = Mean::of(&vacant).unwrap();
         assert!(mean.staggered);
         assert_eq!(mean.along_axis(), [1.0, 0.0, -1.0]);

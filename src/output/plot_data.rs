@@ -3,6 +3,7 @@
 use super::csv::column_name;
 use super::rates_summary::{PassageEntry, TransitionEntry, transitions};
 use super::spin_maps::SitePlaces;
+use super::staggered::SiteKinds;
 use super::{EnergyPath, RunReport};
 use crate::drive::HistoryRow;
 use crate::lattice::Lattice;
@@ -22,8 +23,8 @@ pub struct PlotData<'a> {
     pub terms_profile_mev: Vec<Vec<f64>>,
     /// The spins, where they are known.
     pub path: Option<&'a Path>,
-    /// Sites without a spin; empty if there are none.
-    pub vacant: Vec<bool>,
+    /// Sites without a spin, and those that a staggered state reverses.
+    pub kinds: SiteKinds,
     /// Where the sites are, if that is known.
     pub places: Option<Places>,
     /// Places of the sites of a lattice that is no row.
@@ -86,7 +87,7 @@ impl<'a> PlotData<'a> {
             terms_mev: outcome.images.terms_mev.iter().map(|(name, e)| (column_name(name), above_first(e))).collect(),
             terms_profile_mev: outcome.profile_terms_mev.iter().map(|(_, mev)| mev.clone()).collect(),
             path: Some(&outcome.path),
-            vacant: run.lattice.vacant.clone(),
+            kinds: SiteKinds::of(run.lattice),
             places: Places::of(run.lattice),
             sites: SitePlaces::of(run.lattice),
             history: outcome.history.clone(),

@@ -58,7 +58,7 @@ const HIGHEST: f64 = 1.6;
 /// The figure. An error where the spins are not known.
 pub fn draw_spin_maps(data: &PlotData, places: &SitePlaces, look: &Look) -> Result<Canvas> {
     let path = data.path.ok_or_else(|| Error::Numerical("spins: the spins are not known".into()))?;
-    let layer = Layer::of(places, &data.vacant);
+    let layer = Layer::of(places, &data.kinds.vacant);
     let maps = maps(&data.energy.images, path.images());
     let plan = Plan::of(Canvas::styled(look, 10.0).width(), layer.size, maps.len());
     let below = layer.words(places.unit);

@@ -15,7 +15,7 @@ use super::canvas::{
     THIN_PT, Text, Ticks, VERMILLION, colour_bar, cyclic, diverging, heat_map, mark, mix,
 };
 use super::energy_path_plot::marked_saddles;
-use super::staggered::{is_staggered, sign};
+use super::staggered::{SiteKinds, is_staggered};
 use super::{Places, Plot, PlotData, draw_spin_maps};
 use crate::error::{Error, Result};
 use crate::geometry::vector::Vector;
@@ -66,7 +66,7 @@ pub fn draw_spins(data: &PlotData, look: &Look) -> Result<Canvas> {
     let height_mm = HEIGHT_MM * (look.drawn_width_mm() / COLUMN_MM).max(0.85) + above / MM;
     let mut canvas = Canvas::styled(look, height_mm);
     let grey = look.style().colour(LIGHT_GREY);
-    let cells = Cells::new(path, is_staggered(path, &data.vacant));
+    let cells = Cells::new(path, &data.kinds);
     let axes = cells.order.map(|c| ["x", "y", "z"][c]);
     let y = Axis::cells(path.images(), 8);
     let left = Frame::left_margin(&y)?;
@@ -209,6 +209,7 @@ struct Cells<'a> {
     /// The components that are called x, y and z here: the last one is shown above, the angle is about it.
     order: [usize; 3],
     /// Odd sites are turned round.
+    kinds: &'a SiteKinds,
     staggered: bool,
 }
 
@@ -227,19 +228,21 @@ fn order(path: &Path) -> [usize; 3] {
 }
 
 impl<'a> Cells<'a> {
-    fn new(path: &'a Path, staggered: bool) -> Cells<'a> {
+    fn new(path: &'a Path, kinds: &'a SiteKinds) -> Cells<'a> {
+        let staggered = is_staggered(path, kinds);
         let (columns, rows) = (path.sites().min(MOST.0), path.images().min(MOST.1));
-        Cells { path, columns, rows, order: order(path), staggered }
+        Cells { path, columns, rows, order: order(path), kinds, staggered }
     }
 
     /// The spins of a block.
     fn block(&self, column: usize, row: usize) -> impl Iterator<Item = Vector> + use<'a> {
-        let (path, n, order, staggered) = (self.path, self.path.sites(), self.order, self.staggered);
+        let (path, n, order) = (self.path, self.path.sites(), self.order);
+        let (kinds, staggered) = (self.kinds, self.staggered);
         let range = |k: usize, cells: usize, n: usize| k * n / cells..(k + 1) * n / cells;
         let sites = range(column, self.columns, n);
         range(row, self.rows, path.images())
             .map(|k| path.image(k))
-            .flat_map(move |m| sites.clone().map(move |i| order.map(|c| sign(staggered, i) * m[c * n + i])))
+            .flat_map(move |m| sites.clone().map(move |i| order.map(|c| kinds.sign(staggered, i) * m[c * n + i])))
     }
 
     /// Mean component of a block along the last axis.
@@ -278,7 +281,7 @@ mod tests {
         };
         let places = Some(Places { first_nm: 1.0, spacing_nm: 2.0 });
         let data = PlotData { energy, path: Some(&neel), places, ..Default::default() };
-        let cells = Cells::new(&neel, is_staggered(&neel, &[]));
+        let cells = Cells::new(&neel, &data.kinds);
         assert!((0..3).all(|site| cells.mean_along(site, 0) == 1.0 && cells.mean_along(site, 2) == -1.0));
         let picture = svg(&data);
         for words in ["Staggered m", "Staggered φ about z", "Position (nm)", "Reaction coord. (rad)"] {

@@ -1,34 +1,53 @@
 //! The mean spin and the staggered one, and which of them a path is about.
 
 use crate::geometry::vector::Vector;
+use crate::lattice::Lattice;
 use crate::path::Path;
 
 /// The staggered mean is shown if it changes so many times more.
 const MORE: f64 = 1.5;
 
-/// (±1)^i: the sign with which site i is counted.
-pub(super) fn sign(staggered: bool, site: usize) -> f64 {
-    if staggered && site % 2 == 1 { -1.0 } else { 1.0 }
+/// Which sites have no spin, and which are of the sublattice that a staggered state reverses.
+#[derive(Clone, Debug, Default)]
+pub struct SiteKinds {
+    /// Sites without a spin; empty if there are none.
+    pub vacant: Vec<bool>,
+    /// Sites that a staggered state reverses; empty for every other site of a row.
+    pub odd: Vec<bool>,
 }
 
-/// Σ (±1)^i m_i / N of every image, over the sites with a spin.
-pub(super) fn means(path: &Path, staggered: bool, vacant: &[bool]) -> Vec<Vector> {
-    (0..path.images()).map(|k| mean(path, k, staggered, vacant)).collect()
+impl SiteKinds {
+    /// Of a lattice.
+    pub fn of(lattice: &Lattice) -> SiteKinds {
+        let odd = if lattice.is_row() { Vec::new() } else { (0..lattice.sites).map(|i| lattice.is_odd(i)).collect() };
+        SiteKinds { vacant: lattice.vacant.clone(), odd }
+    }
+
+    /// The sign with which site i is counted.
+    pub(super) fn sign(&self, staggered: bool, site: usize) -> f64 {
+        let is_odd = self.odd.get(site).copied().unwrap_or(site % 2 == 1);
+        if staggered && is_odd { -1.0 } else { 1.0 }
+    }
 }
 
-fn mean(path: &Path, k: usize, staggered: bool, vacant: &[bool]) -> Vector {
+/// Σ ± m_i / N of every image, over the sites with a spin.
+pub(super) fn means(path: &Path, staggered: bool, kinds: &SiteKinds) -> Vec<Vector> {
+    (0..path.images()).map(|k| mean(path, k, staggered, kinds)).collect()
+}
+
+fn mean(path: &Path, k: usize, staggered: bool, kinds: &SiteKinds) -> Vector {
     let (m, n) = (path.image(k), path.sites());
     let (mut sum, mut count) = ([0.0; 3], 0.0);
-    for i in (0..n).filter(|i| !vacant.get(*i).copied().unwrap_or(false)) {
-        (0..3).for_each(|c| sum[c] += sign(staggered, i) * m[c * n + i]);
+    for i in (0..n).filter(|i| !kinds.vacant.get(*i).copied().unwrap_or(false)) {
+        (0..3).for_each(|c| sum[c] += kinds.sign(staggered, i) * m[c * n + i]);
         count += 1.0;
     }
     sum.map(|s| s / f64::max(count, 1.0))
 }
 
 /// Whether the staggered mean changes more along the path than the mean does, as in an antiferromagnet.
-pub(super) fn is_staggered(path: &Path, vacant: &[bool]) -> bool {
-    let change = |staggered: bool| largest_change(&means(path, staggered, vacant)).1;
+pub(super) fn is_staggered(path: &Path, kinds: &SiteKinds) -> bool {
+    let change = |staggered: bool| largest_change(&means(path, staggered, kinds)).1;
     change(true) > MORE * change(false)
 }
 

@@ -9,6 +9,7 @@ use super::folder::stored_result;
 use super::plot_data::above_first;
 use super::read::{bytes, read_spins, shown, text};
 use super::spin_maps::SitePlaces;
+use super::staggered::SiteKinds;
 use super::summary::{Saddle, Summary};
 use super::{EnergyPath, Lifetimes, Places, PlotData};
 use crate::drive::{Barrier, HistoryRow};
@@ -29,8 +30,8 @@ const PICTURES: [&str; 2] = [".svg", ".png"];
 pub struct StoredRun {
     /// What could not be read because it is not there, and what that means.
     pub notes: Vec<String>,
-    /// Sites without a spin, as the config says; empty if there are none.
-    pub vacant: Vec<bool>,
+    /// Sites without a spin, and those that a staggered state reverses, as the config says.
+    pub kinds: SiteKinds,
     /// Where the sites are, as the config says.
     pub places: Option<Places>,
     /// Places of the sites of a lattice that is no row.
@@ -80,7 +81,7 @@ impl StoredRun {
         };
         Ok(StoredRun {
             notes,
-            vacant: Vec::new(),
+            kinds: SiteKinds::default(),
             places: None,
             sites: None,
             summary,
@@ -101,7 +102,7 @@ impl StoredRun {
             self.notes.push(format!("there is no file of spins ({files}): spins and magnetisation cannot be drawn"));
         }
         (self.places, self.sites) = (Places::of(lattice), SitePlaces::of(lattice));
-        self.vacant = lattice.vacant.clone();
+        self.kinds = SiteKinds::of(lattice);
         Ok(self)
     }
 
@@ -126,7 +127,7 @@ impl StoredRun {
             terms_mev: self.terms_mev.clone(),
             terms_profile_mev: self.terms_profile_mev.clone(),
             path: self.path.as_ref(),
-            vacant: self.vacant.clone(),
+            kinds: self.kinds.clone(),
             places: self.places,
             sites: self.sites.clone(),
             history: self.history.clone(),

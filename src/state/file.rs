@@ -23,7 +23,7 @@ pub struct File {
     /// SHA-256 that the file must have, in hexadecimal.
     #[serde(default)]
     pub sha256: Option<String>,
-    /// Reverse odd sites.
+    /// Reverse odd sites, of a cell with several atoms every other one.
     #[serde(default)]
     pub staggered: bool,
     /// What the file holds, once it is read.

@@ -14,7 +14,7 @@ use serde::Deserialize;
 pub struct Random {
     /// Seed of the ChaCha8 generator.
     pub seed: u64,
-    /// Reverse odd sites.
+    /// Reverse odd sites, of a cell with several atoms every other one.
     #[serde(default)]
     pub staggered: bool,
 }

@@ -50,7 +50,7 @@ pub struct Soliton {
     #[serde(default, deserialize_with = "auto_or_direction")]
     #[schemars(schema_with = "auto_or_direction_schema")]
     pub through: Option<Direction>,
-    /// Reverse odd sites.
+    /// Reverse odd sites, of a cell with several atoms every other one.
     #[serde(default)]
     pub staggered: bool,
 }

@@ -28,7 +28,7 @@ pub struct Spiral {
     /// Angle at the origin.
     #[serde(default)]
     pub phase: Option<Angle>,
-    /// Reverse odd sites.
+    /// Reverse odd sites, of a cell with several atoms every other one.
     #[serde(default)]
     pub staggered: bool,
 }

@@ -13,7 +13,7 @@ use serde::Deserialize;
 pub struct Uniform {
     /// Where the spins point.
     pub direction: Direction,
-    /// Reverse odd sites.
+    /// Reverse odd sites, of a cell with several atoms every other one.
     #[serde(default)]
     pub staggered: bool,
 }

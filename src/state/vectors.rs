@@ -15,7 +15,7 @@ use std::borrow::Cow;
 pub struct Vectors {
     /// One direction a site; any length but zero.
     pub spins: Vec<Direction>,
-    /// Reverse odd sites.
+    /// Reverse odd sites, of a cell with several atoms every other one.
     pub staggered: bool,
 }
 
@@ -56,7 +56,7 @@ impl JsonSchema for Vectors {
                     "type": "object",
                     "properties": {
                         "spins": {"allOf": [list], "description": "A direction a site, in the order of the sites."},
-                        "staggered": {"type": "boolean", "default": false, "description": "Reverse odd sites."},
+                        "staggered": {"type": "boolean", "default": false, "description": "Reverse odd sites, of a cell with several atoms every other one."},
                     },
                     "required": ["spins"],
                     "additionalProperties": false,

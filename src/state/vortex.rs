@@ -47,7 +47,7 @@ pub struct Vortex {
     /// How often the spins turn on the way around; −1 is an antivortex.
     #[serde(default = "once")]
     pub vorticity: i32,
-    /// Reverse odd sites.
+    /// Reverse odd sites, of a cell with several atoms every other one.
     #[serde(default)]
     pub staggered: bool,
 }

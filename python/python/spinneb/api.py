@@ -240,11 +240,11 @@ def rates(
     temperatures
         Numbers in K, or quantities; one or several.
     damping
-        Gilbert damping (0.1).
+        Gilbert damping; if left out, that of the result's config, else 0.1.
     g_factor
-        g factor (2).
+        g factor; if left out, that of the result's config, else 2.
     theory
-        ``"htst"`` (harmonic transition state theory) and ``"langer"``; both if left out.
+        ``"htst"`` (harmonic transition state theory) and ``"langer"``; if left out, those of the result's config, else both.
     """
     single = isinstance(temperatures, (int, float, str))
     asked = {

@@ -38,7 +38,7 @@ def uniform(
     direction
         Where the spins point.
     staggered
-        Reverse odd sites. Default: false.
+        Reverse odd sites, of a cell with several atoms every other one. Default: false.
 
     In a config: ``{"uniform": {"direction": [0, 0, 1]}}``
     """
@@ -68,7 +68,7 @@ def domain_wall(
     right
         Right of the wall; −z if absent.
     staggered
-        Reverse odd sites. Default: false.
+        Reverse odd sites, of a cell with several atoms every other one. Default: false.
     through
         Where the wall passes; "auto" (or absent): the shorter way, and between opposite domains the cheapest
         for the energy.
@@ -100,7 +100,7 @@ def soliton(
     normal
         From left to right, across the soliton; +x if absent, in a chain along the chain.
     staggered
-        Reverse odd sites. Default: false.
+        Reverse odd sites, of a cell with several atoms every other one. Default: false.
     through
         Where the spins point a quarter of the way; "auto" (or absent): the cheapest for the energy.
     width
@@ -136,7 +136,7 @@ def skyrmion(
     radius
         R in spacings, where the spins are across core and background; that of the energy if absent.
     staggered
-        Reverse odd sites. Default: false.
+        Reverse odd sites, of a cell with several atoms every other one. Default: false.
     vorticity
         How often the spins turn on the way around; −1 is an antiskyrmion. Default: 1.
     width
@@ -170,7 +170,7 @@ def vortex(
     radius
         A, the radius of the core, in spacings; that of least energy if absent. 0: no core.
     staggered
-        Reverse odd sites. Default: false.
+        Reverse odd sites, of a cell with several atoms every other one. Default: false.
     vorticity
         How often the spins turn on the way around; −1 is an antivortex. Default: 1.
 
@@ -200,7 +200,7 @@ def spiral(
     phase
         Angle at the origin.
     staggered
-        Reverse odd sites. Default: false.
+        Reverse odd sites, of a cell with several atoms every other one. Default: false.
 
     In a config: ``{"spiral": {"axis": [0, 1, 0], "period": 20, "phase": "30 deg"}}``
     """
@@ -219,7 +219,7 @@ def random(
     seed
         Seed of the ChaCha8 generator.
     staggered
-        Reverse odd sites. Default: false.
+        Reverse odd sites, of a cell with several atoms every other one. Default: false.
 
     In a config: ``{"random": {"seed": 1}}``
     """
@@ -251,7 +251,7 @@ def file(
     segment
         Which image of several, counted from 0; from the end if negative, −1 the last.
     staggered
-        Reverse odd sites. Default: false.
+        Reverse odd sites, of a cell with several atoms every other one. Default: false.
 
     In a config: ``{"file": {"path": "relaxed.ovf", "segment": 0}}``
     """
