@@ -101,9 +101,43 @@ def test_what_is_in_doubt_is_told_in_every_figure(reversal):
 def test_lifetimes_below_five_kt_are_grey(reversal):
     axes = sn.rates(reversal, [4.0, 10.0, 20.0, 30.0]).plot()
     sure, grey = axes.get_lines()[:2]
-    assert np.isnan(sure.get_ydata()).tolist() == [False, False, True, True]
-    assert np.isnan(grey.get_ydata()).tolist() == [True, False, False, False]
+    # from hot to cold
+    assert np.isnan(sure.get_ydata()).tolist() == [True, True, False, False]
+    assert np.isnan(grey.get_ydata()).tolist() == [False, False, False, True]
     assert grey.get_color() != sure.get_color()
+
+
+def test_lifetimes_are_an_arrhenius_plot(chain, reversal):
+    axes = sn.rates(reversal, [2.0, 4.0, 0.01]).plot()
+    assert (axes.get_xlabel(), axes.get_ylabel(), axes.get_yscale()) == ("1000 K / T", "mean lifetime (s)", "log")
+    curve = axes.get_lines()[0]
+    # from hot to cold, without a time that is beyond all that a figure shows
+    assert curve.get_xdata() == pytest.approx([250, 500, 100000])
+    assert curve.get_ydata() == pytest.approx([*sn.rates(reversal, [4.0, 2.0]).lifetimes_s(), np.nan], nan_ok=True)
+    assert [text.get_text() for text in axes.texts] == ["1 s"] and axes.get_legend() is None
+    field = chain.replaced(energy=[*chain.energy, sn.zeeman(B=["0 T", "0 T", "0.3 T"])])
+    both = sn.rates(sn.barrier(field, sn.uniform("z"), sn.uniform("-z")), [2.0, 4.0, 20.0]).plot()
+    assert [text.get_text() for text in both.get_legend().get_texts()] == ["forward", "backward", "barrier below 5 kT"]
+    assert "0.01 K: 10^3138 s" in repr(sn.rates(reversal, 0.01))
+    none = sn.rates(reversal, 300).plot()
+    assert "no lifetime" in none.texts[0].get_text()
+
+
+def test_maps_of_spins_have_a_key_of_their_colours(reversal):
+    import matplotlib.pyplot as plt
+
+    first = reversal.plot_spins()[0].figure
+    assert len(first.axes) == 4 and "m_z" in first.axes[-1].texts[-1].get_text()
+    assert "arrows" in first.axes[-1].texts[-1].get_text()
+    film = sn.relax(sn.System(sn.square(4, 4), [sn.exchange(J=["5 meV"]), sn.anisotropy(K="1 meV")]), sn.uniform("z"))
+    key = film.plot_spins()[0].figure.axes[-1]
+    assert [text.get_text() for text in key.texts[:2]] == ["+x", "+y"] and "arrows" not in key.texts[-1].get_text()
+    # white in the middle and black around it, as the film's spins up are white
+    colours = key.get_images()[0].get_array()
+    assert colours[100, 100, :3].min() > 0.9 and colours[100, 0, :3].max() < 0.2
+    _, (map_, own) = plt.subplots(1, 2)
+    assert film.plot_spins([map_]) == [map_] and not own.texts
+    assert film.plot_spins([map_], key=own) == [map_] and own.texts
 
 
 def test_figures_are_drawn_on_axes(reversal):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import colorsys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 #: blue and vermilion of Okabe and Ito, which all eyes can tell apart
 CURVE, TOP = "#0072b2", "#d55e00"
+#: lifetimes that are drawn (s), as in arrhenius.png
+SHORTEST_S, LONGEST_S = 1e-15, 1e25
 #: rows of sites are drawn as arrows up to so many
 _ARROWS = 120
 
@@ -42,24 +44,54 @@ def energy_path(
     return ax
 
 
-def maps(states: Sequence[Array], places: Array, titles: Sequence[str], axes: Sequence[Axes] | None = None) -> list[Axes]:
-    """States side by side: chains one below the other, films as maps of their top layer."""
-    import matplotlib.pyplot as plt
-
+def maps(
+    states: Sequence[Array], places: Array, titles: Sequence[str], axes: Sequence[Axes] | None = None, key: Axes | None = None
+) -> list[Axes]:
+    """States side by side: chains one below the other, films as maps of their top layer; a figure of its own has a key of the colours."""
     is_row = bool(np.ptp(places[:, 1]) < 1e-9 and np.ptp(places[:, 2]) < 1e-9)
-    n = len(states)
-    if axes is not None:
-        made = list(axes)
-    elif is_row:
-        made = list(plt.subplots(n, 1, figsize=(6.4, 0.95 * n + 0.4), sharex=True, squeeze=False, layout="constrained")[1][:, 0])
-    else:
-        made = list(plt.subplots(1, n, figsize=(2.9 * n, 3.1), squeeze=False, layout="constrained")[1][0])
-    if len(made) < n:
-        raise ValueError(f"found {len(made)} axes for {n} states")
+    made, key = _figure(len(states), places, is_row) if axes is None else (list(axes), key)
+    if len(made) < len(states):
+        raise ValueError(f"found {len(made)} axes for {len(states)} states")
     for ax, m, title in zip(made, states, titles):
         (_row if is_row else _film)(ax, m, places)
         ax.set_title(title, fontsize="small")
+    if key is not None:
+        wheel(key, "arrows: $m_x$ →, $m_z$ ↑" if is_row else "")
     return made
+
+
+def _figure(n: int, places: Array, is_row: bool) -> tuple[list[Axes], Axes]:
+    """Axes of n states, and beside them those of the key."""
+    import matplotlib.pyplot as plt
+
+    if is_row:
+        figure = plt.figure(figsize=(7.6, max(0.95 * n + 0.4, 2.0)), layout="constrained")
+        grid = figure.add_gridspec(n, 2, width_ratios=[6.4, 1.2])
+        made = [figure.add_subplot(grid[0, 0])]
+        made += [figure.add_subplot(grid[k, 0], sharex=made[0]) for k in range(1, n)]
+        return made, figure.add_subplot(grid[:, 1])
+    wide, high = (float(np.ptp(places[:, k])) + nearest(places) for k in (0, 1))
+    figure = plt.figure(figsize=(2.9 * n + 1.2, max(min(2.9 * high / wide, 5.8) + 0.5, 2.0)), layout="constrained")
+    grid = figure.add_gridspec(1, n + 1, width_ratios=[2.9] * n + [1.2])
+    *made, key = (figure.add_subplot(grid[0, k]) for k in range(n + 1))
+    return made, key
+
+
+def wheel(ax: Axes, below: str = "") -> None:
+    """All colours: the direction in the plane around the middle, where m_z is 1; at the rim it is −1."""
+    side = np.linspace(-1, 1, 201)
+    x, y = np.meshgrid(side, side)
+    out = np.hypot(x, y)
+    z = np.clip(1 - 2 * out, -1, 1)
+    across = np.sqrt(1 - z * z) / np.maximum(out, 1e-9)
+    shown = colors(np.stack([across * x, across * y, z], axis=-1).reshape(-1, 3)).reshape(*x.shape, 3)
+    ax.imshow(np.dstack([shown, out <= 1]), origin="lower", extent=(-1, 1, -1, 1), interpolation="bilinear")
+    ax.set_axis_off()
+    ax.set_anchor("C")
+    for words, place, align in [("+x", (1.05, 0), ("left", "center")), ("+y", (0, 1.05), ("center", "bottom"))]:
+        ax.text(*place, words, ha=align[0], va=align[1], fontsize="small")
+    words = "\n".join(["centre $m_z$ = 1,", "rim $m_z$ = −1", *([below] if below else [])])
+    ax.text(0, -1.1, words, ha="center", va="top", fontsize="small", linespacing=1.4)
 
 
 def colors(m: Array) -> Array:
@@ -70,6 +102,8 @@ def colors(m: Array) -> Array:
 
 
 def _row(ax: Axes, m: Array, places: Array) -> None:
+    from matplotlib.ticker import MaxNLocator
+
     x = places[:, 0]
     step = max(1, int(np.ceil(len(m) / _ARROWS)))
     x, m = x[::step], m[::step]
@@ -79,6 +113,7 @@ def _row(ax: Axes, m: Array, places: Array) -> None:
     ax.set_xlim(x.min() - 0.03 * span, x.max() + 0.03 * span)
     ax.set_ylim(-1, 1)
     ax.set_yticks([])
+    ax.xaxis.set_major_locator(MaxNLocator(integer=True))
     ax.set_xlabel("site")
     ax.label_outer()
 
@@ -120,24 +155,48 @@ def _is_square(r: Array, distance: float) -> bool:
     return bool(np.all(np.min(np.abs(near), axis=1) < 1e-6))
 
 
-def lifetimes(temperatures_K: Array, log10_s: Array, low: NDArray[np.bool_], ax: Axes | None = None, **style: Any) -> Axes:
-    """See :meth:`spinneb.Rates.plot`."""
+def lifetimes(ways: Mapping[str, tuple[Array, Array, NDArray[np.bool_]]], ax: Axes | None = None, **style: Any) -> Axes:
+    """See :meth:`spinneb.Rates.plot`: by what a curve is called, temperatures (K), decimal logarithms of times (s), and where a
+    barrier is low."""
     import matplotlib.pyplot as plt
 
     ax = plt.subplots(figsize=(4.8, 3.2), layout="constrained")[1] if ax is None else ax
-    style = {"color": CURVE, "marker": "o", "ms": 4, **style}
-    ax.plot(temperatures_K, np.where(low, np.nan, log10_s), **style)
+    drawn = {name: (1000 / t, *_drawn(log10_s, low)) for name, (t, log10_s, low) in ways.items()}
+    for (name, (x, sure, _)), color in zip(drawn.items(), (CURVE, TOP)):
+        ax.plot(x, sure, **{"color": color, "marker": "o", "ms": 4, "label": name, **style})
+    grey = {**style, "color": "0.6", "marker": "o", "ms": 4, "zorder": 1}
+    for k, (x, _, low) in enumerate(one for one in drawn.values() if np.isfinite(one[2]).any()):
+        ax.plot(x, low, **{**grey, "label": "_" if k else "barrier below 5 kT"})
+    ax.set_yscale("log")
+    ax.set_xlabel("1000 K / T")
+    ax.set_ylabel("mean lifetime (s)")
+    if any(np.isfinite([sure, low]).any() for _, sure, low in drawn.values()):
+        _levels(ax)
+    else:
+        for ticks in (ax.set_xticks, ax.set_yticks):
+            ticks([])
+            ticks([], minor=True)
+        ax.annotate("no lifetime from 10⁻¹⁵ s to 10²⁵ s", (0.5, 0.5), xycoords="axes fraction", ha="center")
+    if len(ax.get_legend_handles_labels()[1]) > 1:
+        ax.legend(fontsize="small", frameon=False)
+    return ax
+
+
+def _drawn(log10_s: Array, low: NDArray[np.bool_]) -> tuple[Array, Array]:
+    """Times (s) that are sure and those where a barrier is low, with gaps in place of the others."""
+    within = (log10_s >= np.log10(SHORTEST_S)) & (log10_s <= np.log10(LONGEST_S))
+    s = 10 ** np.where(within, log10_s, np.nan)
     # the grey line reaches to the first point of the other
     reach = low.copy()
     reach[1:] |= low[:-1]
     reach[:-1] |= low[1:]
-    if low.any():
-        ax.plot(temperatures_K, np.where(reach, log10_s, np.nan), **{**style, "color": "0.6", "zorder": 1, "label": "barrier below 5 kT"})
-    ax.set_xlabel("temperature (K)")
-    ax.set_ylabel("log₁₀ lifetime (s)")
-    for seconds, words in [(0.0, "1 s"), (np.log10(10 * 365.25 * 86400), "10 years")]:
-        bottom, top = ax.get_ylim()
+    return np.where(low, np.nan, s), np.where(reach & low.any(), s, np.nan)
+
+
+def _levels(ax: Axes) -> None:
+    """Lines at a second and at ten years, where they are within the figure; named on the hot side, where curves are low."""
+    bottom, top = ax.get_ylim()
+    for seconds, words in [(1.0, "1 s"), (10 * 365.25 * 86400, "10 years")]:
         if bottom < seconds < top:
-            ax.axhline(seconds, color="0.7", lw=0.8, zorder=0)
-            ax.annotate(words, (1, seconds), xycoords=("axes fraction", "data"), ha="right", va="bottom", fontsize="small", color="0.4")
-    return ax
+            ax.axhline(seconds, color="0.7", lw=0.8, ls="--", zorder=0)
+            ax.annotate(words, (0.01, seconds), xycoords=("axes fraction", "data"), ha="left", va="bottom", fontsize="small", color="0.4")

@@ -281,15 +281,18 @@ class Result:
             titles = [f"{title}\n{note}" if k == place else title for k, title in zip(picked, titles)]
         return [path[k] for k in picked], titles
 
-    def plot_spins(self, images: Sequence[int] | None = None, axes: Sequence[Axes] | None = None) -> list[Axes]:
+    def plot_spins(
+        self, images: Sequence[int] | None = None, axes: Sequence[Axes] | None = None, key: Axes | None = None
+    ) -> list[Axes]:
         """The spins of some images side by side, on matplotlib axes: hue for the direction in the plane, lightness for m_z.
 
-        Left out, ``images`` are the initial state, those at the saddles, and the final state.
+        Left out, ``images`` are the initial state, those at the saddles, and the final state. The figure has a key of the colours;
+        beside ``axes`` of your own it is drawn on those of ``key``.
         """
         from .plotting import maps
 
         states, titles = self._chosen(images)
-        return maps(states, self.places, titles, axes)
+        return maps(states, self.places, titles, axes, key)
 
     def plot_3d(self, images: Sequence[int] | None = None, plotter: Any = None, **style: Any) -> Any:
         """The spins of some images side by side as arrows in three dimensions: a ``pyvista.Plotter``, in the colours of
@@ -400,11 +403,11 @@ class Relaxed:
         """What you should know."""
         return list(self.summary["warnings"])
 
-    def plot_spins(self, axes: Sequence[Axes] | None = None) -> list[Axes]:
-        """The spins, on matplotlib axes."""
+    def plot_spins(self, axes: Sequence[Axes] | None = None, key: Axes | None = None) -> list[Axes]:
+        """The spins, on matplotlib axes, as of :meth:`Result.plot_spins`."""
         from .plotting import maps
 
-        return maps([self.spins], self.places, [f"{self.energy_meV:.4f} meV"], axes)
+        return maps([self.spins], self.places, [f"{self.energy_meV:.4f} meV"], axes, key)
 
     def plot_3d(self, plotter: Any = None, **style: Any) -> Any:
         """The spins as arrows in three dimensions: a ``pyvista.Plotter``, as of :meth:`Result.plot_3d`."""
@@ -503,16 +506,33 @@ class Rates:
         return pandas.DataFrame(rows)
 
     def plot(self, ax: Axes | None = None, **style: Any) -> Axes:
-        """Lifetimes against temperature, on matplotlib axes; grey where a barrier is below 5 kT, as the theories need more."""
+        """Mean lifetimes (s, on a logarithmic scale) against 1000 K / T, on matplotlib axes, as arrhenius.png has them.
+
+        Both ways, where they differ. Grey where a barrier is below 5 kT, as the theories need more; times below 1e-15 s or beyond
+        1e25 s are left out. ``style`` goes to the curves (``color=``, ``label=``, ``linewidth=`` …).
+        """
         from .plotting import lifetimes
 
-        low = np.array([row["barrier_over_kT"] < 5 for row in self._rows("forward")], dtype=bool)
-        return lifetimes(self.temperatures_K, self.lifetimes_s(log10=True), low, ax, **style)
+        forward, backward = (self._curve(way) for way in ("forward", "backward"))
+        if np.allclose(forward[1], backward[1], rtol=0, atol=5e-4, equal_nan=True):
+            return lifetimes({"mean lifetime": forward}, ax, **style)
+        return lifetimes({"forward": forward, "backward": backward}, ax, **style)
+
+    def _curve(self, way: Way) -> tuple[Array, Array, NDArray[np.bool_]]:
+        """Temperatures (K) from hot to cold, decimal logarithms of lifetimes (s), and where the barrier is low."""
+        order = np.argsort(-self.temperatures_K)
+        low = np.array([row["barrier_over_kT"] < 5 for row in self._rows(way)], dtype=bool)
+        return self.temperatures_K[order], self.lifetimes_s(way, log10=True)[order], low[order]
+
+    def _told(self) -> list[str]:
+        """The lifetimes in words, also those too long for a number."""
+        times = zip(self.lifetimes_s(), self.lifetimes_s(log10=True))
+        return [f"10^{log10:.0f} s" if np.isnan(s) else f"{s:.3g} s" for s, log10 in times]
 
     def __repr__(self) -> str:
         lines = [f"<Rates {self.result.name}"]
-        for t, s, why in zip(self.temperatures_K, self.lifetimes_s(), self.reasons):
-            lines.append(f"  {t:g} K: " + (f"{s:.3g} s" if why is None else f"none: {why}"))
+        for t, s, why in zip(self.temperatures_K, self._told(), self.reasons):
+            lines.append(f"  {t:g} K: " + (s if why is None else f"none: {why}"))
         return "\n".join(lines) + ">"
 
 
