@@ -1,7 +1,9 @@
 """Errors say what the command line says."""
 
 import pickle
+import sys
 
+import numpy as np
 import pytest
 
 import spinneb as sn
@@ -79,6 +81,62 @@ def test_what_is_no_json_is_refused_here(chain):
         sn.uniform()
     with pytest.raises(TypeError):
         sn.domain_wall(3, widht=2)
+
+
+def test_vectors_that_are_none_are_named(chain, reversal):
+    ends = sn.uniform("z"), sn.uniform("-z")
+    broken = reversal.spins.copy()
+    broken[2, 3, 1] = np.nan
+    with pytest.raises(ValueError, match=r"^initial: site 3: \[.*nan.*\] has no direction"):
+        sn.barrier(chain, broken[2], ends[1])
+    with pytest.raises(ValueError, match=r"^state: site 3: .*three finite numbers"):
+        sn.relax(chain, broken[2])
+    with pytest.raises(ValueError, match=r"^guess: image 2, site 3: \[.*nan"):
+        sn.barrier(chain, *ends, guess=broken)
+    # arrays in a dictionary too
+    with pytest.raises(ValueError, match=r"^guess: image 2, site 3: \[.*nan"):
+        sn.run({**chain.config(*ends), "path": {"guess": broken}})
+    for few in (reversal.spins[:1], reversal.spins[0]):
+        with pytest.raises(ValueError, match=r"^guess: found an array of shape \(.*\), expected \(images, sites, 3\) with 3 images or more"):
+            sn.barrier(chain, *ends, guess=few)
+    # the file that passes them on is no business of the user's
+    with pytest.raises(sn.ConfigError, match="^path.guess: the array has 10 spins, but the chain has 20 sites"):
+        sn.barrier(chain, *ends, guess=reversal.spins[:, :10])
+    for nothing in ("left", sn.sweep, [[1, 2], [1, 2, 3]]):
+        with pytest.raises(TypeError, match="^guess: found .*expected vectors"):
+            sn.barrier(chain, *ends, guess=nothing)
+
+
+def test_one_temperature_stands_for_a_list_of_one(chain, reversal):
+    ends = sn.uniform("z"), sn.uniform("-z")
+    want = sn.rates(reversal, [4.0]).lifetimes_s()
+    for one in ("4 K", 4, np.int64(4), np.array(4.0)):
+        assert sn.rates(reversal, one).lifetimes_s() == want
+        assert sn.barrier(chain, *ends, temperatures=one).rates.lifetimes_s() == pytest.approx(want, rel=1e-12)
+    assert sn.landscape(chain, temperatures="4 K").lifetimes
+    with pytest.raises(TypeError, match="^rates takes a Result"):
+        sn.rates(chain, 4)
+    with pytest.raises(TypeError, match=r"^states is a list of states, also of one: write \[uniform"):
+        sn.landscape(chain, states=sn.uniform("x"))
+
+
+@pytest.mark.parametrize(
+    "package, use",
+    [
+        ("matplotlib", lambda result: result.plot()),
+        ("matplotlib", lambda result: result.plot_spins()),
+        ("matplotlib", lambda result: sn.rates(result, 4).plot()),
+        ("pandas", lambda result: result.to_dataframe()),
+        ("pandas", lambda result: sn.rates(result, 4).to_dataframe()),
+        ("xarray", lambda result: result.to_xarray()),
+        ("pyvista", lambda result: result.plot_3d()),
+        ("discretisedfield", lambda result: sn.to_field(result)),
+    ],
+)
+def test_a_package_that_is_not_there_is_told_how_it_comes(reversal, monkeypatch, package, use):
+    monkeypatch.setitem(sys.modules, package, None)
+    with pytest.raises(ModuleNotFoundError, match=f"needs {package}, .*: pip install {package}$"):
+        use(reversal)
 
 
 def test_files_and_folders_that_are_not_there(tmp_path, chain, reversal):

@@ -120,8 +120,35 @@ class Shape(Piece):
 
 def spins(value: ArrayLike, what: str, sites: int | None = None) -> NDArray[np.float64]:
     """Vectors as (site, xyz), checked."""
-    m = np.asarray(value, dtype=np.float64)
+    m = numbers(value, what)
     if m.ndim != 2 or m.shape[1] != 3 or (sites is not None and m.shape[0] != sites):
         wanted = f"({sites if sites is not None else 'sites'}, 3)"
         raise ValueError(f"{what}: found an array of shape {m.shape}, expected {wanted}")
+    return finite(m, what)
+
+
+def path(value: ArrayLike, what: str) -> NDArray[np.float64]:
+    """Vectors of a path as (image, site, xyz), checked."""
+    m = numbers(value, what)
+    if m.ndim != 3 or m.shape[2] != 3 or len(m) < 3:
+        raise ValueError(f"{what}: found an array of shape {m.shape}, expected (images, sites, 3) with 3 images or more, both ends counted")
+    return finite(m, what)
+
+
+def numbers(value: ArrayLike, what: str) -> NDArray[np.float64]:
+    """An array, or an error that says what would be one."""
+    try:
+        return np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        found = repr(value)
+        found = found if len(found) <= 60 else f"{found[:57]}..."
+        raise TypeError(f"{what}: found {found}, expected vectors, or what a builder such as uniform(…) or sweep(…) makes") from None
+
+
+def finite(m: NDArray[np.float64], what: str) -> NDArray[np.float64]:
+    """The vectors, or an error that names the first that is none."""
+    bad = np.argwhere(~np.isfinite(m).all(axis=-1))
+    if len(bad):
+        place = ", ".join(f"{name} {k}" for name, k in zip(("image", "site")[2 - len(bad[0]) :], bad[0]))
+        raise ValueError(f"{what}: {place}: {m[tuple(bad[0])].tolist()} has no direction: give three finite numbers")
     return m

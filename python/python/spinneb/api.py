@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core
+from ._errors import ConfigError
 from ._values import Guess, Piece, plain
 from .results import Check, Landscape, Rates, Relaxed, Result
 from .system import AnyState, System, as_guess, as_state
@@ -24,6 +25,8 @@ Config = Union[str, "os.PathLike[str]", Mapping[str, Any], System]
 #: True for a line that tells how far it is, or a function of what is known: stage, iteration, …
 Progress = Union[bool, Callable[[dict[str, Any]], object], None]
 Effort = Literal["none", "quick", "normal", "thorough"]
+#: the file of a first path of vectors
+_GUESS = "guess.npy"
 
 
 def run(
@@ -82,7 +85,7 @@ def barrier(
     images: int | None = None,
     relax_ends: bool | None = None,
     effort: Effort | None = None,
-    temperatures: Iterable[float | str] | None = None,
+    temperatures: float | str | Iterable[float | str] | None = None,
     out: str | os.PathLike[str] | None = None,
     threads: int | None = None,
     progress: Progress = None,
@@ -106,7 +109,7 @@ def barrier(
     effort
         How long lower passes are looked for.
     temperatures
-        For rates and lifetimes, ``result.rates``: numbers in K, or quantities.
+        For rates and lifetimes, ``result.rates``: numbers in K, or quantities; one or several.
     out, threads, progress
         As in :func:`run`.
     options
@@ -186,7 +189,7 @@ def landscape(
     effort: Effort | None = None,
     states: Sequence[AnyState] = (),
     groups: Mapping[str, Any] | None = None,
-    temperatures: Iterable[float | str] | None = None,
+    temperatures: float | str | Iterable[float | str] | None = None,
     threads: int | None = None,
     progress: Progress = None,
     set: Mapping[str, Any] | None = None,
@@ -206,10 +209,12 @@ def landscape(
     groups
         Groups of minima for lifetimes, by name: ``{"up": {"axis": [0, 0, 1], "from": 0.5}}``.
     temperatures
-        For lifetimes: numbers in K, or quantities.
+        For lifetimes: numbers in K, or quantities; one or several.
     threads, progress, set
         As in :func:`run`.
     """
+    if isinstance(states, (str, Mapping)):
+        raise TypeError(f"states is a list of states, also of one: write [{states!r}]")
     own = {
         "energy_window": energy_window,
         "effort": effort,
@@ -246,9 +251,10 @@ def rates(
     theory
         ``"htst"`` (harmonic transition state theory) and ``"langer"``; if left out, those of the result's config, else both.
     """
-    single = isinstance(temperatures, (int, float, str))
+    if not isinstance(result, Result):
+        raise TypeError(f"rates takes a Result, as run, barrier and load make it, found {result!r}")
     asked = {
-        "temperatures": _kelvin([temperatures] if single else temperatures),  # type: ignore[list-item,arg-type]
+        "temperatures": _kelvin(temperatures),
         "damping": damping,
         "g_factor": g_factor,
         "theory": theory,
@@ -283,7 +289,12 @@ def _config(config: Config, kind: str, set: Mapping[str, Any] | None) -> _core.C
     terms = config.terms if isinstance(config, System) else []
     with tempfile.TemporaryDirectory(prefix="spinneb-") as folder:
         whole = _with_files(config.config() if isinstance(config, System) else dict(config), folder)
-        return _core.Config(None, _dumped(whole), os.getcwd(), sets, terms, kind)
+        try:
+            return _core.Config(None, _dumped(whole), os.getcwd(), sets, terms, kind)
+        except ConfigError as error:
+            # the file is ours, and gone
+            own = f"path.guess.file.path: {os.path.join(folder, _GUESS)}"
+            raise ConfigError(str(error).replace(own, "path.guess: the array")) from None
 
 
 def _with_files(config: dict[str, Any], folder: str) -> dict[str, Any]:
@@ -292,8 +303,8 @@ def _with_files(config: dict[str, Any], folder: str) -> dict[str, Any]:
     guess = path.get("guess") if isinstance(path, Mapping) else None
     if guess is None or isinstance(guess, Mapping):
         return config
-    file = os.path.join(folder, "guess.npy")
-    np.save(file, np.asarray(guess, dtype=np.float64))
+    file = os.path.join(folder, _GUESS)
+    np.save(file, as_guess(guess))
     return {**config, "path": {**path, "guess": {"file": {"path": file}}}}  # type: ignore[dict-item]
 
 
@@ -301,8 +312,9 @@ def _dumped(value: Any) -> str:
     return json.dumps(plain(value), ensure_ascii=False, allow_nan=False)
 
 
-def _kelvin(temperatures: Iterable[float | str]) -> list[str]:
-    return [value if isinstance(value, str) else f"{float(value)!r} K" for value in temperatures]
+def _kelvin(temperatures: float | str | Iterable[float | str]) -> list[str]:
+    several = [temperatures] if np.ndim(temperatures) == 0 else temperatures  # type: ignore[arg-type]
+    return [value if isinstance(value, str) else f"{float(value)!r} K" for value in several]  # type: ignore[arg-type,union-attr]
 
 
 class _telling:

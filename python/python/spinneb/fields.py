@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ._optional import needs
 from ._values import Lattice
 from .results import Result
 
@@ -67,6 +68,7 @@ def to_field(result: Result, image: int = 0, *, norm: float | None = None) -> di
     norm
         The length of the vectors, 1 if left out; Ms makes a magnetisation of it.
     """
+    needs("discretisedfield")
     import discretisedfield as df  # type: ignore[import-untyped,import-not-found,unused-ignore]
 
     lattice = result.config["lattice"]

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ._optional import needs
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
@@ -30,6 +32,7 @@ def energy_path(
     **style: Any,
 ) -> Axes:
     """See :meth:`spinneb.Result.plot`; all in radians and meV."""
+    needs("matplotlib")
     import matplotlib.pyplot as plt
 
     ax = plt.subplots(figsize=(4.8, 3.2), layout="constrained")[1] if ax is None else ax
@@ -62,6 +65,7 @@ def maps(
 
 def _figure(n: int, places: Array, is_row: bool) -> tuple[list[Axes], Axes]:
     """Axes of n states, and beside them those of the key."""
+    needs("matplotlib")
     import matplotlib.pyplot as plt
 
     if is_row:
@@ -158,6 +162,7 @@ def _is_square(r: Array, distance: float) -> bool:
 def lifetimes(ways: Mapping[str, tuple[Array, Array, NDArray[np.bool_]]], ax: Axes | None = None, **style: Any) -> Axes:
     """See :meth:`spinneb.Rates.plot`: by what a curve is called, temperatures (K), decimal logarithms of times (s), and where a
     barrier is low."""
+    needs("matplotlib")
     import matplotlib.pyplot as plt
 
     ax = plt.subplots(figsize=(4.8, 3.2), layout="constrained")[1] if ax is None else ax

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
+from ._optional import needs
 
 if TYPE_CHECKING:
     import pandas  # type: ignore[import-untyped,unused-ignore]
@@ -216,6 +217,7 @@ class Result:
 
     def to_dataframe(self) -> pandas.DataFrame:
         """A row an image, as path.csv has it (pandas)."""
+        needs("pandas")
         import pandas
 
         return pandas.DataFrame(self._table())
@@ -233,6 +235,7 @@ class Result:
 
     def to_xarray(self) -> xarray.Dataset:
         """Spins and energies with their coordinates (xarray)."""
+        needs("xarray")
         import xarray
 
         table = self._table()
@@ -500,6 +503,7 @@ class Rates:
 
     def to_dataframe(self) -> pandas.DataFrame:
         """A row a direction and temperature (pandas)."""
+        needs("pandas")
         import pandas
 
         rows = [{"direction": one["direction"], **row} for one in self.transitions for row in one["temperatures"]]
@@ -608,12 +612,14 @@ class Landscape:
 
     def to_dataframe(self, table: Literal["minima", "saddles", "lifetimes"] = "minima") -> pandas.DataFrame:
         """One of the tables (pandas)."""
+        needs("pandas")
         import pandas
 
         return pandas.read_csv(io.BytesIO(self.files[f"{table}.csv"]))
 
     def graph(self) -> Any:
         """Minima and saddles as a graph (networkx)."""
+        needs("networkx")
         import networkx  # type: ignore[import-untyped,unused-ignore]
 
         return networkx.parse_graphml(self.files["landscape.graphml"].decode())

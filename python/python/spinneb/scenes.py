@@ -8,12 +8,14 @@ from typing import Any
 
 import numpy as np
 
+from ._optional import needs
 from .plotting import Array, colors, nearest
 
 
 def arrows(states: Sequence[Array], places: Array, titles: Sequence[str], plotter: Any = None, **style: Any) -> Any:
     """States side by side as arrows at their sites; all in the view of a plotter that is given."""
     # whose types are not needed, and take a checker minutes to read
+    needs("pyvista")
     pyvista = import_module("pyvista")
     n = len(states)
     own = pyvista.Plotter(shape=(1, n), window_size=(min(480 * n, 1920), 440)) if plotter is None else plotter

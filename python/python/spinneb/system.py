@@ -9,7 +9,7 @@ from typing import Any, Union
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ._values import Guess, Lattice, State, Values, plain, spins
+from ._values import Guess, Lattice, State, Values, path, plain, spins
 from .term import AnyTerm, Term
 
 __all__ = ["System"]
@@ -152,7 +152,4 @@ def as_guess(value: Guess | Mapping[str, Any] | ArrayLike) -> Any:
     """A first path as a config has it, or vectors of the shape (images, N, 3)."""
     if isinstance(value, Mapping):
         return value
-    path = np.asarray(value, dtype=np.float64)
-    if path.ndim != 3 or path.shape[2] != 3 or len(path) < 2:
-        raise ValueError(f"guess: found an array of shape {path.shape}, expected (images, sites, 3)")
-    return path
+    return path(value, "guess")
