@@ -176,6 +176,19 @@ def test_the_report_stands_in_the_cell(reversal):
     assert reversal.html().lstrip().lower().startswith("<!doctype html>")
 
 
+def test_rates_and_systems_are_tables_in_a_cell(chain, reversal):
+    cell = sn.rates(reversal, [0.01, 2.0, 4.0, 300.0])._repr_html_()
+    for words in ("<th", "barrier / kT", "forward", "backward", ">300<", "10^3138 s", "none: ΔE is below 1 k_BT", "1000 K / T"):
+        assert words in cell, words
+    assert cell.count("<svg") == 1 and cell.count("<tr>") == 9
+    assert "<svg" not in sn.rates(reversal, 4.0)._repr_html_()
+    own = sn.Term(lambda m: m[:, 2], lambda m: np.tile([0.0, 0.0, 1.0], (len(m), 1)), name="a<b")
+    system = chain.replaced(energy=[*chain.energy, own], initial=reversal.initial, final=sn.uniform("-z"), neb={"tolerance": 1e-7})
+    cell = system._repr_html_()
+    for words in ("System chain", "chain(sites=20)", "2 mu_B", "exchange(J=", "a&lt;b", "vectors of shape (20, 3)", "uniform(", "tolerance"):
+        assert words in cell, words
+
+
 def test_results_are_saved_and_loaded(reversal, tmp_path):
     folder = tmp_path / "chain"
     reversal.save(folder)

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
+from ._html import drawing, paragraph, table
 from ._optional import needs
 
 if TYPE_CHECKING:
@@ -488,9 +489,12 @@ class Rates:
     @property
     def reasons(self) -> list[str | None]:
         """Why there is no lifetime at each temperature; None where there is one."""
-        refused = [one["refused"] for one in self.transitions if one["direction"] == "forward"]
+        return self._reasons("forward")
+
+    def _reasons(self, way: Way) -> list[str | None]:
+        refused = [one["refused"] for one in self.transitions if one["direction"] == way]
         whole = refused[0] if refused else None
-        return [row["reason"] or whole if row["first_passage_s"] is None else None for row in self._rows("forward")]
+        return [row["reason"] or whole if row["log10_first_passage_s"] is None else None for row in self._rows(way)]
 
     def prefactors_Hz(self, way: Way = "forward", *, theory: Theory = "langer") -> Array:
         """Attempt frequencies of the rates over the saddles, in their order along the path; NaN where a saddle has none.
@@ -528,16 +532,24 @@ class Rates:
         low = np.array([row["barrier_over_kT"] < 5 for row in self._rows(way)], dtype=bool)
         return self.temperatures_K[order], self.lifetimes_s(way, log10=True)[order], low[order]
 
-    def _told(self) -> list[str]:
-        """The lifetimes in words, also those too long for a number."""
-        times = zip(self.lifetimes_s(), self.lifetimes_s(log10=True))
-        return [f"10^{log10:.0f} s" if np.isnan(s) else f"{s:.3g} s" for s, log10 in times]
+    def _told(self, way: Way) -> list[str]:
+        """The lifetimes in words, also those too long for a number, or why there are none."""
+        times = zip(self.lifetimes_s(way), self.lifetimes_s(way, log10=True), self._reasons(way))
+        return [f"none: {why}" if why else f"{s:.3g} s" if np.isfinite(s) else f"10^{log10:.0f} s" for s, log10, why in times]
+
+    def _repr_html_(self) -> str:
+        rows = [
+            (one["direction"], f"{row['temperature_K']:g}", f"{row['barrier_over_kT']:.3g}", told)
+            for one in self.transitions
+            for row, told in zip(one["temperatures"], self._told(one["direction"]))
+        ]
+        figure = self.result._core.files(["svg"]).get("arrhenius.svg", b"")
+        head = ("", "T (K)", "barrier / kT", "mean lifetime")
+        return paragraph(f"Rates {self.result.name}") + table(rows, head) + drawing(figure)
 
     def __repr__(self) -> str:
-        lines = [f"<Rates {self.result.name}"]
-        for t, s, why in zip(self.temperatures_K, self._told(), self.reasons):
-            lines.append(f"  {t:g} K: " + (s if why is None else f"none: {why}"))
-        return "\n".join(lines) + ">"
+        rows = zip(self.temperatures_K, self._told("forward"))
+        return "\n".join([f"<Rates {self.result.name}", *(f"  {t:g} K: {told}" for t, told in rows)]) + ">"
 
 
 class Landscape:
@@ -631,10 +643,7 @@ class Landscape:
         self._core.save(os.fspath(folder), force)
 
     def _repr_html_(self) -> str:
-        import html
-
-        svg = self.files.get("disconnectivity.svg", b"").decode()
-        return f"<p>{html.escape(repr(self)[1:-1])}</p>{svg[svg.find('<svg') :] if '<svg' in svg else ''}"
+        return paragraph(repr(self)[1:-1]) + drawing(self.files.get("disconnectivity.svg", b""))
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (None, self.files)

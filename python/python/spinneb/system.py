@@ -9,6 +9,7 @@ from typing import Any, Union
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ._html import paragraph, table
 from ._values import Guess, Lattice, State, Values, path, plain, spins
 from .term import AnyTerm, Term
 
@@ -119,6 +120,13 @@ class System:
         }
         return System(**{**own, **changes})
 
+    def _repr_html_(self) -> str:
+        rows: list[tuple[str, Any]] = [("lattice", self.lattice), ("material", self.material), ("moment", self.moment), ("Ms", self.Ms)]
+        rows += [("energy" if k == 0 else "", term) for k, term in enumerate([*self.energy, *self.terms])]
+        rows += [("initial", _shown(self.initial)), ("final", _shown(self.final)), *self.options.items()]
+        shown = [(key, value if isinstance(value, str) else repr(value)) for key, value in rows if value is not None]
+        return paragraph(f"System {self.name or ''}") + table(shown)
+
     def __repr__(self) -> str:
         shown = [f"lattice={self.lattice!r}"]
         shown += [
@@ -128,6 +136,11 @@ class System:
         ]
         terms = [*map(repr, self.energy), *map(repr, self.terms)]
         return f"System({', '.join(shown)}, energy=[{', '.join(terms)}])"
+
+
+def _shown(state: AnyState | None) -> Any:
+    """A state in words; of vectors how many they are."""
+    return state if state is None or isinstance(state, Mapping) else f"vectors of shape {np.shape(state)}"
 
 
 def _named(terms: list[Term]) -> list[Term]:
