@@ -96,8 +96,9 @@ def test_vectors_that_are_none_are_named(chain, reversal):
     # arrays in a dictionary too
     with pytest.raises(ValueError, match=r"^guess: image 2, site 3: \[.*nan"):
         sn.run({**chain.config(*ends), "path": {"guess": broken}})
+    wanted = r"expected \(images, sites, 3\) with 3 images or more"
     for few in (reversal.spins[:1], reversal.spins[0]):
-        with pytest.raises(ValueError, match=r"^guess: found an array of shape \(.*\), expected \(images, sites, 3\) with 3 images or more"):
+        with pytest.raises(ValueError, match=rf"^guess: found an array of shape \(.*\), {wanted}"):
             sn.barrier(chain, *ends, guess=few)
     # the file that passes them on is no business of the user's
     with pytest.raises(sn.ConfigError, match="^path.guess: the array has 10 spins, but the chain has 20 sites"):

@@ -50,6 +50,13 @@ def test_numbers_are_named_as_in_the_summary(reversal):
     assert reversal.places[:, 0].tolist() == list(range(20))
 
 
+def test_a_search_whose_work_was_spent_is_told_of(reversal):
+    assert reversal.search == reversal.summary["search"] and reversal.search["effort"] == "normal"
+    assert not reversal.search["spent"] and "search" not in repr(reversal)
+    spent = sn.Result(reversal._core, {**reversal.summary, "search": {**reversal.search, "spent": True}})
+    assert repr(spent).endswith("certified, the search for lower passes ended early as its work was spent>")
+
+
 def test_a_run_with_temperatures_has_the_rates_that_are_made_of_it_later(chain, reversal):
     assert reversal.rates is None
     result = sn.barrier(chain, sn.uniform("z"), sn.uniform("-z"), temperatures=[4.0])
@@ -176,16 +183,26 @@ def test_the_report_stands_in_the_cell(reversal):
     assert reversal.html().lstrip().lower().startswith("<!doctype html>")
 
 
+def test_temperatures_without_a_lifetime_for_one_reason_are_one_line(reversal):
+    told = repr(sn.rates(reversal, [2.0, 4.0, 300.0, 400.0, 500.0]))
+    assert told.count("\n") == 3 and "300 K to 500 K (3 temperatures): none: ΔE is below 1 k_BT" in told
+    # HTST has no rate where the moment along an axis is conserved
+    found = sn.rates(reversal, np.arange(1, 11), theory=["htst"])
+    assert repr(found).count("conserved") == 1 and "1 K to 10 K (10 temperatures): none" in repr(found)
+    assert found._repr_html_().count("conserved") == 2 and len(found.result.warnings) == 1
+
+
 def test_rates_and_systems_are_tables_in_a_cell(chain, reversal):
     cell = sn.rates(reversal, [0.01, 2.0, 4.0, 300.0])._repr_html_()
-    for words in ("<th", "barrier / kT", "forward", "backward", ">300<", "10^3138 s", "none: ΔE is below 1 k_BT", "1000 K / T"):
+    for words in ("<th", "barrier / kT", "forward", "backward", ">300 K<", "10^3138 s", "none: ΔE is below 1 k_BT", "1000 K / T"):
         assert words in cell, words
     assert cell.count("<svg") == 1 and cell.count("<tr>") == 9
     assert "<svg" not in sn.rates(reversal, 4.0)._repr_html_()
     own = sn.Term(lambda m: m[:, 2], lambda m: np.tile([0.0, 0.0, 1.0], (len(m), 1)), name="a<b")
     system = chain.replaced(energy=[*chain.energy, own], initial=reversal.initial, final=sn.uniform("-z"), neb={"tolerance": 1e-7})
     cell = system._repr_html_()
-    for words in ("System chain", "chain(sites=20)", "2 mu_B", "exchange(J=", "a&lt;b", "vectors of shape (20, 3)", "uniform(", "tolerance"):
+    expected = ("System chain", "chain(sites=20)", "2 mu_B", "exchange(J=", "a&lt;b", "vectors of shape (20, 3)", "uniform(", "tolerance")
+    for words in expected:
         assert words in cell, words
 
 

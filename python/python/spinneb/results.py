@@ -6,6 +6,7 @@ import io
 import json
 import os
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -147,6 +148,13 @@ class Result:
     def warnings(self) -> list[str]:
         """What you should know."""
         return list(self.summary["warnings"])
+
+    @property
+    def search(self) -> dict[str, Any]:
+        """What was looked for below the best of the first paths: ``effort``, the number of ``searches`` and of the last ``quiet``
+        ones, which brought no news, ``minima`` and ``saddles`` known in the end, ``lowered_by_meV``, and whether it ended before
+        its time because its work was ``spent``."""
+        return dict(self.summary["search"])
 
     @property
     def spins(self) -> Array:
@@ -351,7 +359,8 @@ class Result:
 
     def __repr__(self) -> str:
         why = f", {self.stop_reason}" if self.barrier_meV is None else ""
-        return f"<Result {self.name}: {self._core.words()}{why}>"
+        spent = ", the search for lower passes ended early as its work was spent" if self.search["spent"] else ""
+        return f"<Result {self.name}: {self._core.words()}{why}{spent}>"
 
 
 def _restored(files: Mapping[str, bytes], summary: dict[str, Any]) -> Result:
@@ -537,19 +546,28 @@ class Rates:
         times = zip(self.lifetimes_s(way), self.lifetimes_s(way, log10=True), self._reasons(way))
         return [f"none: {why}" if why else f"{s:.3g} s" if np.isfinite(s) else f"10^{log10:.0f} s" for s, log10, why in times]
 
+    def _lines(self, way: Way) -> list[tuple[str, str, str]]:
+        """Temperature, barrier over kT and lifetime; one line for neighbours that have none for one reason."""
+        every = zip(self._rows(way), self._told(way))
+        rows = [(f"{row['temperature_K']:g} K", f"{row['barrier_over_kT']:.3g}", told) for row, told in every]
+        lines = []
+        for told, same in groupby(rows, key=lambda row: row[2]):
+            (first, high, _), *others = same
+            if others and told.startswith("none"):
+                last, low, _ = others[-1]
+                lines.append((f"{first} to {last} ({1 + len(others)} temperatures)", f"{high} to {low}", told))
+            else:
+                lines += [(first, high, told), *others]
+        return lines
+
     def _repr_html_(self) -> str:
-        rows = [
-            (one["direction"], f"{row['temperature_K']:g}", f"{row['barrier_over_kT']:.3g}", told)
-            for one in self.transitions
-            for row, told in zip(one["temperatures"], self._told(one["direction"]))
-        ]
+        rows = [(way, *line) for way in ("forward", "backward") for line in self._lines(way)]
         figure = self.result._core.files(["svg"]).get("arrhenius.svg", b"")
-        head = ("", "T (K)", "barrier / kT", "mean lifetime")
+        head = ("", "temperature", "barrier / kT", "mean lifetime")
         return paragraph(f"Rates {self.result.name}") + table(rows, head) + drawing(figure)
 
     def __repr__(self) -> str:
-        rows = zip(self.temperatures_K, self._told("forward"))
-        return "\n".join([f"<Rates {self.result.name}", *(f"  {t:g} K: {told}" for t, told in rows)]) + ">"
+        return "\n".join([f"<Rates {self.result.name}", *(f"  {t}: {told}" for t, _, told in self._lines("forward"))]) + ">"
 
 
 class Landscape:
