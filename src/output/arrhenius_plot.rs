@@ -6,7 +6,8 @@
 //! out. Levels of 1 s and ten years are marked. One temperature makes no figure.
 
 use super::canvas::{
-    BLUE, Canvas, Colour, GREY, LinePlot, Look, Marker, Rect, SMALL_PT, Series, THIN_PT, Text, VERMILLION,
+    BLUE, Canvas, Colour, Frame, GREY, LinePlot, Look, Marker, Obstacles, Point, Rect, SMALL_PT, Series, THIN_PT, Text,
+    VERMILLION,
 };
 use super::{Lifetimes, Plot, PlotData, RateRow};
 use crate::error::Result;
@@ -44,10 +45,22 @@ impl Plot for ArrheniusPlot {
 
 /// The times of the whole transition, forward and (where they differ) backward.
 pub fn draw_lifetimes(lifetimes: &[Lifetimes], look: &Look) -> Result<Canvas> {
+    let mut plot = plot(lifetimes).look(look);
+    let (mut canvas, mut frame, mut obstacles) = drawn(&plot)?;
+    if plot.is_crowded(&frame, &obstacles)? {
+        plot.legend_above = true;
+        (canvas, frame, obstacles) = drawn(&plot)?;
+    }
+    plot.draw_legend(&mut canvas, &frame, &obstacles)?;
+    Ok(canvas)
+}
+
+/// The curves with their names.
+fn plot(lifetimes: &[Lifetimes]) -> LinePlot {
     let both_differ = differ(lifetimes);
     let stops = lifetimes.iter().flat_map(|t| &t.rows).any(escapes_first);
     let axis = if stops { "Mean time (s)" } else { "Mean lifetime (s)" };
-    let mut plot = LinePlot::new("1000 K / T", axis).log_y().look(look);
+    let mut plot = LinePlot::new("1000 K / T", axis).log_y();
     plot.legend_above = stops;
     for t in lifetimes.iter().filter(|t| both_differ || t.way == Way::Forward) {
         let colour = if t.way == Way::Forward { BLUE } else { VERMILLION };
@@ -70,23 +83,47 @@ pub fn draw_lifetimes(lifetimes: &[Lifetimes], look: &Look) -> Result<Canvas> {
     if let Some(point) = plot.series.first().filter(|s| s.label.is_none()).map(|s| s.points[0]) {
         plot.series.push(Series::line(vec![point]).label(format!("Barrier below {LOW_BARRIER} kT")).colour(GREY));
     }
+    plot
+}
+
+/// Axes, levels and curves, and the places that these take.
+fn drawn(plot: &LinePlot) -> Result<(Canvas, Frame, Obstacles)> {
     let (mut canvas, frame) = plot.draw_frame()?;
-    let mut labels = Vec::new();
-    for (level, words) in [(1.0, "1 s"), (TEN_YEARS_S, "10 years")] {
+    // the curves are drawn over the levels, whose names keep clear of them
+    let curves = plot.draw_series(&mut canvas.clone(), &frame);
+    let mut levels = Vec::new();
+    for (time_s, words) in [(1.0, "1 s"), (TEN_YEARS_S, "10 years")] {
         let place =
-            frame.place((frame.x.min, level)).filter(|p| frame.rect.grown(-8.0).contains((frame.rect.x0 + 9.0, p.1)));
+            frame.place((frame.x.min, time_s)).filter(|p| frame.rect.grown(-8.0).contains((frame.rect.x0 + 9.0, p.1)));
         if let Some((_, y)) = place.filter(|_| !plot.series.is_empty()) {
-            canvas.dashed(&[(frame.rect.x0, y), (frame.rect.x1, y)], THIN_PT, GREY, (2.0, 2.0));
-            // on the hot side, where times are short and the curves low
-            let (x, text) = (frame.rect.x0 + 5.0, Text::new(words, SMALL_PT));
-            labels.push(Rect { x0: x, y0: y - 2.0 - SMALL_PT, x1: x + text.width()?, y1: y });
-            canvas.text((x, y - 2.0), text)?;
+            levels.push(draw_level(&mut canvas, frame.rect, y, words, &curves)?);
         }
     }
     let mut obstacles = plot.draw_series(&mut canvas, &frame);
-    labels.into_iter().for_each(|label| obstacles.add_box(label));
-    plot.draw_legend(&mut canvas, &frame, &obstacles)?;
-    Ok(canvas)
+    for (line, label) in levels {
+        obstacles.add_line(&line);
+        obstacles.add_box(label);
+    }
+    Ok((canvas, frame, obstacles))
+}
+
+/// A level across the frame at the height y, its name on the hot side, where times are short, or farther where curves are in its way;
+/// what both take.
+fn draw_level(canvas: &mut Canvas, r: Rect, y: f64, words: &str, curves: &Obstacles) -> Result<([Point; 2], Rect)> {
+    let line = [(r.x0, y), (r.x1, y)];
+    canvas.dashed(&line, THIN_PT, GREY, (2.0, 2.0));
+    let text = Text::new(words, SMALL_PT);
+    let width = text.width()?;
+    let room = r.width() - width - 10.0;
+    let rooms = [0.0, 0.25, 0.5, 0.75, 1.0].map(|f| r.x0 + 5.0 + f * room).map(|x0| Rect {
+        x0,
+        y0: y - 2.0 - SMALL_PT,
+        x1: x0 + width,
+        y1: y,
+    });
+    let label = rooms[curves.freest(&r, &rooms).map_or(0, |(k, _)| k)];
+    canvas.text((label.x0, y - 2.0), text)?;
+    Ok((line, label))
 }
 
 /// Mean times (s) by Langer's theory and by HTST, and of the first escape.
@@ -132,4 +169,46 @@ fn curves(
     let grey = (low > 0).then(|| line(&points[..(low + 1).min(points.len())]).colour(GREY));
     let known = (low < points.len()).then(|| line(&points[low..]).label(label).colour(colour));
     grey.into_iter().chain(known).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::output::canvas::Style;
+
+    /// Ten temperatures from 5 to 50 K of a barrier in K, by both theories.
+    fn lifetimes(way: Way, barrier_k: f64) -> Lifetimes {
+        let row = |t: f64| {
+            let rate = 1e11 * (-barrier_k / t).exp();
+            let barrier_over_kt = barrier_k / t;
+            RateRow {
+                temperature_k: t,
+                barrier_over_kt,
+                htst_per_s: Some(1.5 * rate),
+                langer_per_s: Some(rate),
+                escape_s: None,
+            }
+        };
+        Lifetimes { way, rows: (1..=10).map(|k| row(5.0 * f64::from(k))).collect() }
+    }
+
+    #[test]
+    fn neither_legend_nor_names_of_levels_are_on_a_curve() {
+        for width in [60.0, 85.0, 120.0] {
+            let look = Look::new(Style::Paper, Some(width)).unwrap();
+            for (forward, backward) in [(300.0, 300.0), (300.0, 250.0), (300.0, 60.0), (250.0, 1500.0), (20.0, 300.0)] {
+                let both = [lifetimes(Way::Forward, forward), lifetimes(Way::Backward, backward)];
+                let canvas = draw_lifetimes(&both, &look).unwrap();
+                canvas.assert_legible();
+                let mut curves = Obstacles::default();
+                canvas.lines(1.0).for_each(|line| curves.add_line(line));
+                for (words, room) in canvas.texts() {
+                    assert_eq!(curves.hits(&room), 0, "{words:?} of {forward} K and {backward} K, {width} mm");
+                }
+                // of a barrier of 20 K all is grey
+                let want = if forward == backward || forward == 20.0 { 1 } else { 2 };
+                assert_eq!(canvas.texts().iter().filter(|(words, _)| words.starts_with("Langer")).count(), want);
+            }
+        }
+    }
 }

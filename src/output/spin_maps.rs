@@ -50,6 +50,9 @@ const GAP: f64 = 6.0;
 const TITLE: f64 = SMALL_PT + 5.0;
 /// The room around all.
 const MARGIN: f64 = 4.0;
+/// Distance of lines below the maps, and of the first from the bar.
+const LINE: f64 = SMALL_PT + 2.0;
+const BESIDE: f64 = 4.0;
 /// Pixels across a map.
 const PIXELS: f64 = 260.0;
 /// A map is at most so many times as high as wide.
@@ -60,27 +63,36 @@ pub fn draw_spin_maps(data: &PlotData, places: &SitePlaces, look: &Look) -> Resu
     let path = data.path.ok_or_else(|| Error::Numerical("spins: the spins are not known".into()))?;
     let layer = Layer::of(places, &data.kinds.vacant);
     let maps = maps(&data.energy.images, path.images());
-    let plan = Plan::of(Canvas::styled(look, 10.0).width(), layer.size, maps.len());
-    let below = layer.words(places.unit);
-    let line = below.as_ref().map_or(0.0, |_| SMALL_PT + 2.0);
-    let mut canvas = Canvas::styled(look, (plan.height + line) / MM);
-    for (k, (image, role)) in maps.iter().enumerate() {
-        let rect = plan.map(k, layer.size);
-        let title = Text::new(format!("{role} (image {image})"), SMALL_PT).align(Align::Centre);
-        canvas.text(((rect.x0 + rect.x1) / 2.0, rect.y0 - 3.0), title)?;
+    let title = |(image, role): &(usize, &str)| Text::new(format!("{role} (image {image})"), SMALL_PT);
+    let widest = maps.iter().try_fold(0.0, |w: f64, map| Ok::<_, Error>(w.max(title(map).width()?)))?;
+    let plan = Plan::of(Canvas::styled(look, 10.0).width(), layer.size, maps.len(), widest);
+    let left = MARGIN + plan.left(layer.size);
+    let end = left + plan.scale * round_part(layer.size[0]);
+    let below = below(&layer, places.unit, look.drawn_width_mm() * MM - MARGIN - end)?;
+    let mut canvas = Canvas::styled(look, (plan.height + LINE * (below.len() - 1) as f64) / MM);
+    for (k, map) in maps.iter().enumerate() {
+        let (rect, image) = (plan.map(k, layer.size), &map.0);
+        canvas.text(((rect.x0 + rect.x1) / 2.0, rect.y0 - 3.0), title(map).align(Align::Centre))?;
         layer.draw(&mut canvas, rect, Components::new(path.image(*image)));
         canvas.outline(rect, THIN_PT, BLACK);
     }
     wheel(&mut canvas, plan.wheel)?;
-    let (left, base, bar) = (MARGIN + plan.left(layer.size), plan.height - MARGIN, round_part(layer.size[0]));
-    let end = left + plan.scale * bar;
+    let base = plan.height - MARGIN;
     canvas.line(&[(left, base - 0.35 * SMALL_PT), (end, base - 0.35 * SMALL_PT)], 1.6, BLACK);
-    let scale = format!("{bar} {}, x to the right, y upwards", places.unit);
-    canvas.text((end + 4.0, base), Text::new(scale, SMALL_PT))?;
-    if let Some(words) = below {
-        canvas.text((left, base + line), Text::new(words, SMALL_PT))?;
+    for (k, words) in below.into_iter().enumerate() {
+        let x = if k == 0 { end + BESIDE } else { left };
+        canvas.text((x, base + LINE * k as f64), Text::new(words, SMALL_PT))?;
     }
     Ok(canvas)
+}
+
+/// What is said below the maps, line by line, the first beside the bar, where there is so much room (pt).
+fn below(layer: &Layer, unit: &str, room: f64) -> Result<Vec<String>> {
+    let (bar, axes) = (format!("{} {unit}", round_part(layer.size[0])), "x to the right, y upwards");
+    let line = format!("{bar}, {axes}");
+    let fits = BESIDE + Text::new(&line, SMALL_PT).width()? <= room;
+    let first = if fits { vec![line] } else { vec![bar, axes.into()] };
+    Ok(first.into_iter().chain(layer.words(unit)).collect())
 }
 
 /// Where maps and wheel are.
@@ -97,9 +109,11 @@ struct Plan {
 
 impl Plan {
     /// Three maps in a row, or two of strips, and the wheel in the place of one more; of flat strips one, and the wheel below them.
-    fn of(width: f64, size: [f64; 2], maps: usize) -> Plan {
+    /// Fewer where titles so wide (pt) would touch.
+    fn of(width: f64, size: [f64; 2], maps: usize, title: f64) -> Plan {
         let share = |columns: usize| (width - 2.0 * MARGIN - (columns - 1) as f64 * GAP) / columns as f64;
         let columns = STRIPS.iter().find(|(low, _)| size[1] < low * size[0]).map_or(COLUMNS, |(_, columns)| *columns);
+        let columns = (2..=columns).rev().find(|columns| title < share(*columns) + 0.5 * GAP).unwrap_or(1);
         let wide = share(columns);
         let scale = (wide / size[0]).min(HIGHEST * wide / size[1]);
         let room = 0.8 * share(COLUMNS);
@@ -258,6 +272,7 @@ mod tests {
     use super::*;
     use crate::lattice::LatticeSpec;
     use crate::output::EnergyPath;
+    use crate::output::canvas::Style;
     use crate::path::Path;
     use crate::spins::Spins;
 
@@ -313,7 +328,7 @@ mod tests {
     #[test]
     fn strips_are_below_each_other_and_nothing_overlaps() {
         for (size, columns) in [([16.0, 2.0], 1), ([10.0, 4.0], 2), ([5.0, 5.0], 3), ([2.0, 9.0], 3)] {
-            let plan = Plan::of(241.0, size, 5);
+            let plan = Plan::of(241.0, size, 5, 70.0);
             assert_eq!(plan.columns, columns, "{size:?}");
             let mut rects: Vec<Rect> = (0..5).map(|k| plan.map(k, size)).collect();
             rects.push(plan.wheel);
@@ -339,6 +354,21 @@ mod tests {
         let svg = String::from_utf8(canvas.svg().unwrap()).unwrap();
         for words in ["Initial", "Highest", "Final", "1 nm, x to the right", "+x"] {
             assert!(svg.contains(words), "{words}");
+        }
+    }
+
+    #[test]
+    fn texts_of_a_narrow_figure_do_not_touch() {
+        let lattice = r#"{"cubic": {"cells": [12, 12, 3]}}"#;
+        let lattice = serde_json::from_str::<LatticeSpec>(lattice).unwrap().resolve().unwrap();
+        let up = Spins::from_vectors(&[[0.0, 0.0, 1.0]; 432]).unwrap();
+        let path = Path::new(&vec![up; 21]);
+        let images = (0..21i32).map(|k| (f64::from(k), f64::from(10 - (k - 10).abs()))).collect();
+        let energy = EnergyPath { images, ..Default::default() };
+        let data = PlotData { energy, path: Some(&path), ..Default::default() };
+        for width in [60.0, 70.0, 85.0] {
+            let look = Look::new(Style::Paper, Some(width)).unwrap();
+            draw_spin_maps(&data, &SitePlaces::of(&lattice).unwrap(), &look).unwrap().assert_legible();
         }
     }
 }

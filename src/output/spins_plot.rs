@@ -51,8 +51,9 @@ const GAP: f64 = 10.0;
 /// Room above the maps, and above that for positions.
 const TOP: f64 = 4.0;
 const POSITIONS: f64 = SMALL_PT + LABEL_PT + 7.0;
-/// Distance of a scale's numbers from the map.
+/// Distance of a scale's numbers from the map, and of each other.
 const TICK: f64 = 2.5;
+const APART: f64 = 3.0;
 /// In-plane length from which an angle has its full colour.
 const FULL: f64 = 0.25;
 /// More cells than this, in x and in y, are gathered into blocks: their mean m_z, and their angle where they lie most in the plane.
@@ -70,9 +71,9 @@ pub fn draw_spins(data: &PlotData, look: &Look) -> Result<Canvas> {
     let axes = cells.order.map(|c| ["x", "y", "z"][c]);
     let y = Axis::cells(path.images(), 8);
     let left = Frame::left_margin(&y)?;
-    let x = Axis::cells(path.sites(), 6);
     let along = Along::of(data, path.images());
     let (width, bottom) = (canvas.width() - RIGHT - along.width()?, canvas.height() - Frame::bottom_margin());
+    let x = spaced(width - left, 6, |most| Axis::cells(path.sites(), most))?;
     let height = (bottom - top - GAP) / 2.0;
     let panel = |y0: f64| Rect { x0: left, y0, x1: width, y1: y0 + height };
     let beside = width + along.width()? + 6.0;
@@ -105,12 +106,25 @@ pub fn draw_spins(data: &PlotData, look: &Look) -> Result<Canvas> {
     Ok(canvas)
 }
 
+/// The axis along a side of this length (pt), with as many ticks as keep their labels apart.
+fn spaced(length: f64, most: usize, axis: impl Fn(usize) -> Axis) -> Result<Axis> {
+    for axis in (2..=most).rev().map(&axis) {
+        let widths = axis.ticks.iter().map(|t| Text::new(&t.label, SMALL_PT).width()).collect::<Result<Vec<f64>>>()?;
+        let places: Vec<f64> = axis.ticks.iter().filter_map(|t| axis.fraction(t.at)).map(|f| f * length).collect();
+        let apart = |(w, x): (&[f64], &[f64])| x[1] - x[0] - 0.5 * (w[0] + w[1]) > APART;
+        if widths.windows(2).zip(places.windows(2)).all(apart) {
+            return Ok(axis);
+        }
+    }
+    Ok(axis(1))
+}
+
 /// The positions of the sites, above a map.
 fn positions(frame: &Frame, places: Places, sites: usize, canvas: &mut Canvas) -> Result<()> {
     let r = frame.rect;
     let at = |site: f64| places.first_nm + site * places.spacing_nm;
-    let axis = Axis::linear(at(-0.5), at(sites as f64 - 0.5), 5);
-    let scale = Axis { min: at(-0.5), max: at(sites as f64 - 0.5), ..axis };
+    let (min, max) = (at(-0.5), at(sites as f64 - 0.5));
+    let scale = spaced(r.width(), 5, |most| Axis { min, max, ..Axis::linear(min, max, most) })?;
     for (f, tick) in scale.ticks.iter().filter_map(|t| Some((scale.fraction(t.at)?, t))) {
         let x = r.x0 + f * r.width();
         canvas.line(&[(x, r.y0), (x, r.y0 - TICK)], THIN_PT, BLACK);
@@ -262,6 +276,7 @@ impl<'a> Cells<'a> {
 mod tests {
     use super::*;
     use crate::output::EnergyPath;
+    use crate::output::canvas::Style;
     use crate::spins::Spins;
 
     fn svg(data: &PlotData) -> String {
@@ -295,5 +310,18 @@ mod tests {
         let steady =
             Path::new(&[[up, up, up], [x, x, x], [down, down, down]].map(|v| Spins::from_vectors(&v).unwrap()));
         assert!(!svg(&PlotData { path: Some(&steady), ..data }).contains("Staggered"));
+    }
+
+    #[test]
+    fn numbers_along_a_narrow_map_do_not_touch() {
+        let m = Spins::from_vectors(&[[0.0, 0.0, 1.0]; 120]).unwrap();
+        let path = Path::new(&[m.clone(), m.clone(), m]);
+        let energy = EnergyPath { images: vec![(0.0, 0.0), (30.0, 1.0), (70.0, 0.0)], ..Default::default() };
+        let places = Some(Places { first_nm: 1.25, spacing_nm: 2.5 });
+        let data = PlotData { energy, path: Some(&path), places, ..Default::default() };
+        for width in [60.0, 85.0] {
+            let look = Look::new(Style::Paper, Some(width)).unwrap();
+            draw_spins(&data, &look).unwrap().assert_legible();
+        }
     }
 }

@@ -108,7 +108,7 @@ pub struct LinePlot {
     pub height_mm: f64,
     /// Its style.
     pub style: Style,
-    /// The legend stands above the frame, where it covers nothing, instead of in its freest corner.
+    /// The legend stands above the frame, as it does where no corner has room for it.
     pub legend_above: bool,
     /// The horizontal axis.
     pub x: AxisLabel,
@@ -180,6 +180,9 @@ impl LinePlot {
     pub fn draw(&self) -> Result<Canvas> {
         let (mut canvas, frame) = self.draw_frame()?;
         let obstacles = self.draw_series(&mut canvas, &frame);
+        if self.is_crowded(&frame, &obstacles)? {
+            return self.clone().legend_above().draw();
+        }
         self.draw_legend(&mut canvas, &frame, &obstacles)?;
         Ok(canvas)
     }
@@ -222,7 +225,21 @@ impl LinePlot {
         obstacles
     }
 
-    /// The legend, above the frame or in the freest corner; nothing without labels.
+    /// Whether the legend is wanted in a corner, and would cover something in each.
+    pub fn is_crowded(&self, frame: &Frame, obstacles: &Obstacles) -> Result<bool> {
+        Ok(!self.legend_above && !self.entries().is_empty() && self.corner(frame, obstacles)?.is_none())
+    }
+
+    /// The first corner in which a legend covers nothing.
+    fn corner(&self, frame: &Frame, obstacles: &Obstacles) -> Result<Option<Rect>> {
+        let entries = self.entries();
+        let (width, height) = (self.column(&entries)? - 4.0, PITCH * entries.len() as f64 + 2.0);
+        let corners = corners(&frame.rect.grown(-5.0), width, height);
+        let freest = obstacles.freest(&frame.rect, &corners).filter(|(_, hits)| *hits == 0);
+        Ok(freest.map(|(k, _)| corners[k]))
+    }
+
+    /// The legend, above the frame or in a corner where it covers nothing; nothing without labels.
     pub fn draw_legend(&self, canvas: &mut Canvas, frame: &Frame, obstacles: &Obstacles) -> Result<()> {
         if self.legend_above { self.draw_rows(canvas, frame) } else { self.draw_corner(canvas, frame, obstacles) }
     }
@@ -277,18 +294,8 @@ impl LinePlot {
     }
 
     fn draw_corner(&self, canvas: &mut Canvas, frame: &Frame, obstacles: &Obstacles) -> Result<()> {
-        let entries = self.entries();
-        let widest = entries.iter().try_fold(0.0, |w: f64, (_, t)| Ok::<_, Error>(w.max(t.width()?)))?;
-        let (width, height) = (LINE + 4.0 + widest + 4.0, PITCH * entries.len() as f64 + 2.0);
-        let corners = corners(&frame.rect.grown(-5.0), width, height);
-        let Some((corner, hits)) = obstacles.freest(&frame.rect, &corners).filter(|_| !entries.is_empty()) else {
-            return Ok(());
-        };
-        let r = corners[corner];
-        if hits > 0 {
-            canvas.fill(r, WHITE);
-        }
-        for (row, (k, text)) in entries.into_iter().enumerate() {
+        let Some(r) = self.corner(frame, obstacles)? else { return Ok(()) };
+        for (row, (k, text)) in self.entries().into_iter().enumerate() {
             self.draw_entry(canvas, (r.x0, r.y0 + 1.0 + PITCH * (row as f64 + 0.5)), k, text)?;
         }
         Ok(())
@@ -354,5 +361,22 @@ pub fn mark(canvas: &mut Canvas, (x, y): Point, marker: Marker, colour: Colour) 
         }
         Marker::Diamond => canvas.polygon(&[(x - 3.4, y), (x, y - 3.4), (x + 3.4, y), (x, y + 3.4)], colour),
         Marker::Square => canvas.fill(Rect { x0: x, y0: y, x1: x, y1: y }.grown(1.6), colour),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_legend_for_which_no_corner_is_free_stands_above_the_frame() {
+        let line = |points: Vec<(f64, f64)>| LinePlot::new("x", "y").with(Series::line(points).label("a line"));
+        let top = |plot: &LinePlot| plot.draw_frame().unwrap().1.rect.y0;
+        let label = |plot: &LinePlot| plot.draw().unwrap().texts().into_iter().find(|t| t.0 == "a line").unwrap().1;
+        let free = line(vec![(0.0, 0.0), (1.0, 1.0)]);
+        assert!(label(&free).y0 > top(&free));
+        let full = line((0..40).map(|k| (f64::from(k), f64::from(k % 2))).collect());
+        assert!(label(&full).y1 < top(&full.clone().legend_above()));
+        full.draw().unwrap().assert_legible();
     }
 }

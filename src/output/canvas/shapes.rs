@@ -299,6 +299,49 @@ fn dashes(points: &[Point], skip: f64, on: f64, off: f64) -> Vec<Vec<Point>> {
     pieces
 }
 
+/// What tests look at.
+#[cfg(test)]
+impl Canvas {
+    /// The texts that are read from left to right, and the rooms that they take.
+    pub fn texts(&self) -> Vec<(String, Rect)> {
+        let room = |(x, y): Point, text: &Text| {
+            let width = text.width().unwrap();
+            let x0 = match text.align {
+                Align::Left => x,
+                Align::Centre => x - width / 2.0,
+                Align::Right => x - width,
+            };
+            Rect { x0, y0: y - 0.7 * text.size, x1: x0 + width, y1: y }
+        };
+        let read = |shape: &'_ Shape| match shape {
+            Shape::Text { at, text } if !text.upwards => Some((text.text.clone(), room(*at, text))),
+            _ => None,
+        };
+        self.shapes.iter().filter_map(read).collect()
+    }
+
+    /// Lines of at least this width (pt).
+    pub fn lines(&self, at_least: f64) -> impl Iterator<Item = &[Point]> {
+        self.shapes.iter().filter_map(move |shape| match shape {
+            Shape::Line { points, width, .. } if *width >= at_least => Some(points.as_slice()),
+            _ => None,
+        })
+    }
+
+    /// That every text is within the figure, and none touches another.
+    pub fn assert_legible(&self) {
+        let texts = self.texts();
+        let page = Rect { x0: 0.0, y0: 0.0, x1: self.width(), y1: self.height() };
+        for (k, (words, room)) in texts.iter().enumerate() {
+            assert!(page.encloses(room), "{words:?} leaves the figure: {room:?}");
+            for (other, beside) in &texts[k + 1..] {
+                // but for the parts of one line
+                assert!(room.grown(-0.1).is_apart_from(&beside.grown(-0.1)), "{words:?} touches {other:?}");
+            }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
