@@ -207,7 +207,10 @@ fn name(path: &Path, config: &Config) -> Result<String> {
     }
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     Name::new(&stem).map(|name| name.to_string()).map_err(|e| {
-        let message = format!("the file's name cannot name the run, which needs a \"name\" of its own: {e}");
+        let near = Name::near(&stem);
+        let message = format!(
+            "the file's name cannot name the run, which needs one of its own, such as \"name\": \"{near}\": {e}"
+        );
         Error::invalid("", message)
     })
 }

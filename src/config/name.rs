@@ -22,12 +22,11 @@ pub struct Name(String);
 impl Name {
     /// The name, if it can be one.
     pub fn new(name: &str) -> Result<Name> {
-        let allowed = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '_' | '-');
         let wrong = match name {
             "" => "is empty",
             "." | ".." => "stands for a folder",
             _ if name.len() > LONGEST => "is too long",
-            _ if !name.chars().all(allowed) => "has other characters",
+            _ if !name.chars().all(is_allowed) => "has other characters",
             _ if name.starts_with('-') => "begins with a hyphen, as an option of a command does",
             _ if name.starts_with('.') => "begins with a dot, as a hidden folder does",
             _ if name.ends_with('.') => "ends in a dot, which Windows drops",
@@ -40,10 +39,24 @@ impl Name {
         Err(Error::invalid("", format!("{} {wrong}: {rule}", quoted(name))))
     }
 
+    /// One to propose in place of a text that is none: an underscore stands for what a name does not hold.
+    pub fn near(text: &str) -> Name {
+        let kept: Vec<&str> = text.split(|c| !is_allowed(c)).filter(|part| !part.is_empty()).collect();
+        let kept = kept.join("_");
+        let kept = kept.trim_start_matches(['.', '-']).trim_end_matches('.');
+        let prefixed = format!("run_{kept}");
+        let fit = [kept, &prefixed].into_iter().filter(|_| !kept.is_empty()).find_map(|name| Name::new(name).ok());
+        fit.unwrap_or(Name("run".into()))
+    }
+
     /// As text.
     pub fn as_str(&self) -> &str {
         &self.0
     }
+}
+
+fn is_allowed(c: char) -> bool {
+    c.is_ascii_alphanumeric() || matches!(c, '.' | '_' | '-')
 }
 
 fn is_device(name: &str) -> bool {
@@ -93,6 +106,13 @@ mod tests {
         let shells = ["", ".", "..", "...", "-", "-rf", ".hidden", "wall.", "a/b", "a b", "a ", "a\\b", "ä", "a\n"];
         for bad in windows.into_iter().chain(shells).chain([&*"x".repeat(201)]) {
             assert!(Name::new(bad).is_err(), "{bad}");
+            assert!(Name::new(Name::near(bad).as_str()).is_ok(), "{bad}");
         }
+    }
+
+    #[test]
+    fn a_name_is_proposed_for_any_file() {
+        let near = ["my config (2)", "Fe₃Sn", "λ", "nul", "-rf", "wall."].map(|text| Name::near(text).to_string());
+        assert_eq!(near, ["my_config_2", "Fe_Sn", "run", "run_nul", "rf", "wall"]);
     }
 }
