@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import matplotlib
+import matplotlib.pyplot as plt
 import pytest
 
 import spinneb as sn
@@ -31,6 +32,13 @@ def command():
         return subprocess.run([*start, *map(str, arguments)], **options)
 
     return run
+
+
+@pytest.fixture(autouse=True)
+def figures():
+    """Closes those of a test after it."""
+    yield
+    plt.close("all")
 
 
 @pytest.fixture
