@@ -153,8 +153,8 @@ class Result:
     def search(self) -> dict[str, Any]:
         """What was looked for below the best of the first paths: ``effort``, the number of ``searches`` and of the last ``quiet``
         ones, which brought no news, ``minima`` and ``saddles`` known in the end, ``lowered_by_meV``, and whether it ended before
-        its time because its work was ``spent``."""
-        return dict(self.summary["search"])
+        its time because its work was ``spent``; empty for results of version 0.1.0."""
+        return dict(self.summary.get("search") or {})
 
     @property
     def spins(self) -> Array:
@@ -359,7 +359,7 @@ class Result:
 
     def __repr__(self) -> str:
         why = f", {self.stop_reason}" if self.barrier_meV is None else ""
-        spent = ", the search for lower passes ended early as its work was spent" if self.search["spent"] else ""
+        spent = ", the search for lower passes ended early as its work was spent" if self.search.get("spent") else ""
         return f"<Result {self.name}: {self._core.words()}{why}{spent}>"
 
 
