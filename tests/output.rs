@@ -80,6 +80,7 @@ fn outcome(path: Path, length: f64, energy: impl Fn(f64) -> f64) -> Outcome {
             saddles: 2,
             lowered_by_mev: 0.125,
             spent: false,
+            lowest_exits_mev: [Some(0.75), None],
         },
         rejected_paths: Vec::new(),
         rates: None,
@@ -295,7 +296,11 @@ fn the_summary_is_exactly_so() {
     "minima": 3,
     "saddles": 2,
     "lowered_by_meV": 0.125,
-    "spent": false
+    "spent": false,
+    "lowest_exit_meV": {
+      "initial": 0.75,
+      "final": null
+    }
   },
   "rejected_paths": [
     {

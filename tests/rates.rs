@@ -1129,3 +1129,31 @@ fn a_network_of_all_places_of_a_skyrmion_says_what_its_path_says() {
         assert!(each.iter().zip(one).all(|(each, one)| (each - one).abs() < 1e-9), "{tesla} T: {each:?} {one:?}");
     }
 }
+
+/// A cube's easy axis is left for four others over saddles of one height, and the path leads to one of them.
+#[test]
+fn saddles_beside_the_path_are_told_and_warned_of_where_they_are_no_higher() {
+    let ways = |barrier: &str, more: &str| {
+        let text = format!(
+            r#"{{"material": {{"name": "cube", "moment": "2 mu_B", "energy": [{{"cubic_anisotropy": {{"K": "{barrier}"}}}}{more}]}},
+            "lattice": {{"chain": {{"sites": 1}}}}, "initial": {{"uniform": {{"direction": [0, 0, 1]}}}},
+            "final": {{"uniform": {{"direction": [1, 0, 0]}}}}, "rates": {{"temperatures": ["20 K"], "damping": 0.1}}}}"#
+        );
+        let outcome = solve(&load_text("cube.json".as_ref(), text).unwrap().problem().unwrap());
+        let said = outcome.warnings.iter().filter(|w| w.contains("over other saddles too")).count();
+        (outcome.search.lowest_exits_mev, said)
+    };
+    let (exits, said) = ways("60 meV", "");
+    assert!(exits.iter().all(|exit| (exit.unwrap() - 15.0).abs() < 1e-9) && said == 2, "{exits:?} {said}");
+    // a hard axis y holds the ways by y back, those to the other side over ±x are left
+    let (exits, said) = ways("60 meV", r#", {"anisotropy": {"K": "-20 meV", "axis": [0, 1, 0]}}"#);
+    assert!(exits.iter().all(|exit| (exit.unwrap() - 15.0).abs() < 1e-9) && said == 2, "{exits:?} {said}");
+    // one spin with two minima has no others
+    let text = r#"{"material": {"name": "one", "moment": "2 mu_B", "energy": [{"anisotropy": {"K": "9 meV", "axis": [0, 0, 1]}},
+        {"anisotropy": {"K": "-3 meV", "axis": [1, 0, 0]}}]}, "lattice": {"chain": {"sites": 1}},
+        "initial": {"uniform": {"direction": [0, 0, 1]}}, "final": {"uniform": {"direction": [0, 0, -1]}},
+        "rates": {"temperatures": ["20 K"]}}"#;
+    let outcome = solve(&load_text("one.json".as_ref(), text.into()).unwrap().problem().unwrap());
+    assert_eq!(outcome.search.lowest_exits_mev, [None; 2]);
+    assert!(!outcome.warnings.iter().any(|w| w.contains("over other saddles too")));
+}

@@ -102,7 +102,8 @@ impl Outcome {
         // in the place that a run gives them
         let own = |w: &&String| is_said_of_rates(w) || last.contains(w);
         let others = self.warnings.iter().filter(|w| !own(w)).cloned();
-        let warnings = others.chain(rates_warnings(&rates)).chain(last.iter().cloned()).collect();
+        let warnings =
+            others.chain(rates_warnings(&rates, &self.search, self.barrier)).chain(last.iter().cloned()).collect();
         Ok(Outcome { warnings, rates: Some(rates), ..self })
     }
 }
@@ -250,6 +251,9 @@ pub struct SearchReport {
     pub lowered_by_mev: f64,
     /// The search ended because it had done as much work as it may.
     pub spent: bool,
+    /// The lowest saddle known beside the path by which the initial state is left for one that is not on it, or the final state, above
+    /// that state (meV).
+    pub lowest_exits_mev: [Option<f64>; 2],
 }
 
 /// What a run cost.

@@ -1,7 +1,7 @@
 //! From the proven saddles of a path to its rates.
 
 use super::Verdict;
-use super::outcome::SaddlePoint;
+use super::outcome::{Barrier, SaddlePoint, SearchReport};
 use crate::energy::Evaluator;
 use crate::landscape::Doubt;
 use crate::landscape::Peak;
@@ -15,6 +15,7 @@ use crate::rates::{
 use crate::spins::Spins;
 use crate::stationary::{self, ALIKE, Refined, State};
 use crate::symmetry::Group;
+use crate::units::K_B;
 
 /// What is known of a path.
 pub struct Known<'a> {
@@ -196,16 +197,19 @@ fn stored_link(h: Evaluator, saddle: &SaddlePoint, beside: &[Minimum]) -> Pass {
 
 /// That some numbers are rough.
 const ROUGH: &str = "some rates are rough: \"warnings\" of \"rates\" in summary.json give their range";
+/// That states are left by other ways too.
+const ALONE: &str = "rates and lifetimes are of the path's saddles alone";
 /// How a refusal begins.
 const REFUSAL: &str = "no rate by ";
 
 /// Whether a warning is one of [`warnings`].
 pub fn is_said_of_rates(warning: &str) -> bool {
-    warning == ROUGH || warning.starts_with(REFUSAL)
+    warning == ROUGH || warning.ends_with(ALONE) || warning.starts_with(REFUSAL)
 }
 
-/// What the whole run should say of its rates: each reason for a refusal once, and that some numbers are rough.
-pub fn warnings(rates: &Rates) -> Vec<String> {
+/// What the whole run should say of its rates: each reason for a refusal once, that some numbers are rough, and which of its ends are
+/// left beside the path, over saddles that are no higher than its own or by k_BT alone.
+pub fn warnings(rates: &Rates, search: &SearchReport, barrier: Option<Barrier>) -> Vec<String> {
     let mut said: Vec<String> = Vec::new();
     for (theory, reason) in rates.saddles.iter().flat_map(|r| &rates.told(r).refused) {
         let line = format!("{REFUSAL}{}: {reason}", theory.name());
@@ -215,6 +219,14 @@ pub fn warnings(rates: &Rates) -> Vec<String> {
     }
     if rates.saddles.iter().any(|r| !r.warnings.is_empty()) {
         said.push(ROUGH.into());
+    }
+    let climbs = barrier.map(|b| [("initial", b.forward_mev), ("final", b.backward_mev)]);
+    for ((which, climb), exit) in climbs.into_iter().flatten().zip(search.lowest_exits_mev) {
+        let Some(exit) = exit.filter(|exit| *exit < climb + K_B * rates.settings.hottest_k()) else { continue };
+        said.push(format!(
+            "the {which} state is left over other saddles too, the lowest known {exit:.6} meV above it ({climb:.6} meV along the path), \
+             of which \"spinneb landscape\" tells the times: {ALONE}"
+        ));
     }
     said
 }

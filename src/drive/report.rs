@@ -105,7 +105,7 @@ pub fn outcome(
         highest_climb(b, tops, minima, above_final)
     });
     let flat = flat_warnings(&proof.ends, &proof.links);
-    let of_rates = rates.iter().flat_map(rates::warnings);
+    let of_rates = rates.iter().flat_map(|rates| rates::warnings(rates, &search, barrier));
     let lower = lower_maxima(band, &saddles);
     let warnings = run.warnings(doubts.iter().map(Doubt::warning).chain(flat).chain(lower).chain(of_rates));
     let (certified, iterations) = (doubts.is_empty() && barrier.is_some(), band.evaluations());

@@ -12,7 +12,7 @@ use crate::band::{Band, Laplacian};
 use crate::energy::{Evaluator, recorded};
 use crate::error::{Error, Result};
 use crate::geometry::{Direction, Vector};
-use crate::landscape::{Doubt, Landscape, Minimum};
+use crate::landscape::{Doubt, Landscape, Minimum, Pass};
 use crate::path::guess::{FirstGuess, GuessContext, Rotation};
 use crate::path::is_within;
 use crate::sphere::SAME;
@@ -131,8 +131,21 @@ impl<'a, 'o> Run<'a, 'o> {
         let (mut best, others) = self.best_of(firsts)?;
         let scale = self.scales.stiffness_mev;
         let mut rejected: Vec<RejectedPath> = others.iter().map(|c| rejection(c, &best.first, scale)).collect();
-        let search = self.search(&mut best, &mut rejected)?;
+        let mut search = self.search(&mut best, &mut rejected)?;
+        search.lowest_exits_mev = self.lowest_exits(&best.proof.links);
         Ok(report::outcome(self.prepared(), best.first, &best.found, best.proof, search, rejected))
+    }
+
+    /// Beside the path over these saddles, of the initial and of the final state (meV above it).
+    fn lowest_exits(&mut self, links: &[Pass]) -> [Option<f64>; 2] {
+        let Some(first) = links.first() else { return [None; 2] };
+        let beside = std::iter::once(&first.before).chain(links.iter().map(|link| &link.after));
+        let mut minima: Vec<usize> = beside.map(|minimum| self.land.add_minimum(minimum)).collect();
+        let mut saddles: Vec<f64> = links.iter().map(|link| self.land.height_mev(link.saddle.spins())).collect();
+        let forward = self.land.lowest_exit_mev(&minima, &saddles);
+        minima.reverse();
+        saddles.reverse();
+        [forward, self.land.lowest_exit_mev(&minima, &saddles)]
     }
 
     /// The first of the paths in full, or another one that could be proven where it could not or that is lower; and all others.

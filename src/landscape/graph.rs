@@ -361,7 +361,7 @@ impl<'a> Landscape<'a> {
         if self.minima.len() < self.most_minima { self.operations_known().len() } else { 0 }
     }
 
-    fn operations_known(&self) -> &[Operation] {
+    pub(super) fn operations_known(&self) -> &[Operation] {
         self.operations.as_deref().unwrap_or_default()
     }
 

@@ -24,6 +24,7 @@ mod assemble;
 mod bound;
 mod connect;
 mod doubt;
+mod exits;
 mod flat;
 mod graph;
 mod minimum;

@@ -91,8 +91,9 @@ impl StoredOutcome {
 }
 
 fn searched(found: Search) -> SearchReport {
-    let Search { effort, searches, quiet, minima, saddles, lowered_by_meV, spent } = found;
-    SearchReport { effort, searches, quiet, minima, saddles, lowered_by_mev: lowered_by_meV.0, spent }
+    let Search { effort, searches, quiet, minima, saddles, lowered_by_meV, spent, lowest_exit_meV } = found;
+    let lowest_exits_mev = [lowest_exit_meV.initial, lowest_exit_meV.r#final].map(|mev| mev.map(|Number(mev)| mev));
+    SearchReport { effort, searches, quiet, minima, saddles, lowered_by_mev: lowered_by_meV.0, spent, lowest_exits_mev }
 }
 
 fn point(s: &State, moved: Option<Number>) -> EndPoint {

@@ -142,11 +142,24 @@ pub(super) struct Search {
     pub saddles: usize,
     pub lowered_by_meV: Number,
     pub spent: bool,
+    /// Nothing of earlier results.
+    #[serde(default)]
+    pub lowest_exit_meV: Exits,
 }
 
+/// Above the initial state and above the final one.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub(super) struct Exits {
+    pub initial: Option<Number>,
+    pub r#final: Option<Number>,
+}
+
+#[allow(non_snake_case)]
 fn search(found: &SearchReport) -> Search {
-    let SearchReport { effort, searches, quiet, minima, saddles, lowered_by_mev, spent } = *found;
-    Search { effort, searches, quiet, minima, saddles, lowered_by_meV: Number(lowered_by_mev), spent }
+    let SearchReport { effort, searches, quiet, minima, saddles, lowered_by_mev, spent, lowest_exits_mev } = *found;
+    let [initial, r#final] = lowest_exits_mev.map(|mev| mev.map(Number));
+    let (lowered_by_meV, lowest_exit_meV) = (Number(lowered_by_mev), Exits { initial, r#final });
+    Search { effort, searches, quiet, minima, saddles, lowered_by_meV, spent, lowest_exit_meV }
 }
 
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]

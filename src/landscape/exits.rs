@@ -1,0 +1,33 @@
+//! Saddles beside a path, by which the state that it begins in is left for states that are not on it.
+
+use super::{Landscape, Seen};
+
+impl Landscape<'_> {
+    /// The lowest of those that are known (meV above the state), from the first of a path's minima or one that comes before its highest
+    /// saddle; its saddles' heights above the reference (meV). States that symmetry makes of minima on the path are none, but for those
+    /// that it makes of the last one: the path has an image that leads there, and is not counted with it.
+    pub fn lowest_exit_mev(&self, minima: &[usize], saddles_mev: &[f64]) -> Option<f64> {
+        let nodes: Vec<usize> = minima.iter().map(|k| self.standing_for(*k)).collect();
+        let (last, earlier) = nodes.split_last()?;
+        let highest = (0..saddles_mev.len()).max_by(|i, j| saddles_mev[*i].total_cmp(&saddles_mev[*j]))?;
+        let before = &earlier[..=highest];
+        let is_own = |height: f64| saddles_mev.iter().any(|own| (own - height).abs() < self.tolerance_mev(*own));
+        let is_image = |k: usize| !self.is_image(k, *last) && earlier.iter().any(|own| self.is_image(k, *own));
+        let leads_off = |from: usize, to: usize, height: f64| match nodes.contains(&to) {
+            true => before.contains(&from) && !before.contains(&to) && !is_own(height),
+            false => before.contains(&from) && !is_image(to),
+        };
+        let exits = self.edges().iter().filter(|edge| {
+            let [a, b] = edge.ends.map(|k| self.standing_for(k));
+            leads_off(a, b, edge.height_mev) || leads_off(b, a, edge.height_mev)
+        });
+        exits.map(|edge| edge.height_mev - self.heights_mev()[nodes[0]]).min_by(f64::total_cmp)
+    }
+
+    /// Whether symmetry makes one minimum of another.
+    fn is_image(&self, k: usize, of: usize) -> bool {
+        let [m, of_m] = [k, of].map(|k| self.minima()[k].spins.as_slice());
+        let seen = Seen::of(self.evaluator(), m);
+        self.orbit(k) == self.orbit(of) || self.operations_known().iter().any(|by| seen.is_made(by, of_m))
+    }
+}
