@@ -170,6 +170,13 @@ fn a_bond_term_takes_the_bonds_within_a_selection_or_between_two() {
         let terms = format!(r#"[{{"exchange": {{"J": ["1 meV"], {selection}}}}}]"#);
         assert_eq!(energy_of(lattice, &terms).unwrap(), (-(bonds as f64), bonds), "{selection}");
     }
+    // sites that are no nearest neighbours have bonds of the second shell alone
+    for term in [
+        r#"{"exchange": {"J": ["9 meV", "1 meV"], "sites": [0, 7, 14]}}"#,
+        r#"{"biquadratic": {"B": ["9 meV", "1 meV"], "sites": [0, 7, 14]}}"#,
+    ] {
+        assert_eq!(energy_of(film, &format!("[{term}]")).unwrap().0, -2.0, "{term}");
+    }
     for (lattice, term, said) in [
         (
             film,
@@ -177,6 +184,7 @@ fn a_bond_term_takes_the_bonds_within_a_selection_or_between_two() {
             "energy[0].exchange.bonds: bonds are chosen by number",
         ),
         (film, r#"{"exchange": {"J": ["1 meV"], "sites": [0, 8]}}"#, "no bond has both its ends"),
+        (film, r#"{"exchange": {"J": ["1 meV", "1 meV"], "sites": [0, 8]}}"#, "no bond has both its ends"),
         (film, r#"{"exchange": {"J": ["1 meV"], "between": ["left", "right"]}}"#, "between[1]: no region \"right\""),
         (alloy, r#"{"exchange": {"J": ["1 meV"], "sites": "Co"}}"#, "there are \"Fe\", \"Pt\""),
         (film, r#"{"exchange": {"A": "10 pJ/m"}}"#, "give the lattice as a \"grid\""),

@@ -9,7 +9,7 @@
 use super::EnergyTerm;
 use super::blocks::Blocks;
 use super::by_shell::ByShell;
-use super::choice::Choice;
+use super::choice::{Choice, Valued};
 use super::couplings::Couplings;
 use super::spec::{Medium, TermBuilder};
 use crate::error::Result;
@@ -46,10 +46,12 @@ impl Described for BiquadraticSpec {
 impl TermBuilder for BiquadraticSpec {
     fn build(&self, medium: &Medium) -> Result<Box<dyn EnergyTerm>> {
         let choice = Choice { sites: self.sites.as_ref(), between: self.between.as_ref(), bonds: None };
-        let shell = |(shell, key, b): (usize, String, &_)| {
-            medium.on_bonds(b, medium.shell(shell, &key, &choice)?, &choice, &key, |e: Energy, _| Ok(e.0))
-        };
-        let families = self.B.shells("B")?.into_iter().map(shell).collect::<Result<Vec<_>>>()?.concat();
+        let shells =
+            self.B.shells("B")?.into_iter().map(|(shell, key, profile)| {
+                Ok(Valued { profile, families: medium.shell(shell, &key, &choice)?, key })
+            });
+        let shells = shells.collect::<Result<_>>()?;
+        let families = medium.on_shells(shells, &choice, |e: Energy, _| Ok(e.0))?;
         Ok(Box::new(Biquadratic { families }))
     }
 }

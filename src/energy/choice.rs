@@ -25,6 +25,23 @@ pub struct Chosen {
     pub reversed: bool,
 }
 
+/// A profile, its place, and the bonds that it is for.
+pub struct Valued<'a, T> {
+    pub profile: &'a Profile<T>,
+    pub key: String,
+    pub families: Vec<BondFamily>,
+}
+
+impl Choice<'_> {
+    /// That no bond is chosen.
+    fn refusal(&self) -> Error {
+        match self.between {
+            Some(_) => Error::invalid("between", "no bond leads from the first to the second of these"),
+            None => Error::invalid("sites", "no bond has both its ends among these sites"),
+        }
+    }
+}
+
 impl Medium<'_> {
     /// The bonds of a shell, between two selections one of their own; `key` is the place of what acts on them.
     pub fn shell(&self, shell: usize, key: &str, choice: &Choice) -> Result<Vec<BondFamily>> {
@@ -53,9 +70,6 @@ impl Medium<'_> {
         if let Some(selection) = choice.sites {
             let inside = self.among(selection).map_err(|e| e.within("sites"))?;
             chosen.retain(|bond| bond.sites.iter().all(|i| inside[*i]));
-            if chosen.is_empty() {
-                return Err(Error::invalid("sites", "no bond has both its ends among these sites"));
-            }
         }
         if let Some(between) = choice.between {
             let [a, b] = self.ends(between)?;
@@ -64,14 +78,23 @@ impl Medium<'_> {
                 bond.reversed = !(a[i] && b[j]) && b[i] && a[j];
             });
             chosen.retain(|bond| bond.reversed || (a[bond.sites[0]] && b[bond.sites[1]]));
-            if chosen.is_empty() {
-                return Err(Error::invalid("between", "no bond leads from the first to the second of these"));
-            }
-        }
-        if let Some(part) = &self.part {
-            chosen.retain(|bond| bond.sites.iter().any(|i| part.inside[*i]));
         }
         Ok(chosen)
+    }
+
+    /// Values of several shells; one at least has a bond that is chosen, if any choice is made.
+    pub fn on_shells<T: Copy>(
+        &self,
+        shells: Vec<Valued<T>>,
+        choice: &Choice,
+        convert: impl Fn(T, FamilyBond) -> Result<f64>,
+    ) -> Result<Vec<Couplings>> {
+        let chosen = shells.iter().map(|shell| self.choose(&shell.families, choice)).collect::<Result<Vec<_>>>()?;
+        if chosen.iter().all(Vec::is_empty) && (choice.sites.is_some() || choice.between.is_some()) {
+            return Err(choice.refusal());
+        }
+        let values = shells.into_iter().zip(chosen).map(|(shell, chosen)| self.on_chosen(shell, chosen, &convert));
+        Ok(values.collect::<Result<Vec<_>>>()?.concat())
     }
 
     /// The values of a profile on the chosen bonds of some families, made numbers by `convert`, which is told the bond; 0 on all
@@ -84,13 +107,24 @@ impl Medium<'_> {
         key: &str,
         convert: impl Fn(T, FamilyBond) -> Result<f64>,
     ) -> Result<Vec<Couplings>> {
-        let chosen = self.choose(&families, choice)?;
+        self.on_shells(vec![Valued { profile, key: key.into(), families }], choice, convert)
+    }
+
+    fn on_chosen<T: Copy>(
+        &self,
+        Valued { profile, key, families }: Valued<T>,
+        mut chosen: Vec<Chosen>,
+        convert: &impl Fn(T, FamilyBond) -> Result<f64>,
+    ) -> Result<Vec<Couplings>> {
+        if let Some(part) = &self.part {
+            chosen.retain(|bond| bond.sites.iter().any(|i| part.inside[*i]));
+        }
         let value = |value, k: usize| {
             let Chosen { family, sites, reversed } = chosen[k];
             convert(value, FamilyBond { family: &families[family], sites, reversed })
         };
         let firsts: Vec<usize> = chosen.iter().map(|bond| bond.sites[0]).collect();
-        let values = profile.values(self.lattice.places_of(&firsts), "bond", value).map_err(|e| e.within(key))?;
+        let values = profile.values(self.lattice.places_of(&firsts), "bond", value).map_err(|e| e.within(&key))?;
         let mut couplings = Couplings::none(families, self.lattice.sites);
         for (Chosen { family, sites: [i, j], .. }, value) in chosen.into_iter().zip(values) {
             if !self.lattice.vacant[i] && !self.lattice.vacant[j] {

@@ -13,9 +13,9 @@
 use super::EnergyTerm;
 use super::blocks::{Blocks, cross_block};
 use super::by_shell::ByShell;
-use super::choice::Choice;
+use super::choice::{Choice, Valued};
 use super::couplings::Couplings;
-use super::spec::{Medium, TermBuilder};
+use super::spec::{FamilyBond, Medium, TermBuilder};
 use crate::error::{Error, Result};
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, Vector, vector};
@@ -114,11 +114,9 @@ impl DmiSpec {
     /// D family by family.
     fn couplings(&self, medium: &Medium) -> Result<Vec<Couplings>> {
         let choice = Choice { sites: self.sites.as_ref(), between: self.between.as_ref(), bonds: self.bonds.as_ref() };
-        let on = |d: &Profile<BondEnergy>, families, key: &str| {
-            medium.on_bonds(d, families, &choice, key, |d, bond| {
-                let turned = bond.reversed && self.direction.is_some();
-                Ok(medium.bond_energy_mev(d, bond)? * if turned { -1.0 } else { 1.0 })
-            })
+        let mev = |d: BondEnergy, bond: FamilyBond| {
+            let turned = bond.reversed && self.direction.is_some();
+            Ok(medium.bond_energy_mev(d, bond)? * if turned { -1.0 } else { 1.0 })
         };
         let by_bond = medium.lattice.is_row() && self.kind.is_none();
         let families = |d: &Profile<BondEnergy>, shell: usize, key: &str| match d.written().first() {
@@ -126,10 +124,14 @@ impl DmiSpec {
             _ => medium.shell(shell, key, &choice),
         };
         if let Some(list) = self.D.by_bond().filter(|_| by_bond) {
-            return on(&list, families(&list, 1, "D")?, "D");
+            return medium.on_bonds(&list, families(&list, 1, "D")?, &choice, "D", mev);
         }
-        let shell = |(shell, key, d): (usize, String, &_)| on(d, families(d, shell, &key)?, &key);
-        Ok(self.D.shells("D")?.into_iter().map(shell).collect::<Result<Vec<_>>>()?.concat())
+        let shells = self
+            .D
+            .shells("D")?
+            .into_iter()
+            .map(|(shell, key, profile)| Ok(Valued { profile, families: families(profile, shell, &key)?, key }));
+        medium.on_shells(shells.collect::<Result<_>>()?, &choice, mev)
     }
 }
 

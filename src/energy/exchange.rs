@@ -10,7 +10,7 @@
 
 use super::EnergyTerm;
 use super::blocks::Blocks;
-use super::choice::Choice;
+use super::choice::{Choice, Valued};
 use super::couplings::Couplings;
 use super::spec::{Medium, TermBuilder};
 use crate::error::{Error, Result};
@@ -63,11 +63,11 @@ impl ExchangeSpec {
         let choice = Choice { sites: self.sites.as_ref(), between: self.between.as_ref(), bonds: self.bonds.as_ref() };
         Ok(match (&self.J, &self.A, &self.J_area) {
             (Some(j), None, None) if !j.is_empty() => {
-                let shell = |(k, j): (usize, &Profile<Energy>)| {
+                let shells = j.iter().enumerate().map(|(k, profile)| {
                     let key = format!("J[{k}]");
-                    medium.on_bonds(j, medium.shell(k + 1, &key, &choice)?, &choice, &key, |e, _| Ok(e.0))
-                };
-                j.iter().enumerate().map(shell).collect::<Result<Vec<_>>>()?.concat()
+                    Ok(Valued { profile, families: medium.shell(k + 1, &key, &choice)?, key })
+                });
+                medium.on_shells(shells.collect::<Result<_>>()?, &choice, |e, _| Ok(e.0))?
             }
             (Some(_), None, None) => {
                 return Err(Error::invalid("J", "the list is empty: give one energy a neighbour shell, [\"10 meV\"]"));
