@@ -230,6 +230,13 @@ def test_results_are_saved_and_loaded(reversal, tmp_path):
 def test_a_run_writes_to_its_folder(chain, tmp_path):
     result = sn.barrier(chain, sn.uniform("z"), sn.uniform("-z"), out=tmp_path / "r")
     assert json.loads((tmp_path / "r" / "summary.json").read_text())["barrier_meV"] == result.barrier_meV
+    table = tmp_path / "s" / "path.csv"
+    table.parent.mkdir()
+    table.write_text("of another program")
+    with pytest.raises(sn.SpinnebError, match="path.csv"):
+        sn.barrier(chain, sn.uniform("z"), sn.uniform("-z"), out=table.parent)
+    sn.barrier(chain, sn.uniform("z"), sn.uniform("-z"), out=table.parent, force=True)
+    assert sn.load(table.parent).barrier_meV == result.barrier_meV
 
 
 def test_results_are_pickled(reversal, chain):

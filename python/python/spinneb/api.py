@@ -89,6 +89,7 @@ def barrier(
     out: str | os.PathLike[str] | None = None,
     threads: int | None = None,
     progress: Progress = None,
+    force: bool = False,
     **options: Any,
 ) -> Result:
     """The minimum-energy path between two states of a system, with its barrier and saddles.
@@ -110,7 +111,7 @@ def barrier(
         How long lower passes are looked for.
     temperatures
         For rates and lifetimes, ``result.rates``: numbers in K, or quantities; one or several.
-    out, threads, progress
+    out, threads, progress, force
         As in :func:`run`.
     options
         Any other key of a config: ``neb={"tolerance": 1e-8}``, ``rates={"damping": 0.5, …}``.
@@ -129,7 +130,7 @@ def barrier(
     if relax_ends is not None:
         options["relax_ends"] = relax_ends
     changed = {"initial": system.initial if initial is None else initial, "final": system.final if final is None else final}
-    return run(system.replaced(**changed, **options), out=out, threads=threads, progress=progress)
+    return run(system.replaced(**changed, **options), out=out, threads=threads, progress=progress, force=force)
 
 
 def relax(
