@@ -197,6 +197,24 @@ fn a_path_with_more_maxima_than_saddles_says_so() {
     assert!(outcome.warnings.iter().any(|w| w.starts_with(&told)), "{told}: {:?}", outcome.warnings);
 }
 
+/// From pole to pole over a maximum: the ends come to rest on the cone beside their poles, the path leads round their saddle, and the band of
+/// the first path was followed with humps that are no saddles'.
+#[test]
+fn humps_of_a_band_that_no_saddle_explains_are_gone_from_the_path() {
+    let config = json!({
+        "material": {"name": "cone", "moment": "2 mu_B", "energy": [{"anisotropy": {"K": "1 meV", "axis": [0, 0, 1], "K2": "-1 meV"}}]},
+        "lattice": {"chain": {"sites": 1}},
+        "initial": {"uniform": {"direction": [0, 0, 1]}},
+        "final": {"uniform": {"direction": [0, 0, -1]}},
+    });
+    let outcome = solve(&config, Effort::Normal);
+    assert!((certified(&outcome) - 0.25).abs() < 1e-12, "{}", certified(&outcome));
+    let e = &outcome.images.above_initial_mev;
+    let maxima = (1..e.len() - 1).filter(|k| e[*k] > e[k - 1] + 1e-9 && e[*k] > e[k + 1] + 1e-9).count();
+    assert_eq!(maxima, 1, "{e:?}");
+    assert!(!outcome.warnings.iter().any(|w| w.contains("more maxima")), "{:?}", outcome.warnings);
+}
+
 /// The image beside this minimum has a torque of 2e-3 meV.
 #[test]
 fn a_minimum_on_a_path_over_one_saddle_is_the_state_and_not_the_image_beside_it() {

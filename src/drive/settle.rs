@@ -2,7 +2,7 @@
 
 use super::Images;
 use super::first_path::FirstPath;
-use super::relaxation::{Goal, LOOSELY, TIGHTLY, Tools, height, image_levels, refined};
+use super::relaxation::{Goal, LOOSELY, TIGHTLY, Tools, height, image_levels, prominent_maxima, refined};
 use super::report::Proof;
 use super::run::{FEWEST_IMAGES, Run};
 use super::settled::Settled;
@@ -108,13 +108,14 @@ impl<'a> Run<'a, '_> {
     }
 
     /// Whether a path is better put together from the stretches of its route: it has minima between its ends, the band is not where
-    /// the saddles are, or the route leads elsewhere.
+    /// the saddles are or has further maxima, or the route leads elsewhere.
     fn needs_leading(&self, c: &FirstPath<'a>, found: &[Saddle], proof: &Proof) -> bool {
         let is_own = |pass: &Pass| found.iter().any(|f| is_within(f.spins(), pass.saddle.spins(), SAME));
         self.is_coarse(c)
             || !c.stop.is_converged()
             || proof.links.len() > 1
             || c.top_mev() > over(c, &proof.links)
+            || prominent_maxima(c.band.energies_mev(), slack(&c.band)).len() > proof.links.len()
             || !proof.links.iter().all(is_own)
     }
 
