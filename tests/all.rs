@@ -14,6 +14,7 @@ mod configs;
 mod conventions;
 mod counts;
 mod custom_terms;
+mod descents;
 mod dynamics;
 mod energy;
 mod equivalent_films;

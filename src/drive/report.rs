@@ -106,7 +106,8 @@ pub fn outcome(
     });
     let flat = flat_warnings(&proof.ends, &proof.links);
     let of_rates = rates.iter().flat_map(|rates| rates::warnings(rates, &search, barrier));
-    let lower = lower_maxima(band, &saddles);
+    let images: Vec<usize> = saddles.iter().map(|saddle| saddle.image).collect();
+    let lower = lower_maxima(band.energies_mev(), LOWER * height(band), &images);
     let warnings = run.warnings(doubts.iter().map(Doubt::warning).chain(flat).chain(lower).chain(of_rates));
     let (certified, iterations) = (doubts.is_empty() && barrier.is_some(), band.evaluations());
     let beside = links.iter().flat_map(|link| [&link.before, &link.after]).chain(&proof.ends);
@@ -375,11 +376,11 @@ fn image_state(band: &Band, k: usize) -> EndPoint {
     }
 }
 
-/// Says that a path over proven saddles has other maxima: where a slope forks, a relaxed path may leave the descent for another valley.
-fn lower_maxima(band: &Band, saddles: &[SaddlePoint]) -> Option<String> {
-    let e = band.energies_mev();
-    let is_other = |k: &usize| saddles.iter().all(|saddle| saddle.image.abs_diff(*k) > 1);
-    let others = prominent_maxima(e, LOWER * height(band)).into_iter().filter(is_other);
+/// Says that a path over proven saddles has other maxima than at their images, higher than both sides by this much (meV): where a slope
+/// forks, a relaxed path may leave the descent for another valley.
+fn lower_maxima(e: &[f64], prominence: f64, saddles: &[usize]) -> Option<String> {
+    let is_other = |k: &usize| saddles.iter().all(|image| image.abs_diff(*k) > 1);
+    let others = prominent_maxima(e, prominence).into_iter().filter(is_other);
     let (count, highest) = others.fold((0, f64::NEG_INFINITY), |(n, high), k| (n + 1, f64::max(high, e[k] - e[0])));
     (count > 0 && !saddles.is_empty()).then(|| {
         format!(
@@ -491,6 +492,22 @@ fn slope_through(s: &[f64], energy: &[f64], k: usize, neighbours: usize) -> f64 
 mod tests {
     use super::*;
     use std::f64::consts::PI;
+
+    #[test]
+    fn maxima_of_a_path_that_are_no_saddles_are_told_with_the_highest() {
+        let e = [1.0, 2.0, 9.0, 4.0, 4.5, 3.0, 3.000001, 0.0, 2.5, 0.0];
+        let told = lower_maxima(&e, 1e-3, &[3]).unwrap();
+        assert!(
+            told.starts_with(
+                "the path has 2 more maxima than the saddles that are told, the highest 3.500000 meV above"
+            ),
+            "{told}"
+        );
+        // images beside a saddle's are its own
+        assert_eq!(lower_maxima(&e, 1.0, &[3]).map(|told| told.contains("has 1 more")), Some(true));
+        assert_eq!(lower_maxima(&e, 1e-3, &[1, 4, 8]), None);
+        assert_eq!(lower_maxima(&e, 1e-3, &[]), None);
+    }
 
     #[test]
     fn few_images_of_a_coherent_rotation_tell_how_each_of_its_terms_goes() {

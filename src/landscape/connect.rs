@@ -43,16 +43,12 @@ pub struct Connector<'c> {
 impl Connector<'_> {
     /// Puts passes into a landscape until a route leads from one minimum to another; what stands against it if none does.
     pub fn connect(&self, land: &mut Landscape, ends: [usize; 2]) -> Result<Option<Doubt>> {
-        let is_done = |land: &Landscape| {
-            let [a, b] = ends.map(|k| land.standing_for(k));
-            a == b || land.top_mev(a, b).is_some_and(|top| top < self.below_mev)
-        };
-        if is_done(land) {
+        if self.are_joined(land, ends) {
             return Ok(None);
         }
         land.unfold();
         let mut tried = 0;
-        while !is_done(land) {
+        while !self.are_joined(land, ends) {
             let left = self.evaluations.saturating_sub(land.evaluator().evaluated().evaluations);
             let next = if left > 0 { land.next_pair(ends, self.below_mev, WAYS / 2) } else { None };
             let Some(pair) = next else { return Ok(Some(Doubt::NoRoute(tried))) };
@@ -68,6 +64,11 @@ impl Connector<'_> {
             tried += 1;
         }
         Ok(None)
+    }
+
+    fn are_joined(&self, land: &Landscape, ends: [usize; 2]) -> bool {
+        let [a, b] = ends.map(|k| land.standing_for(k));
+        a == b || land.top_mev(a, b).is_some_and(|top| top < self.below_mev)
     }
 
     /// The part of the path between two states on it, turned about the symmetry axes to be near it, if it has images enough there.
@@ -94,7 +95,7 @@ impl Connector<'_> {
         Some(Path::new(&row).resampled((i.abs_diff(j) + 1).max(COARSE)))
     }
 
-    /// Relaxes a way a little and puts the pass of its highest new saddle in.
+    /// Relaxes a way a little and puts the passes of its new saddles in, the highest first, until they join the pair.
     fn follow(&self, land: &mut Landscape, pair: [usize; 2], way: Path) -> Result<()> {
         let h = land.evaluator();
         let mut band = Band::new(h, way);
@@ -117,7 +118,10 @@ impl Connector<'_> {
         for top in tops {
             let found = Saddle::recorded(h, Peak { floor_mev: top.floor_mev.min(ends_mev), ..top })?;
             if found.is_saddle(self.c) && !land.knows(&found) {
-                return self.add(land, found);
+                self.add(land, found)?;
+                if self.are_joined(land, pair) {
+                    break;
+                }
             }
         }
         Ok(())

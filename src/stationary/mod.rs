@@ -3,11 +3,14 @@
 //! From any state one search, in steps inside a trust region, leads to a saddle of index one (`search`, `step`): climbs and the
 //! refinement of a path's maximum are uses of it.
 //!
+//! Down from a saddle a descent follows the gradient's flow (`descent`, `flow`), which tells which minima it joins.
+//!
 //! A wall that can slide gives a chain's Hessian one eigenvalue of either sign that may be 1e-12 of the others. On the way down the soft
-//! mode is split off there (Lyapunov–Schmidt): Newton's method across it, steps along it.
+//! mode is split off there (`valley`; Lyapunov–Schmidt): Newton's method across it, steps along it.
 
 mod border;
 mod descent;
+mod flow;
 mod iterated;
 mod pinned;
 mod point;
@@ -22,6 +25,7 @@ mod step;
 mod tolerances;
 mod trail;
 mod unfactored;
+mod valley;
 
 pub(crate) use border::{Border, Pin, pin};
 pub use descent::{Descent, descend};
