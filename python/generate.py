@@ -9,6 +9,7 @@ from __future__ import annotations
 import importlib.util
 import json
 import keyword
+import re
 import sys
 import textwrap
 from pathlib import Path
@@ -85,7 +86,8 @@ def given(schema: dict[str, Any], part: Any, arg: str) -> str:
     """The expression for an argument as it is passed on."""
     if takes_direction(schema, part):
         return f"as_direction({arg})"
-    return f"as_list({arg})" if hint(schema, part) == "Sequence[Values]" else arg
+    makers = {"Sequence[Values]": f"as_list({arg})", "Sequence[State]": f'as_states({arg}, "{arg}")'}
+    return makers.get(hint(schema, part), arg)
 
 
 def takes_direction(schema: dict[str, Any], part: Any) -> bool:
@@ -94,9 +96,9 @@ def takes_direction(schema: dict[str, Any], part: Any) -> bool:
 
 
 def annotation(schema: dict[str, Any], part: Any) -> str:
-    """The type of an argument; of a list of quantities one alone may be given."""
+    """The type of an argument; of a list of quantities one alone may be given, and states may be vectors."""
     found = hint(schema, part)
-    return "Values" if found == "Sequence[Values]" else found
+    return {"Sequence[Values]": "Values", "Sequence[State]": "Sequence[AnyState]"}.get(found, found)
 
 
 def argument(name: str) -> str:
@@ -179,7 +181,7 @@ def module(schema: dict[str, Any], family: str, made: str, title: str) -> str:
     names = [argument(next(iter(choice["properties"]))) for choice in choices]
     body = "\n\n\n".join(functions)
     words = {"Literal", "Sequence", "Mapping", "Any", "ArrayLike", "Direction", "Extent", "Selection", "Shape", "State", "Values"}
-    used = sorted(word for word in words | {made, "as_cells", "as_direction", "as_list"} if word in body)
+    used = sorted(word for word in words | {made, "AnyState", "as_cells", "as_direction", "as_list", "as_states"} if re.search(rf"\b{word}\b", body))
     own = [w for w in used if w not in ("Literal", "Sequence", "Mapping", "Any", "ArrayLike")]
     typing = [w for w in ("Any", "Literal") if w in used]
     abc = [w for w in ("Mapping", "Sequence") if w in used]

@@ -70,9 +70,7 @@ def test_what_is_no_system_is_refused_with_what_would_be_one(chain):
         sn.System(sn.chain(20), sn.exchange(J=["1 meV"]))
 
 
-def test_what_is_no_json_is_refused_here(chain):
-    with pytest.raises(ValueError, match="not JSON compliant"):
-        sn.barrier(chain, sn.uniform("z"), sn.uniform("-z"), neb={"tolerance": float("nan")})
+def test_what_is_no_state_or_term_is_refused_here(chain):
     with pytest.raises(TypeError, match="uniform\\('z'\\)"):
         sn.barrier(chain, "z", sn.uniform("-z"))
     with pytest.raises(TypeError, match="energy term"):
@@ -167,3 +165,20 @@ def test_errors_are_pickled(chain):
     with pytest.raises(sn.ConfigError) as error:
         sn.run({})
     assert str(pickle.loads(pickle.dumps(error.value))) == str(error.value)
+
+
+def test_waypoints_may_be_vectors_and_what_is_wrong_with_them_is_said(chain):
+    half = np.zeros((20, 3))
+    half[:10, 2], half[10:, 2] = 1, -1
+    by_vectors = sn.barrier(chain, sn.uniform("z"), sn.uniform("-z"), guess=sn.waypoints([half]))
+    assert by_vectors.barrier_meV["forward"] > 0 and by_vectors.certified
+    assert sn.waypoints([half]) == sn.waypoints([{"vectors": half}])
+    with pytest.raises(ValueError, match=r"states\[1\]: found an array of shape \(3,\), expected \(sites, 3\)"):
+        sn.waypoints([half, [0, 0, 1]])
+
+
+def test_numbers_that_are_none_are_told_with_their_place(chain):
+    with pytest.raises(ValueError, match=r"^neb\.tolerance: found nan, expected a finite number"):
+        sn.barrier(chain, sn.uniform("z"), sn.uniform("-z"), neb={"tolerance": float("nan")})
+    with pytest.raises(ValueError, match=r"^energy\[0\]\.zeeman\.B\[2\]: found inf"):
+        sn.System(sn.chain(3), [sn.zeeman([0.0, 0.0, float("inf")])], moment="2 mu_B", name="x").to_json()

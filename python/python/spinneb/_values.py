@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
+import math
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Union
 
 import numpy as np
@@ -57,6 +59,26 @@ def plain(value: Any) -> Any:
     if isinstance(value, (list, tuple, range)):
         return [plain(inner) for inner in value]
     return value
+
+
+def as_json(value: Any, indent: int | None = None) -> str:
+    """The value as text, without numbers that JSON does not have."""
+    content = plain(value)
+    for place, number in _infinite(content, ""):
+        raise ValueError(f"{place}: found {number}, expected a finite number")
+    return json.dumps(content, indent=indent, ensure_ascii=False, allow_nan=False)
+
+
+def _infinite(value: Any, place: str) -> Iterator[tuple[str, float]]:
+    """Numbers that are none, with their places as messages tell them."""
+    if isinstance(value, float) and not math.isfinite(value):
+        yield place or "the value", value
+    elif isinstance(value, dict):
+        for key, inner in value.items():
+            yield from _infinite(inner, f"{place}.{key}" if place else key)
+    elif isinstance(value, list):
+        for k, inner in enumerate(value):
+            yield from _infinite(inner, f"{place}[{k}]")
 
 
 class Piece(dict[str, Any]):
@@ -125,6 +147,24 @@ def spins(value: ArrayLike, what: str, sites: int | None = None) -> NDArray[np.f
         wanted = f"({sites if sites is not None else 'sites'}, 3)"
         raise ValueError(f"{what}: found an array of shape {m.shape}, expected {wanted}")
     return finite(m, what)
+
+
+#: a state of the package, one as a config has it, or vectors of the shape (N, 3)
+AnyState = Union[State, Mapping[str, Any], ArrayLike]
+
+
+def as_state(value: AnyState | None, what: str) -> Any:
+    """A state as a config has it; vectors become one."""
+    if value is None or isinstance(value, Mapping):
+        return value
+    if isinstance(value, str):
+        raise TypeError(f"{what}: found the text {value!r}, expected a state, such as uniform({value!r}), or vectors")
+    return {"vectors": spins(value, what).tolist()}
+
+
+def as_states(values: Sequence[AnyState], what: str) -> list[Any]:
+    """Several of them."""
+    return [as_state(value, f"{what}[{k}]") for k, value in enumerate(values)]
 
 
 def path(value: ArrayLike, what: str) -> NDArray[np.float64]:

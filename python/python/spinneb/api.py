@@ -14,9 +14,9 @@ from numpy.typing import ArrayLike
 
 from . import _core
 from ._errors import ConfigError
-from ._values import Guess, Piece, plain
+from ._values import AnyState, Guess, Piece, as_json, as_state
 from .results import Check, Landscape, Rates, Relaxed, Result
-from .system import AnyState, System, as_guess, as_state
+from .system import System, as_guess
 
 __all__ = ["barrier", "check", "landscape", "load", "rates", "relax", "run"]
 
@@ -260,7 +260,7 @@ def rates(
         "g_factor": g_factor,
         "theory": theory,
     }
-    json_text = _dumped({key: value for key, value in asked.items() if value is not None})
+    json_text = as_json({key: value for key, value in asked.items() if value is not None})
     return Rates(Result(result._core.with_rates(json_text)))
 
 
@@ -280,7 +280,7 @@ def load(folder: str | os.PathLike[str]) -> Result | Landscape:
 
 def _config(config: Config, kind: str, set: Mapping[str, Any] | None) -> _core.Config:
     """A config, read."""
-    sets = [f"{key}={_dumped(value)}" for key, value in (set or {}).items()]
+    sets = [f"{key}={as_json(value)}" for key, value in (set or {}).items()]
     if isinstance(config, (str, os.PathLike)):
         return _core.Config(os.fspath(config), None, "", sets, [], kind)
     if isinstance(config, Piece) or not isinstance(config, (System, Mapping)):
@@ -291,7 +291,7 @@ def _config(config: Config, kind: str, set: Mapping[str, Any] | None) -> _core.C
     with tempfile.TemporaryDirectory(prefix="spinneb-") as folder:
         whole = _with_files(config.config() if isinstance(config, System) else dict(config), folder)
         try:
-            return _core.Config(None, _dumped(whole), os.getcwd(), sets, terms, kind)
+            return _core.Config(None, as_json(whole), os.getcwd(), sets, terms, kind)
         except ConfigError as error:
             # the file is ours, and gone
             own = f"path.guess.file.path: {os.path.join(folder, _GUESS)}"
@@ -307,12 +307,6 @@ def _with_files(config: dict[str, Any], folder: str) -> dict[str, Any]:
     file = os.path.join(folder, _GUESS)
     np.save(file, as_guess(guess))
     return {**config, "path": {**path, "guess": {"file": {"path": file}}}}  # type: ignore[dict-item]
-
-
-def _dumped(value: Any) -> str:
-    return json.dumps(plain(value), ensure_ascii=False, allow_nan=False)
-
-
 def _kelvin(temperatures: float | str | Iterable[float | str]) -> list[str]:
     several = [temperatures] if np.ndim(temperatures) == 0 else temperatures  # type: ignore[arg-type]
     return [value if isinstance(value, str) else f"{float(value)!r} K" for value in several]  # type: ignore[arg-type,union-attr]

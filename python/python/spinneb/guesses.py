@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Literal
 
-from ._values import Direction, Extent, Guess, State, as_direction
+from ._values import AnyState, Direction, Extent, Guess, as_direction, as_states
 
 __all__ = [
     "geodesic",
@@ -174,7 +174,7 @@ def nlerp(
 
 
 def waypoints(
-    states: Sequence[State],
+    states: Sequence[AnyState],
 ) -> Guess:
     """Geodesics through given states.
 
@@ -185,7 +185,7 @@ def waypoints(
 
     In a config: ``{"waypoints": {"states": [{"domain_wall": {"center": 3}}, {"domain_wall": {"center": 7}}]}}``
     """
-    return Guess("waypoints", {"states": states})
+    return Guess("waypoints", {"states": as_states(states, "states")})
 
 
 def file(

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Mapping
-from typing import Any, Union
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ._html import paragraph, table
-from ._values import Guess, Lattice, State, Values, path, plain, spins
+from ._values import AnyState, Guess, Lattice, Values, as_json, as_state, path, plain
 from .term import AnyTerm, Term
 
 __all__ = ["System"]
-
-#: a state of the package, one as a config has it, or vectors of the shape (N, 3)
-AnyState = Union[State, Mapping[str, Any], ArrayLike]
 
 
 class System:
@@ -103,7 +99,7 @@ class System:
         if isinstance(guess, list):
             states = [{"vectors": image} for image in guess[1:-1]]
             config["path"] = {**config["path"], "guess": {"waypoints": {"states": states}}}
-        return json.dumps(config, indent=2, ensure_ascii=False, allow_nan=False)
+        return as_json(config, indent=2)
 
     def replaced(self, **changes: Any) -> System:
         """The same system with other arguments: ``system.replaced(moment="2 mu_B")``."""
@@ -150,15 +146,6 @@ def _named(terms: list[Term]) -> list[Term]:
         if names.count(name) > 1:
             raise ValueError(f"two terms are called {name!r}: give each a name of its own, Term(…, name=…)")
     return terms
-
-
-def as_state(value: AnyState | None, what: str) -> Any:
-    """A state as a config has it; vectors become one."""
-    if value is None or isinstance(value, Mapping):
-        return value
-    if isinstance(value, str):
-        raise TypeError(f"{what}: found the text {value!r}, expected a state, such as uniform({value!r}), or vectors")
-    return {"vectors": spins(value, what).tolist()}
 
 
 def as_guess(value: Guess | Mapping[str, Any] | ArrayLike) -> Any:
