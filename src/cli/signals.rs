@@ -37,6 +37,7 @@ impl Signals {
         // nohup lets a run go on when its terminal is gone
         let mut watched = KNOWN.into_iter().filter(|(signal, ..)| *signal != SIGHUP || !is_ignored(SIGHUP));
         watched.try_for_each(register).context("signals cannot be watched for")?;
+        fail_where_files_grow_too_large().context("signals cannot be watched for")?;
         Ok(Signals { stop, caught })
     }
 
@@ -73,6 +74,18 @@ impl Signals {
         let code = self.caught.load(Ordering::SeqCst);
         KNOWN.into_iter().find(|known| usize::from(known.1) == code).map(|(_, code, word)| (code, word))
     }
+}
+
+/// A file that a limit (`ulimit -f`) does not let grow is an error of its writing; the signal that comes with it would end the program without a
+/// word.
+#[cfg(unix)]
+fn fail_where_files_grow_too_large() -> io::Result<()> {
+    flag::register(signal_hook::consts::SIGXFSZ, Arc::default()).map(|_| ())
+}
+
+#[cfg(not(unix))]
+fn fail_where_files_grow_too_large() -> io::Result<()> {
+    Ok(())
 }
 
 /// Whether whoever started the process had it ignore a signal; where the system does not tell, it is left as it is, as if it were.
