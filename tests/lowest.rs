@@ -101,7 +101,7 @@ fn few_images_on_a_long_plateau_take_no_more_than_the_relaxation_of_their_band()
 fn no_route_is_higher_than_the_path_that_it_is_for() {
     // a coarse path from hop to hop leads around the saddle of a single spin's reversal, 27.54 meV, which a route over all of its
     // minima need not pass
-    for sites in [44, 50] {
+    for sites in [44, 54] {
         let energy = json!([
             {"exchange": {"J": ["10 meV"]}},
             {"anisotropy": {"K": "2.0673683363429225 meV", "axis": [0, 0, 1]}},
@@ -110,7 +110,7 @@ fn no_route_is_higher_than_the_path_that_it_is_for() {
         let mut config = chain(sites, true, energy, up(), down());
         let outcome = solve(&config, Effort::None);
         assert!((certified(&outcome) - 25.2438).abs() < 1e-3, "{sites} {}", certified(&outcome));
-        assert!(outcome.work.force_evaluations < 200_000, "{}", outcome.work.force_evaluations);
+        assert!(outcome.work.force_evaluations < 50_000, "{}", outcome.work.force_evaluations);
         // where the work that is allowed ends before the saddle is found, the higher route is not told in its place
         config["neb"] = json!({"max_evaluations": 100});
         let outcome = solve(&config, Effort::None);

@@ -23,9 +23,9 @@ use crate::stationary::is_very_dear;
 use std::time::Instant;
 
 /// Gradients of each image until the band has converged.
-const A_IMAGE: usize = 15;
+const A_IMAGE: usize = 14;
 /// Gradients for a saddle, and for one beside another: images by symmetry and short stretches cost little.
-const A_SADDLE: usize = 280;
+const A_SADDLE: usize = 270;
 const ANOTHER: usize = 60;
 /// Gradients for the search below a path: some 24 climbs.
 const A_SEARCH: usize = 480;

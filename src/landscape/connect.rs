@@ -43,12 +43,16 @@ pub struct Connector<'c> {
 impl Connector<'_> {
     /// Puts passes into a landscape until a route leads from one minimum to another; what stands against it if none does.
     pub fn connect(&self, land: &mut Landscape, ends: [usize; 2]) -> Result<Option<Doubt>> {
-        if self.are_joined(land, ends) {
+        let is_done = |land: &Landscape| {
+            let [a, b] = ends.map(|k| land.standing_for(k));
+            a == b || land.top_mev(a, b).is_some_and(|top| top < self.below_mev)
+        };
+        if is_done(land) {
             return Ok(None);
         }
         land.unfold();
         let mut tried = 0;
-        while !self.are_joined(land, ends) {
+        while !is_done(land) {
             let left = self.evaluations.saturating_sub(land.evaluator().evaluated().evaluations);
             let next = if left > 0 { land.next_pair(ends, self.below_mev, WAYS / 2) } else { None };
             let Some(pair) = next else { return Ok(Some(Doubt::NoRoute(tried))) };
@@ -64,11 +68,6 @@ impl Connector<'_> {
             tried += 1;
         }
         Ok(None)
-    }
-
-    fn are_joined(&self, land: &Landscape, ends: [usize; 2]) -> bool {
-        let [a, b] = ends.map(|k| land.standing_for(k));
-        a == b || land.top_mev(a, b).is_some_and(|top| top < self.below_mev)
     }
 
     /// The part of the path between two states on it, turned about the symmetry axes to be near it, if it has images enough there.
@@ -95,7 +94,7 @@ impl Connector<'_> {
         Some(Path::new(&row).resampled((i.abs_diff(j) + 1).max(COARSE)))
     }
 
-    /// Relaxes a way a little and puts the passes of its new saddles in, the highest first, until they join the pair.
+    /// Relaxes a way a little and puts the pass of its highest new saddle in.
     fn follow(&self, land: &mut Landscape, pair: [usize; 2], way: Path) -> Result<()> {
         let h = land.evaluator();
         let mut band = Band::new(h, way);
@@ -118,10 +117,7 @@ impl Connector<'_> {
         for top in tops {
             let found = Saddle::recorded(h, Peak { floor_mev: top.floor_mev.min(ends_mev), ..top })?;
             if found.is_saddle(self.c) && !land.knows(&found) {
-                self.add(land, found)?;
-                if self.are_joined(land, pair) {
-                    break;
-                }
+                return self.add(land, found);
             }
         }
         Ok(())
