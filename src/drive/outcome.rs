@@ -251,8 +251,8 @@ pub struct SearchReport {
     pub lowered_by_mev: f64,
     /// The search ended because it had done as much work as it may.
     pub spent: bool,
-    /// The lowest saddle known beside the path by which the initial state is left for one that is not on it, or the final state, above
-    /// that state (meV).
+    /// How high above the initial state, and above the final one, the lowest way known leads that leaves the path before its highest
+    /// saddle for a state that is not on it (meV).
     pub lowest_exits_mev: [Option<f64>; 2],
 }
 

@@ -3,9 +3,10 @@
 use super::{Landscape, Seen};
 
 impl Landscape<'_> {
-    /// The lowest of those that are known (meV above the state), from the first of a path's minima or one that comes before its highest
-    /// saddle; its saddles' heights above the reference (meV). States that symmetry makes of minima on the path are none, but for those
-    /// that it makes of the last one: the path has an image that leads there, and is not counted with it.
+    /// How high one has to go at least by those that are known (meV above the state), from the first of a path's minima or along the path
+    /// from one that comes before its highest saddle; its saddles' heights above the reference (meV). States that symmetry makes of minima
+    /// on the path are none, but for those that it makes of the last one: the path has an image that leads there, and is not counted with
+    /// it.
     pub fn lowest_exit_mev(&self, minima: &[usize], saddles_mev: &[f64]) -> Option<f64> {
         let nodes: Vec<usize> = minima.iter().map(|k| self.standing_for(*k)).collect();
         let (last, earlier) = nodes.split_last()?;
@@ -13,15 +14,20 @@ impl Landscape<'_> {
         let before = &earlier[..=highest];
         let is_own = |height: f64| saddles_mev.iter().any(|own| (own - height).abs() < self.tolerance_mev(*own));
         let is_image = |k: usize| !self.is_image(k, *last) && earlier.iter().any(|own| self.is_image(k, *own));
-        let leads_off = |from: usize, to: usize, height: f64| match nodes.contains(&to) {
-            true => before.contains(&from) && !before.contains(&to) && !is_own(height),
-            false => before.contains(&from) && !is_image(to),
+        // the height of a way that leaves the path at `from`, over the saddles of the path until there
+        let way = |from: usize, to: usize, height: f64| {
+            let place = before.iter().position(|node| *node == from)?;
+            let leads_off = match nodes.contains(&to) {
+                true => !before.contains(&to) && !is_own(height),
+                false => !is_image(to),
+            };
+            leads_off.then(|| saddles_mev[..place].iter().copied().fold(height, f64::max))
         };
-        let exits = self.edges().iter().filter(|edge| {
+        let ways = self.edges().iter().flat_map(|edge| {
             let [a, b] = edge.ends.map(|k| self.standing_for(k));
-            leads_off(a, b, edge.height_mev) || leads_off(b, a, edge.height_mev)
+            [way(a, b, edge.height_mev), way(b, a, edge.height_mev)]
         });
-        exits.map(|edge| edge.height_mev - self.heights_mev()[nodes[0]]).min_by(f64::total_cmp)
+        ways.flatten().map(|height| height - self.heights_mev()[nodes[0]]).min_by(f64::total_cmp)
     }
 
     /// Whether symmetry makes one minimum of another.
