@@ -242,7 +242,9 @@ fn in_words(summary: &Summary) -> String {
         _ => String::new(),
     };
     let by = if summary.certificate == Some(Told::Bounded) { " (bounded, not counted)" } else { "" };
-    format!("{}{by}{climb}; {}", certainty.barrier_words(barrier), summary.stop_reason)
+    let spent =
+        if summary.search_is_spent() { "; the search for lower passes ended early as its work was spent" } else { "" };
+    format!("{}{by}{climb}; {}{spent}", certainty.barrier_words(barrier), summary.stop_reason)
 }
 
 fn json_line(summary: &Summary, name: &str, directory: &Path, code: u8) -> Value {

@@ -18,7 +18,7 @@ use crate::spins::Spins;
 use crate::stationary::{RELAXED, Relaxed, relax_to_minimum};
 
 /// Single states are evaluated until so many spins were, or as often as for the first paths; and their Hessians until so many
-/// operations were spent on factorising them, or as often.
+/// operations were spent on factorising them, or as often. At `thorough` several times as much of all.
 const SPINS: usize = 10_000_000;
 const FLOPS: f64 = 1e9;
 
@@ -90,9 +90,10 @@ impl<'a> Run<'a, '_> {
     fn allowance(&self, band: &Band) -> Count {
         let h = self.problem.evaluator();
         let own = h.evaluated();
-        let hessians = (FLOPS / factorisation_flops(&h)) as usize;
-        let left = self.left(band);
-        Count { evaluations: (SPINS / h.sites()).max(own.evaluations).min(left), hessians: hessians.max(own.hessians) }
+        let times = self.problem.search.works();
+        let evaluations = (SPINS / h.sites()).max(own.evaluations).saturating_mul(times);
+        let hessians = ((FLOPS / factorisation_flops(&h)) as usize).max(own.hessians).saturating_mul(times);
+        Count { evaluations: evaluations.min(self.left(band)), hessians }
     }
 
     /// Ways through the domains that the ends consist of: out of the lattice and in again.

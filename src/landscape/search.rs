@@ -60,6 +60,11 @@ impl Effort {
         }
     }
 
+    /// As many times as much work may it do as `normal` as it waits longer for news, or as much.
+    pub fn works(self) -> usize {
+        (self.quiet(true) / Effort::Normal.quiet(true)).max(1)
+    }
+
     /// And so many for each pass that is known, where all are looked for.
     fn a_pass(self) -> usize {
         match self {

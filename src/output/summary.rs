@@ -295,6 +295,11 @@ impl Summary {
         self.head.certified.then_some(by)
     }
 
+    /// Whether the search for lower passes ended because it had done as much work as it may.
+    pub fn search_is_spent(&self) -> bool {
+        self.search.as_ref().is_some_and(|search| search.spent)
+    }
+
     /// How certain its barrier is; results of earlier versions do not say how much of it is unknown.
     pub fn certainty(&self) -> Certainty {
         let unknown_mev = self.barrier_uncertainty_meV.map_or(0.0, |mev| mev.0);
