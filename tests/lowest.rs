@@ -213,6 +213,16 @@ fn humps_of_a_band_that_no_saddle_explains_are_gone_from_the_path() {
     assert!(!outcome.warnings.iter().any(|w| w.contains("more maxima")), "{:?}", outcome.warnings);
 }
 
+/// The band over what the search finds stalls at the images that resolve it, and converges with twice as many. A higher path would stay.
+#[test]
+fn a_lower_path_whose_band_stalls_is_followed_with_more_images() {
+    let lattice = json!({"triangular": {"cells": [10, 12], "periodic": [true, false]}});
+    let config = soft_film(lattice, "0.683 meV", "0.070 meV", "0.71 T", [down(), skyrmion(3, [4, 6])]);
+    let outcome = solve(&config, Effort::Normal);
+    assert!(certified(&outcome) < 1.0889904427 * (1.0 + 1e-9), "{}", certified(&outcome));
+    assert!(!outcome.warnings.iter().any(|w| w.contains("could not be put together")), "{:?}", outcome.warnings);
+}
+
 /// The image beside this minimum has a torque of 2e-3 meV.
 #[test]
 fn a_minimum_on_a_path_over_one_saddle_is_the_state_and_not_the_image_beside_it() {

@@ -15,6 +15,8 @@ use crate::path::{RESOLVED, distance, is_within};
 use crate::sphere::SAME;
 use crate::stationary::{FLAT, LOWER};
 
+/// How far apart (rad, any spin) the images of a path are that is put together, and where a band of these does not take the place.
+const APART: [f64; 2] = [0.9 * RESOLVED, 0.45 * RESOLVED];
 /// Most images of an automatic path.
 const MOST_IMAGES: usize = 2001;
 /// More images are of use where they bring neighbours nearer, to this part of how far they were.
@@ -125,14 +127,20 @@ impl<'a> Run<'a, '_> {
             return Ok(false);
         }
         self.observer.stage("putting the path together");
-        let ends = [&self.ends[0].spins, &self.ends[1].spins];
         let images = self.problem.images.asked_for();
         c.band.rest();
-        let assembled = assemble(&self.land, &proof.links, ends, images, 0.9 * RESOLVED, &self.tools())?;
-        let led = match assembled {
-            Some(way) => self.follow_finer(c, way, &proof.links)?,
-            None => false,
-        };
+        let mut led = false;
+        for apart in APART {
+            let ends = [&self.ends[0].spins, &self.ends[1].spins];
+            let assembled = assemble(&self.land, &proof.links, ends, images, apart, &self.tools())?;
+            led = match assembled {
+                Some(way) => self.follow_finer(c, way, &proof.links)?,
+                None => false,
+            };
+            if led || images.is_some() || self.is_spent(&c.band) {
+                break;
+            }
+        }
         c.band.wake();
         Ok(led)
     }
