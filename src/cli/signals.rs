@@ -36,8 +36,8 @@ impl Signals {
         };
         // nohup lets a run go on when its terminal is gone
         let mut watched = KNOWN.into_iter().filter(|(signal, ..)| *signal != SIGHUP || !is_ignored(SIGHUP));
-        watched.try_for_each(register).context("signals cannot be watched for")?;
-        fail_where_files_grow_too_large().context("signals cannot be watched for")?;
+        let registered = watched.try_for_each(register).and_then(|()| fail_where_files_grow_too_large());
+        registered.context("signals cannot be watched for")?;
         Ok(Signals { stop, caught })
     }
 

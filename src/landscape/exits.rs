@@ -14,20 +14,21 @@ impl Landscape<'_> {
         let before = &earlier[..=highest];
         let is_own = |height: f64| saddles_mev.iter().any(|own| (own - height).abs() < self.tolerance_mev(*own));
         let is_image = |k: usize| !self.is_image(k, *last) && earlier.iter().any(|own| self.is_image(k, *own));
-        // the height of a way that leaves the path at `from`, over the saddles of the path until there
+        // the height of a way that leaves the path at `from`, over the saddles of the path until there, and where it leads
         let way = |from: usize, to: usize, height: f64| {
             let place = before.iter().position(|node| *node == from)?;
-            let leads_off = match nodes.contains(&to) {
-                true => !before.contains(&to) && !is_own(height),
-                false => !is_image(to),
-            };
-            leads_off.then(|| saddles_mev[..place].iter().copied().fold(height, f64::max))
+            let leads_off = !nodes.contains(&to) || !before.contains(&to) && !is_own(height);
+            leads_off.then(|| (saddles_mev[..place].iter().copied().fold(height, f64::max), to))
         };
         let ways = self.edges().iter().flat_map(|edge| {
             let [a, b] = edge.ends.map(|k| self.standing_for(k));
             [way(a, b, edge.height_mev), way(b, a, edge.height_mev)]
         });
-        ways.flatten().map(|height| height - self.heights_mev()[nodes[0]]).min_by(f64::total_cmp)
+        let mut ways: Vec<(f64, usize)> = ways.flatten().collect();
+        ways.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        // images are dear to tell: from the lowest way up, as few as may be
+        let lowest = ways.into_iter().find(|(_, to)| nodes.contains(to) || !is_image(*to));
+        lowest.map(|(height, _)| height - self.heights_mev()[nodes[0]])
     }
 
     /// Whether symmetry makes one minimum of another.

@@ -154,12 +154,19 @@ pub(super) struct Exits {
     pub r#final: Option<Number>,
 }
 
-#[allow(non_snake_case)]
 fn search(found: &SearchReport) -> Search {
     let SearchReport { effort, searches, quiet, minima, saddles, lowered_by_mev, spent, lowest_exits_mev } = *found;
     let [initial, r#final] = lowest_exits_mev.map(|mev| mev.map(Number));
-    let (lowered_by_meV, lowest_exit_meV) = (Number(lowered_by_mev), Exits { initial, r#final });
-    Search { effort, searches, quiet, minima, saddles, lowered_by_meV, spent, lowest_exit_meV }
+    Search {
+        effort,
+        searches,
+        quiet,
+        minima,
+        saddles,
+        lowered_by_meV: Number(lowered_by_mev),
+        spent,
+        lowest_exit_meV: Exits { initial, r#final },
+    }
 }
 
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
