@@ -603,15 +603,29 @@ fn two_translations_of_one_eigenvalue_are_both_found_wherever_the_state_stands()
 }
 
 #[test]
-fn a_state_that_only_the_edges_of_its_film_hold_has_no_rate_where_it_wanders_over_all_of_it() {
+fn a_state_that_wanders_between_the_edges_of_its_film_has_no_rate_and_what_comes_to_it_has_one() {
     let energy = r#"{"exchange": {"J": ["1 meV"]}}, {"anisotropy": {"K": "0.02 meV", "axis": [0, 0, 1]}},
         {"anisotropy": {"K": "-0.01 meV", "axis": [1, 0, 0]}}, {"anisotropy": {"K": "-0.004 meV", "axis": [0, 0, 1], "sites": {"box": {"from": [20, 0], "to": [20, 1]}}}}"#;
     let walls = r#"{"domain_wall": {"center": 20}}"#;
-    let problem = film(r#"{"square": {"cells": [41, 2]}}"#, energy, [walls, UP], 3.0);
-    let outcome = solve(&problem);
+    let lattice = r#"{"square": {"cells": [41, 2]}}"#;
+    let outcome = solve(&film(lattice, energy, [walls, UP], 3.0));
     assert!(outcome.certified, "{:?}", outcome.warnings);
     let why = refusal(&outcome, Theory::Htst);
     assert!(why.contains("a translation that nothing holds") && why.contains("does not repeat"), "{why}");
+    // over the same saddle the uniform state is left at a rate that the wall's volume has no part in
+    let back = rate(&outcome, Way::Backward).rows[0].ln_htst_per_s.expect("a rate");
+    let [forward, backward] = [0, 1].map(|way| outcome.rates.as_ref().expect("rates").transitions[way].rows[0].clone());
+    assert!(forward.passage.ln_htst_per_s.is_none() && forward.escape.ln_htst_per_s.is_none());
+    assert_eq!((backward.passage.ln_htst_per_s, backward.escape.ln_htst_per_s), (Some(back), Some(back)));
+    // of the whole reversal only the escape is known: by a wall from one of two edges; the wall has one place, the next saddle two
+    let outcome = solve(&film(lattice, energy, [UP, DOWN], 3.0));
+    assert!(outcome.certified && outcome.saddles.len() == 2, "{:?}", outcome.warnings);
+    let whole = &outcome.rates.as_ref().expect("rates").transitions[0];
+    assert!(whole.rows[0].passage.ln_htst_per_s.is_none() && whole.refused.is_some(), "{whole:?}");
+    let escape = whole.rows[0].escape.ln_htst_per_s.expect("a rate");
+    assert!((escape - back - f64::ln(2.0)).abs() < 1e-6, "{escape} {back}");
+    let said = outcome.warnings.iter().filter(|w| w.contains("forward over saddle 1: the minimum before it"));
+    assert_eq!(said.count(), 1, "{:?}", outcome.warnings);
 }
 
 #[test]

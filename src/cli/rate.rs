@@ -198,12 +198,14 @@ pub fn lifetimes(outcome: &Outcome) -> Option<String> {
         let one = coldest.temperature_k == hottest.temperature_k;
         Some(if one { at(coldest) } else { format!("{}, {}", at(coldest), at(hottest)) })
     };
-    let passage = line(|r| &r.passage)?;
+    let passage = line(|r| &r.passage);
     if transition.saddles == 1 {
-        return Some(format!("mean lifetime of the initial state: {passage}"));
+        return passage.map(|passage| format!("mean lifetime of the initial state: {passage}"));
     }
-    let escape = line(|r| &r.escape).map_or(String::new(), |e| format!("; mean escape over the first saddle: {e}"));
-    Some(format!("mean first passage to the final state: {passage}{escape}"))
+    let passage = passage.map(|passage| format!("mean first passage to the final state: {passage}"));
+    let escape = line(|r| &r.escape).map(|escape| format!("mean escape over the first saddle: {escape}"));
+    let told: Vec<String> = passage.into_iter().chain(escape).collect();
+    (!told.is_empty()).then(|| told.join("; "))
 }
 
 #[cfg(test)]

@@ -9,8 +9,8 @@ use crate::landscape::Saddle;
 use crate::landscape::{Minimum, Pass};
 use crate::linalg::slab;
 use crate::rates::{
-    Equivalents, Orbits, RateSettings, Rates, Refusal, SaddleRate, Turn, ZeroKind, ZeroModes, equivalent_saddles,
-    refused, saddle_rates, transitions,
+    Equivalents, Orbits, RateSettings, Rates, Refusal, SaddleRate, Theory, Turn, ZeroKind, ZeroModes,
+    equivalent_saddles, refused, saddle_rates, transitions,
 };
 use crate::spins::Spins;
 use crate::stationary::{self, ALIKE, Refined, State};
@@ -207,16 +207,34 @@ pub fn is_said_of_rates(warning: &str) -> bool {
     warning == ROUGH || warning.ends_with(ALONE) || warning.starts_with(REFUSAL)
 }
 
+/// Each reason why a rate is lacking, with the theories and, where other directions over saddles have rates, with those that it holds for.
+fn refusals(rates: &Rates) -> Vec<String> {
+    let refused = rates.saddles.iter().flat_map(|r| rates.told(r).refused.iter().map(move |(by, why)| (r, *by, why)));
+    let mut reasons: Vec<(String, Vec<Theory>, Vec<&SaddleRate>)> = Vec::new();
+    for (rate, theory, reason) in refused {
+        let reason = reason.to_string();
+        let known = reasons.iter().position(|(known, ..)| *known == reason);
+        let k = known.unwrap_or_else(|| {
+            reasons.push((reason, Vec::new(), Vec::new()));
+            reasons.len() - 1
+        });
+        let (_, theories, over) = &mut reasons[k];
+        theories.extend(Some(theory).filter(|t| !theories.contains(t)));
+        over.extend(Some(rate).filter(|r| over.last().is_none_or(|last| !std::ptr::eq(*last, *r))));
+    }
+    let line = |(reason, theories, over): (String, Vec<Theory>, Vec<&SaddleRate>)| {
+        let theories: Vec<&str> = theories.iter().map(|theory| theory.name()).collect();
+        let ways: Vec<String> = over.iter().map(|r| format!("{} over saddle {}", r.way.name(), r.saddle)).collect();
+        let ways = if over.len() == rates.saddles.len() { String::new() } else { format!(" {}", ways.join(" and ")) };
+        format!("{REFUSAL}{}{ways}: {reason}", theories.join(" and "))
+    };
+    reasons.into_iter().map(line).collect()
+}
+
 /// What the whole run should say of its rates: each reason for a refusal once, that some numbers are rough, and which of its ends are
 /// left beside the path, over saddles that are no higher than its own or by k_BT alone.
 pub fn warnings(rates: &Rates, search: &SearchReport, barrier: Option<Barrier>) -> Vec<String> {
-    let mut said: Vec<String> = Vec::new();
-    for (theory, reason) in rates.saddles.iter().flat_map(|r| &rates.told(r).refused) {
-        let line = format!("{REFUSAL}{}: {reason}", theory.name());
-        if !said.contains(&line) {
-            said.push(line);
-        }
-    }
+    let mut said = refusals(rates);
     if rates.saddles.iter().any(|r| !r.warnings.is_empty()) {
         said.push(ROUGH.into());
     }

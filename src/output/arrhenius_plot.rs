@@ -139,14 +139,14 @@ fn is_drawn(time_s: f64) -> bool {
 /// Whether the two directions have different lifetimes, as far as a figure shows.
 fn differ(lifetimes: &[Lifetimes]) -> bool {
     let [forward, backward] = lifetimes else { return false };
-    let rate = |r: &RateRow| r.langer_per_s.or(r.htst_per_s).unwrap_or(0.0);
+    let rate = |r: &RateRow| r.langer_per_s.or(r.htst_per_s).or(r.escape_s.map(|time| 1.0 / time)).unwrap_or(0.0);
     forward.rows.iter().zip(&backward.rows).any(|(f, b)| (rate(f) - rate(b)).abs() > 1e-3 * rate(f).max(rate(b)))
 }
 
-/// Whether leaving the first minimum is not the whole way.
+/// Whether leaving the first minimum is not the whole way, or all that is known of it.
 fn escapes_first(r: &RateRow) -> bool {
     let passage = r.langer_per_s.or(r.htst_per_s);
-    passage.zip(r.escape_s).is_some_and(|(rate, escape)| (rate * escape - 1.0).abs() > 0.01)
+    r.escape_s.is_some_and(|escape| passage.is_none_or(|rate| (rate * escape - 1.0).abs() > 0.01))
 }
 
 /// The times that fit into the figure, from hot to cold: a grey line up to where the barrier is high enough, and one from there.

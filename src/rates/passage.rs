@@ -15,7 +15,7 @@ use crate::linalg::log_sum;
 pub const TEN_YEARS_S: f64 = 3.155_76e8;
 
 /// ln t_i (s) from the logarithms of the rates (1/s) over the n saddles: `onward[i]` from minimum i to i + 1, `back[i]` from minimum
-/// i + 1 to i.
+/// i + 1 to i, of which the last takes no part and may be left out.
 pub fn passages(onward: &[f64], back: &[f64]) -> Vec<f64> {
     let mut times: Vec<f64> = Vec::with_capacity(onward.len());
     for (i, forward) in onward.iter().enumerate() {

@@ -420,11 +420,14 @@ struct Made<'a> {
 impl Made<'_> {
     fn regimes(&self, above_k: f64, barriers: [f64; 2]) -> [Regime; 2] {
         let Made { h, found, beside, frequencies, .. } = self;
-        let top = &found.wells[0];
+        let top = &found.saddle;
         let saddle = Fluctuations::of_saddle(h, &beside.states[0], &top.pinned, &beside.unstable);
         let vague = self.crossing.spectrum.floor_mev / -beside.unstable.eigenvalue_mev;
         [0, 1].map(|side| {
-            let bottom = &found.wells[1 + side];
+            let bottom = match &found.minima[side] {
+                Ok(bottom) => bottom,
+                Err(reason) => return Regime::refused(above_k, self.settings, reason),
+            };
             let entropy = 0.5 * (bottom.log_determinant - top.log_determinant);
             let volumes = top.ln_volume - bottom.ln_volume;
             let prefactor = |frequency_per_s: f64| Prefactor {

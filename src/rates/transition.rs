@@ -91,14 +91,24 @@ fn transition(
     let number = |i: usize| if way == Way::Forward { i } else { count - 1 - i };
     // the saddles that part states
     let parting = |t: f64| -> Vec<usize> { (0..count).filter(|i| !onward[*i].is_within_one(back[*i], t)).collect() };
-    let ln_rates = |rates: &[&SaddleRate], side: usize, theory: Theory, t: f64| -> Option<Vec<f64>> {
-        let all = parting(t).into_iter().map(|i| (i, rates[i]));
-        let more = |i: usize, r: &SaddleRate| at(orbits, t).ln_more(number(i), side, r.at(t).equivalents.count);
-        all.map(|(i, r)| Some(r.ln_rate_per_s(theory, t)? + more(i, r))).collect()
+    let ln_rate = |rates: &[&SaddleRate], side: usize, i: usize, theory: Theory, t: f64| -> Option<f64> {
+        let more = at(orbits, t).ln_more(number(i), side, rates[i].at(t).equivalents.count);
+        Some(rates[i].ln_rate_per_s(theory, t)? + more)
     };
+    // of all saddles onward, and back over all but the last: what the passage hangs on
     let both = |theory: Theory, t: f64| -> Option<[Vec<f64>; 2]> {
-        let parted = doubt.is_none() && !parting(t).is_empty();
-        parted.then_some([ln_rates(&onward, leaving, theory, t)?, ln_rates(&back, returning, theory, t)?])
+        let parted = parting(t);
+        let (last, others) = parted.split_last().filter(|_| doubt.is_none())?;
+        let ln_rates = |rates: &[&SaddleRate], side: usize, saddles: &[usize]| -> Option<Vec<f64>> {
+            saddles.iter().map(|i| ln_rate(rates, side, *i, theory, t)).collect()
+        };
+        let mut on = ln_rates(&onward, leaving, others)?;
+        on.push(ln_rate(&onward, leaving, *last, theory, t)?);
+        Some([on, ln_rates(&back, returning, others)?])
+    };
+    let escape = |theory: Theory, t: f64| -> Option<f64> {
+        let first = *parting(t).first().filter(|_| doubt.is_none())?;
+        ln_rate(&onward, leaving, first, theory, t)
     };
     // each saddle's error counts as far as the time hangs on it
     let ln_known = |rates: Option<[Vec<f64>; 2]>, t: f64| -> f64 {
@@ -110,7 +120,6 @@ fn transition(
     let row = |t: f64| -> TransitionRow {
         let [htst, langer] = Theory::ALL.map(|theory| both(theory, t));
         let passage = |rates: &Option<[Vec<f64>; 2]>| rates.as_ref().map(|[on, back]| -first_passage(on, back));
-        let escape = |rates: &Option<[Vec<f64>; 2]>| rates.as_ref().map(|[on, _]| on[0]);
         let whole = Row {
             temperature_k: t,
             barrier_over_kt: barrier_mev / (K_B * t),
@@ -122,23 +131,25 @@ fn transition(
         let first = Row {
             temperature_k: t,
             barrier_over_kt: out.barrier_mev.unwrap_or(0.0) / (K_B * t),
-            ln_htst_per_s: escape(&htst),
-            ln_langer_per_s: escape(&langer),
-            known_within: whole.ln_lifetime_s().and_then(|_| factor(out.ln_known_within(t))),
-            reason: None,
+            ln_htst_per_s: escape(Theory::Htst, t),
+            ln_langer_per_s: escape(Theory::Langer, t),
+            ..Row::default()
         };
+        let known_within = first.ln_lifetime_s().and_then(|_| factor(out.ln_known_within(t)));
+        let first = Row { known_within, ..first };
         let known_within = factor(ln_known(langer.or(htst), t));
         TransitionRow { passage: Row { known_within, ..whole }.held(), escape: first.held() }
     };
     let lifetime = |t: f64| row(t).passage.ln_lifetime_s();
     let blocking_k = [1.0, TEN_YEARS_S].map(|s| blocking_temperature(lifetime, barrier_mev, s));
     let rows: Vec<TransitionRow> = settings.temperatures_k.iter().map(|t| row(*t)).collect();
-    let reasons =
-        || onward.iter().flat_map(|r| &r.at(settings.first_k()).refused).map(|(_, reason)| reason.clone()).next();
+    let refusals = || onward.iter().chain(&back).flat_map(|r| &r.at(settings.first_k()).refused);
     let possible = settings.temperatures_k.iter().any(|t| Theory::ALL.iter().any(|theory| both(*theory, *t).is_some()));
     let refused = match possible {
         true => None,
-        false => doubt.map(|doubt| Refusal::Path(doubt.into())).or_else(reasons),
+        false => doubt
+            .map(|doubt| Refusal::Path(doubt.into()))
+            .or_else(|| refusals().map(|(_, reason)| reason.clone()).next()),
     };
     let equivalents = at(orbits, settings.first_k()).paths.clone();
     TransitionRate { way, saddles: count, equivalents, barrier_mev, rows, blocking_k, refused }

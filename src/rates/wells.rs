@@ -5,7 +5,7 @@ use super::determinant::PinnedHessian;
 use super::refusal::no_minimum;
 use super::sliding::{Generator, Pinning, Slide, Sliding, Turn};
 use super::symmetry::{free_shifts, places, states_along_turn, states_on_the_way};
-use super::{Crossing, Equivalents, Refusal, Unstable, ZeroModes, equivalent_saddles, zero_modes};
+use super::{Crossing, Equivalents, Refusal, UnknownModes, Unstable, ZeroModes, equivalent_saddles, zero_modes};
 use crate::energy::Evaluator;
 use crate::stationary::{Spectrum, State};
 use crate::symmetry::Group;
@@ -30,6 +30,8 @@ struct Choice {
     steps: Vec<usize>,
     /// The turn along which some of them slide.
     turn: Option<Turn>,
+    /// Along what each goes nobody knows how far.
+    unknown: [Option<UnknownModes>; 3],
 }
 
 /// The three states above a k_BT, until the next.
@@ -40,8 +42,9 @@ pub(super) struct Wells {
 
 /// What the states have.
 pub(super) struct Found {
-    /// The saddle, the minimum before it and that after it.
-    pub wells: [Well; 3],
+    pub saddle: Well,
+    /// The minimum before it and that after it; over the saddle out of one it takes no volume of the other.
+    pub minima: [Result<Well, Refusal>; 2],
     pub equivalents: Equivalents,
     pub turn: Option<Turn>,
 }
@@ -93,16 +96,13 @@ impl<'a> Beside<'a> {
             }
         };
         let from = std::iter::once(0.0).chain(levels);
-        let mut different: Vec<(f64, Result<Choice, Refusal>)> = Vec::new();
+        let mut different: Vec<(f64, Choice)> = Vec::new();
         for (above_mev, choice) in from.zip(choices) {
             if different.last().is_none_or(|(_, last)| *last != choice) {
                 different.push((above_mev, choice));
             }
         }
-        let wells = |(above_mev, choice): (f64, Result<Choice, Refusal>)| Wells {
-            above_mev,
-            found: choice.and_then(|choice| self.found(&choice)),
-        };
+        let wells = |(above_mev, choice): (f64, Choice)| Wells { above_mev, found: self.found(&choice) };
         different.into_iter().map(wells).collect()
     }
 
@@ -118,7 +118,7 @@ impl<'a> Beside<'a> {
     }
 
     /// Between two of some levels.
-    fn choice(&self, slides: &mut [Slide; 3], levels: &[f64], k: usize) -> Result<Choice, Refusal> {
+    fn choice(&self, slides: &mut [Slide; 3], levels: &[f64], k: usize) -> Choice {
         // a state slides above a level, not at it
         let last = levels.last().map_or(1.0, |last| 2.0 * last);
         let thermal_mev = levels.get(k).copied().unwrap_or(last);
@@ -128,9 +128,7 @@ impl<'a> Beside<'a> {
                 Generator::Shift(k) => free[*k],
                 Generator::Turn(_) => turns,
             };
-            let mut at =
-                |k: usize| slides[k].at(thermal_mev, &is_free).map_err(|unknown| Refusal::Volume(NAMES[k], unknown));
-            let sliding = [at(0)?, at(1)?, at(2)?];
+            let sliding = slides.each_mut().map(|slide| slide.at(thermal_mev, &is_free));
             let minima = [&self.states[1].m[..], &self.states[2].m[..]];
             let steps = free_shifts(self.group, minima, [sliding[1].shifts(), sliding[2].shifts()]);
             let turn = sliding.iter().find_map(Sliding::turn);
@@ -146,26 +144,30 @@ impl<'a> Beside<'a> {
             };
             let turning = turns && turn.as_ref().is_none_or(kept);
             if keep == free && turning == turns {
-                return Ok(Choice { sliding, steps, turn });
+                let unknown = slides.each_ref().map(|slide| slide.unknown(thermal_mev));
+                return Choice { sliding, steps, turn, unknown };
             }
             (free, turns) = (keep, turning);
         }
     }
 
     fn found(&self, choice: &Choice) -> Result<Found, Refusal> {
-        let Choice { sliding, steps, turn } = choice;
+        let Choice { sliding, steps, turn, unknown } = choice;
         let along = turn.map(|turn| self.group.with_axis(turn.axis));
         let along = along.as_ref().unwrap_or(self.group);
         let shifts = sliding.each_ref().map(Sliding::shifts);
         let [saddle, before, after] = self.states.each_ref().map(|state| &state.m[..]);
         let equivalents = equivalent_saddles(self.h.lattice(), along, saddle, [before, after], shifts);
         let free = Some(&steps[..]).filter(|_| shifts.contains(&true));
-        let well = |k: usize| self.well(k, &sliding[k], free, along);
-        Ok(Found { wells: [well(0)?, well(1)?, well(2)?], equivalents, turn: *turn })
+        let well = |k: usize| {
+            let well = unknown[k].map_or_else(|| self.well(k, &sliding[k], free, along), Err);
+            well.map_err(|unknown| Refusal::Volume(NAMES[k], unknown))
+        };
+        Ok(Found { saddle: well(0)?, minima: [well(1), well(2)], equivalents, turn: *turn })
     }
 
     /// Of state k, where so many times each shift is free, if anything slides over the lattice.
-    fn well(&self, k: usize, sliding: &Sliding, free: Option<&[usize]>, along: &Group) -> Result<Well, Refusal> {
+    fn well(&self, k: usize, sliding: &Sliding, free: Option<&[usize]>, along: &Group) -> Result<Well, UnknownModes> {
         let (h, state, unstable) = (self.h, &self.states[k], self.descending(k));
         let number = |steps: &[usize]| places(self.group, &state.m, steps);
         let turned = states_along_turn(self.group, along, &state.m);
@@ -177,8 +179,7 @@ impl<'a> Beside<'a> {
             None => (1, 1, 1),
         };
         let kept = if sliding.turn().is_some() { kept } else { kept * turned };
-        let zeros = zero_modes(&h, state, sliding, own, self.spectra[k])
-            .map_err(|unknown| Refusal::Volume(NAMES[k], unknown))?;
+        let zeros = zero_modes(&h, state, sliding, own, self.spectra[k])?;
         let left_out: Vec<Vec<f64>> = state.zeros.iter().chain(&sliding.modes).cloned().collect();
         let pinned = PinnedHessian::new(&state.hessian, &left_out, unstable, h.stiffness_mev() / 3.0);
         let descent = unstable.map_or(0.0, |u| libm::log(-u.eigenvalue_mev));

@@ -3,7 +3,7 @@
 use super::{Label, Survey, SurveyProblem};
 use crate::landscape::{Landscape, Pass};
 use crate::network::{Network, Parts};
-use crate::rates::{LEAST_BARRIER, RateSettings, Regime, SaddleRate, Theory, saddle_rates};
+use crate::rates::{LEAST_BARRIER, RateSettings, SaddleRate, Theory, saddle_rates};
 use crate::stationary::ALIKE;
 use crate::symmetry::Group;
 use crate::units::K_B;
@@ -107,9 +107,10 @@ impl Lifetimes {
         let asked = Theory::ALL.into_iter().filter(|theory| self.settings.wants(*theory));
         let told = self.settings.first_k();
         let of = |theory: Theory| {
-            let without: Vec<&Regime> =
-                self.saddles.iter().map(|both| both[0].at(told)).filter(|r| r.prefactor(theory).is_none()).collect();
-            let reason = without.iter().flat_map(|r| &r.refused).find(|(by, _)| *by == theory)?.1.clone();
+            let without: Vec<&[SaddleRate; 2]> =
+                self.saddles.iter().filter(|both| !rated(both, theory, told)).collect();
+            let refused = without.iter().copied().flatten().flat_map(|r| &r.at(told).refused);
+            let reason = refused.into_iter().find(|(by, _)| *by == theory)?.1.clone();
             Some(format!(
                 "{} of {} kinds of saddles have no rate by {} and no part in its times, which are upper bounds: {reason}",
                 without.len(),
@@ -153,14 +154,12 @@ impl Lifetimes {
                 network.add(places.state[b], places.state[a], back);
             }
         }
-        self.saddles.iter().any(|both| both[0].at(temperature_k).prefactor(theory).is_some()).then_some(network)
+        self.saddles.iter().any(|both| rated(both, theory, temperature_k)).then_some(network)
     }
 
     /// Whether each kind of saddle has a rate at a temperature (K), by theory.
     fn rated(&self, temperature_k: f64) -> Vec<[bool; 2]> {
-        let of =
-            |both: &[SaddleRate; 2]| Theory::ALL.map(|theory| both[0].at(temperature_k).prefactor(theory).is_some());
-        self.saddles.iter().map(of).collect()
+        self.saddles.iter().map(|both| Theory::ALL.map(|theory| rated(both, theory, temperature_k))).collect()
     }
 
     /// The passes by ascending energy: all of them, and those that have a rate by each theory.
@@ -245,6 +244,11 @@ impl Lifetimes {
             reasons.map(|(theory, reason)| format!("no rate by {} over the lowest way: {reason}", theory.name()));
         words.into_iter().next().unwrap_or("no rates were asked for".into())
     }
+}
+
+/// Whether a saddle has a rate by a theory at a temperature (K) in both directions, as the network takes it.
+fn rated(both: &[SaddleRate; 2], theory: Theory, temperature_k: f64) -> bool {
+    both.iter().all(|rate| rate.at(temperature_k).prefactor(theory).is_some())
 }
 
 /// Named groups with the minima that they hold; where none are named, each of the lowest minima by itself.

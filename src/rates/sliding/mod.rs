@@ -115,11 +115,14 @@ impl<'a> Slide<'a> {
         Slide { h, held, ways, wanders, known: BTreeMap::new() }
     }
 
-    /// At a k_BT (meV), along the ways that are free. An error where it slides freely and nobody knows how far.
-    pub fn at(&mut self, thermal_mev: f64, free: &dyn Fn(&Generator) -> bool) -> Result<Sliding, UnknownModes> {
-        if let Some([from, cells]) = self.wanders.filter(|[from, _]| thermal_mev > *from) {
-            return Err(UnknownModes::Wanders { cells, kelvin: from / K_B });
-        }
+    /// Along what it moves at a k_BT (meV) that nobody knows how far it goes.
+    pub fn unknown(&self, thermal_mev: f64) -> Option<UnknownModes> {
+        let [from, cells] = self.wanders.filter(|[from, _]| thermal_mev > *from)?;
+        Some(UnknownModes::Wanders { cells, kelvin: from / K_B })
+    }
+
+    /// At a k_BT (meV), along the ways that are free.
+    pub fn at(&mut self, thermal_mev: f64, free: &dyn Fn(&Generator) -> bool) -> Sliding {
         let mut own: Vec<Vec<f64>> = Vec::new();
         let mut chosen = Vec::new();
         for (k, way) in self.ways.iter().enumerate() {
@@ -132,7 +135,7 @@ impl<'a> Slide<'a> {
                 }
             }
         }
-        Ok(self.soft(&chosen, own, thermal_mev))
+        self.soft(&chosen, own, thermal_mev)
     }
 
     /// Along chosen ways, which span `space`, all valleys or those that are soft.
