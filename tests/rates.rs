@@ -1157,6 +1157,18 @@ fn saddles_beside_the_path_are_told_and_warned_of_where_they_are_no_higher() {
         let said = outcome.warnings.iter().filter(|w| w.contains("over other saddles too")).count();
         (outcome.search.lowest_exits_mev, said)
     };
+    let opposite = |ends: &str| {
+        let text = format!(
+            r#"{{"material": {{"name": "cube", "moment": "2 mu_B", "energy": [{{"cubic_anisotropy": {{"K": "60 meV"}}}}]}},
+            "lattice": {{"chain": {{"sites": 1}}}}, {ends}, "rates": {{"temperatures": ["20 K"], "damping": 0.1}}}}"#
+        );
+        solve(&load_text("cube.json".as_ref(), text).unwrap().problem().unwrap())
+    };
+    // the four ways to the opposite side are one path's, which symmetry makes and the rates count
+    let ends = r#""initial": {"uniform": {"direction": [0, 0, 1]}}, "final": {"uniform": {"direction": [0, 0, -1]}}"#;
+    let outcome = opposite(ends);
+    assert_eq!((outcome.search.lowest_exits_mev, outcome.saddles.len()), ([None; 2], 2));
+    assert!(!outcome.warnings.iter().any(|w| w.contains("over other saddles too")), "{:?}", outcome.warnings);
     let (exits, said) = ways("60 meV", "");
     assert!(exits.iter().all(|exit| (exit.unwrap() - 15.0).abs() < 1e-9) && said == 2, "{exits:?} {said}");
     // a hard axis y holds the ways by y back, those to the other side over ±x are left

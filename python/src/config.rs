@@ -5,13 +5,14 @@ use crate::errors::raised;
 use crate::handing::{dictionary, places};
 use crate::landscape::Landscape;
 use crate::outcome::Outcome;
+use crate::recorded::{Computed, Recorded};
 use crate::supervise::supervised;
 use crate::term::{Term, Trouble};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use spinneb::config::{Loaded, Source, VERSION};
-use spinneb::drive::survey::survey;
-use spinneb::drive::{self, relaxed_state};
+use spinneb::drive::survey::SurveyProblem;
+use spinneb::drive::{Problem, relaxed_state};
 use spinneb::energy::{CustomEnergy, Evaluator};
 use spinneb::output::RelaxReport;
 use std::path::PathBuf;
@@ -104,21 +105,31 @@ impl Config {
         Ok(all.map(|spins| Buffer::spins(&Arc::new(spins), |spins| spins.as_slice(), None)).collect())
     }
 
-    /// The minimum-energy path.
-    fn run(&self, py: Python, threads: Option<usize>, progress: Option<Bound<PyAny>>) -> PyResult<Outcome> {
-        let loaded = self.loaded.clone();
+    /// The minimum-energy path; into a folder, if there is to be one.
+    #[pyo3(signature = (threads, progress, out, resume, force))]
+    fn run(
+        &self,
+        py: Python,
+        threads: Option<usize>,
+        progress: Option<Bound<PyAny>>,
+        out: Option<PathBuf>,
+        resume: bool,
+        force: bool,
+    ) -> PyResult<Outcome> {
+        let (loaded, recorded) = (self.loaded.clone(), Recorded { out, resume, force });
         let found = supervised(py, threads, progress.as_ref(), &self.trouble, move |ways| {
-            let mut problem = loaded.problem()?;
-            problem.control.obey(ways.switch.clone());
-            drive::run(&problem, &mut ways.teller)
+            recorded.make::<Problem>(&loaded, ways)
         })?;
         Ok(Outcome::new(self.loaded.clone(), found, self.trouble.clone()))
     }
 
-    /// Sees that the files of a run can be written to a folder.
-    fn reserve(&self, py: Python, dir: PathBuf, force: bool) -> PyResult<()> {
-        let reserved = self.loaded.reserve(&dir, &self.loaded.file_names(), force);
-        reserved.map(|_| ()).map_err(|e| raised(py, e))
+    /// Whether a folder holds the finished result already, of terms that nobody can have changed since.
+    fn is_finished(&self, py: Python, dir: PathBuf, landscape: bool) -> PyResult<bool> {
+        let loaded = &self.loaded;
+        let names = if landscape { SurveyProblem::names(loaded) } else { Problem::names(loaded) };
+        let finished =
+            loaded.custom.is_empty() && loaded.is_finished(&dir, &names, false).map_err(|e| raised(py, e))?;
+        Ok(finished)
     }
 
     /// The files of the states relaxed.
@@ -160,14 +171,21 @@ impl Config {
         Ok((dictionary(py, &files)?, states.collect()))
     }
 
-    /// All minima and saddles below an energy.
-    fn landscape(&self, py: Python, threads: Option<usize>, progress: Option<Bound<PyAny>>) -> PyResult<Landscape> {
-        let loaded = self.loaded.clone();
+    /// All minima and saddles below an energy; into a folder, if there is to be one.
+    #[pyo3(signature = (threads, progress, out, resume, force))]
+    fn landscape(
+        &self,
+        py: Python,
+        threads: Option<usize>,
+        progress: Option<Bound<PyAny>>,
+        out: Option<PathBuf>,
+        resume: bool,
+        force: bool,
+    ) -> PyResult<Landscape> {
+        let (loaded, recorded) = (self.loaded.clone(), Recorded { out, resume, force });
         let files = supervised(py, threads, progress.as_ref(), &self.trouble, move |ways| {
-            let mut asked = loaded.survey()?;
-            asked.problem.control.obey(ways.switch.clone());
-            let found = survey(&asked, &mut ways.teller)?;
-            loaded.survey_report(&found)?.files()
+            let found = recorded.make::<SurveyProblem>(&loaded, ways)?;
+            SurveyProblem::files(&loaded, &found)
         })?;
         Ok(Landscape { loaded: self.loaded.clone(), files })
     }

@@ -7,6 +7,7 @@ use spinneb::config::{Loaded, discard_leftovers};
 use spinneb::error::Error;
 use spinneb::files::disk::File;
 use spinneb::output::folder::{self, NewResult};
+use spinneb::record::Lock;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -19,22 +20,39 @@ pub fn dictionary<'py>(py: Python<'py>, files: &[File]) -> PyResult<Bound<'py, P
     Ok(all)
 }
 
-/// Puts files where the config's results go, with the care of the command line for what is there.
-pub fn save(loaded: &Loaded, dir: PathBuf, names: &[String], force: bool, files: &[File]) -> Result<(), Error> {
-    let mut force = force;
-    let _lock = match loaded.reserve(&dir, names, force)? {
-        Some(lock) => lock,
-        None => {
-            // a result of the same config, perhaps with other files, or other functions of its own terms
-            force = true;
-            let Some(lock) = loaded.reserve(&dir, names, force)? else { return Ok(()) };
-            lock
+/// Where the files of a config go, with the care of the command line for what is there.
+pub struct Place {
+    pub dir: PathBuf,
+    pub force: bool,
+    /// Nobody else writes there.
+    _lock: Option<Lock>,
+}
+
+impl Place {
+    /// Takes the folder; an error where files of these names cannot be written.
+    pub fn take(loaded: &Loaded, dir: PathBuf, names: &[String], force: bool) -> Result<Place, Error> {
+        let lock = loaded.reserve(&dir, names, force)?;
+        if lock.is_some() {
+            return Ok(Place { dir, force, _lock: lock });
         }
-    };
-    let source = loaded.source_name();
-    let new = NewResult { files, source: source.as_deref(), keep_earlier: !force, force };
-    folder::write_result(&dir, &new)?;
-    discard_leftovers(&dir)
+        // a result of the same config, perhaps with other files, or other functions of its own terms
+        let lock = loaded.reserve(&dir, names, true)?;
+        Ok(Place { dir, force: true, _lock: lock })
+    }
+
+    /// Puts files there in the place of what is.
+    pub fn write(&self, loaded: &Loaded, files: &[File]) -> Result<(), Error> {
+        let source = loaded.source_name();
+        let new = NewResult { files, source: source.as_deref(), keep_earlier: !self.force, force: self.force };
+        folder::write_result(&self.dir, &new).map(|_| ())
+    }
+}
+
+/// Puts files where the config's results go.
+pub fn save(loaded: &Loaded, dir: PathBuf, names: &[String], force: bool, files: &[File]) -> Result<(), Error> {
+    let place = Place::take(loaded, dir, names, force)?;
+    place.write(loaded, files)?;
+    discard_leftovers(&place.dir)
 }
 
 /// Places of the sites of a config.

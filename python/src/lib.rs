@@ -9,6 +9,7 @@ mod errors;
 mod handing;
 mod landscape;
 mod outcome;
+mod recorded;
 mod supervise;
 mod term;
 

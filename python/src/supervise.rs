@@ -2,11 +2,14 @@
 
 use crate::errors::raised;
 use crate::term::Trouble;
+use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use spinneb::cli::check_threads;
+use spinneb::config::Say;
 use spinneb::drive::{HistoryRow, Observer};
 use spinneb::error::{Error, Result};
+use std::ffi::CString;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -22,6 +25,8 @@ const TELL: Duration = Duration::from_millis(50);
 enum News {
     Stage(String),
     Iteration(HistoryRow),
+    /// What the user should know whether or not the progress is told.
+    Note(String),
 }
 
 /// What the work is given: the switch that stops it, and who hears of its progress.
@@ -38,6 +43,14 @@ pub struct Teller {
 }
 
 impl Teller {
+    /// What warns the user.
+    pub fn speaker(&self) -> Say {
+        let to = self.to.clone();
+        Box::new(move |words| {
+            let _ = to.send(News::Note(words.into()));
+        })
+    }
+
     fn tell(&self, news: News) {
         if self.wanted {
             // nobody listens any more to a run that is to stop
@@ -111,6 +124,11 @@ fn listen(py: Python, mut from: Receiver<News>, progress: Option<&Bound<PyAny>>)
                 None
             }
             Ok(News::Iteration(row)) => Some(row),
+            Ok(News::Note(words)) => {
+                let words = CString::new(words).unwrap_or_default();
+                PyErr::warn(py, &py.get_type::<PyUserWarning>(), &words, 2)?;
+                continue;
+            }
             Err(RecvTimeoutError::Timeout) => continue,
             Err(RecvTimeoutError::Disconnected) => return Ok(()),
         };

@@ -104,6 +104,61 @@ def test_ctrl_c_ends_a_run_of_1e5_spins_soon(wait):
     assert took < 4.0, took
 
 
+RECORDED = """
+import signal, sys, time
+signal.signal(signal.SIGINT, signal.default_int_handler)
+import spinneb as sn
+out, resume = sys.argv[1], sys.argv[2] == "resume"
+system = sn.System(sn.chain(1000), [sn.exchange(J=["10 meV"]), sn.anisotropy(K="4e-4 meV")])
+def tell(news):
+    if news.get("iteration", 0) >= 1 and not told and not resume:
+        told.append(1)
+        print("running", flush=True)
+        time.sleep(30)
+told = []
+try:
+    found = sn.barrier(system, sn.uniform("z"), sn.uniform("-z"), images=20, progress=tell, out=out, resume=resume)
+    print("finished", found.summary["work"]["force_evaluations"], repr(found.barrier_meV["forward"]))
+except KeyboardInterrupt as stop:
+    print("interrupted", getattr(stop, "__notes__", None))
+"""
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals of another kind")
+def test_what_was_interrupted_goes_on_from_its_folder(tmp_path):
+    def started(place, how):
+        words = [sys.executable, "-W", "error", "-c", RECORDED, str(place), how]
+        return subprocess.Popen(words, stdout=subprocess.PIPE, text=True)
+
+    process = started(tmp_path / "x", "anew")
+    assert process.stdout.readline() == "running\n"
+    process.send_signal(signal.SIGINT)
+    said = process.communicate(timeout=60)[0]
+    assert said.startswith("interrupted"), said
+    assert sys.version_info < (3, 11) or "resume=True goes on from the checkpoint in" in said
+    assert (tmp_path / "x" / "checkpoint" / "journal").is_file() and not (tmp_path / "x" / "summary.json").exists()
+    # the one that goes on warns of that it does
+    words = [sys.executable, "-c", RECORDED, str(tmp_path / "x"), "resume"]
+    on = subprocess.run(words, capture_output=True, text=True, timeout=300)
+    assert "going on from the checkpoint, with" in on.stderr, on.stderr
+    assert not (tmp_path / "x" / "checkpoint").exists()
+    assert sn.load(tmp_path / "x").certified
+    # what is finished is read, and is the outcome of a run without interruption
+    again = subprocess.run(words, capture_output=True, text=True, timeout=300)
+    whole = subprocess.run([*words[:3], str(tmp_path / "y"), "resume"], capture_output=True, text=True, timeout=300)
+    assert on.stdout == again.stdout == whole.stdout and on.stdout.startswith("finished"), (on, again, whole)
+
+
+def test_a_landscape_is_written_and_read_where_it_is_finished(tmp_path):
+    system = sn.System(sn.chain(6), [sn.exchange(J=["10 meV"]), sn.anisotropy(K="0.5 meV")])
+    found = sn.landscape(system, effort="quick", out=tmp_path)
+    assert not (tmp_path / "checkpoint").exists()
+    again = sn.landscape(system, effort="quick", out=tmp_path, resume=True)
+    assert {**again.summary, "manifest": None} == {**found.summary, "manifest": None}
+    with pytest.raises(ValueError, match="give it as out"):
+        sn.landscape(system, resume=True)
+
+
 def test_import_is_quick():
     code = (
         "import time, numpy; start = time.process_time(); import spinneb; "

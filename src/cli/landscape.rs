@@ -2,11 +2,10 @@
 
 use super::points::{ShareOf, share};
 use super::progress::Progress;
-use super::run::{Keeping, checkpoint};
 use super::signals::Signals;
 use super::threads::start_threads;
 use super::{EVERY, Interval, Looking, UNFINISHED, interval, note, report};
-use crate::config::{Loaded, discard_leftovers, load_landscape};
+use crate::config::{Keeping, Loaded, discard_leftovers, load_landscape};
 use crate::drive::survey::{Survey, survey};
 use crate::error::Error;
 use crate::files::disk;
@@ -114,8 +113,8 @@ pub fn landscape(arguments: &Arguments) -> Result<u8> {
         ));
     }
     let mut progress = Progress::new(name, arguments.quiet);
-    let keeping = Keeping { every: arguments.checkpoint_every, resume: arguments.resume, force: arguments.force };
-    if let Some(checkpoint) = checkpoint(&keeping, &loaded, &directory, &progress)? {
+    let keeping = Keeping { every: arguments.checkpoint_every.0, resume: arguments.resume, force: arguments.force };
+    if let Some(checkpoint) = loaded.checkpoint(&directory, &keeping, || progress.speaker())? {
         asked.problem.control.record(Box::new(checkpoint));
     }
     let found = match survey(&asked, &mut progress) {

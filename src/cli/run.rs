@@ -4,8 +4,8 @@ pub(super) use super::progress::Progress;
 use super::signals::Signals;
 use super::threads::start_threads;
 use super::write::{Earlier, write};
-use super::{Interval, Run, UNFINISHED, USAGE, note, report, worse};
-use crate::config::{Loaded, VERSION, discard_leftovers, load};
+use super::{Run, UNFINISHED, USAGE, note, report, worse};
+use crate::config::{Keeping, Loaded, VERSION, discard_leftovers, load};
 use crate::drive;
 use crate::error::Error;
 use crate::output::{StoppedRun, Summary, Told, partial_files, write_partial};
@@ -16,19 +16,9 @@ use std::collections::HashMap;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// How a run is recorded.
-pub(super) struct Keeping {
-    /// How often.
-    pub(super) every: Interval,
-    /// Go on from what is there.
-    pub(super) resume: bool,
-    /// Start anew where that cannot be.
-    pub(super) force: bool,
-}
-
 impl Run {
     fn keeping(&self) -> Keeping {
-        Keeping { every: self.checkpoint_every, resume: self.resume, force: self.force }
+        Keeping { every: self.checkpoint_every.0, resume: self.resume, force: self.force }
     }
 }
 
@@ -116,7 +106,7 @@ pub(super) fn run_one(arguments: &Run, signals: &Signals, loaded: &Loaded, direc
         say(&format!("{name}: the file system of {place} has no locks: see to it that no other run writes there"));
     }
     let mut progress = Progress::new(name, arguments.quiet);
-    if let Some(checkpoint) = checkpoint(&arguments.keeping(), loaded, directory, &progress)? {
+    if let Some(checkpoint) = loaded.checkpoint(directory, &arguments.keeping(), || progress.speaker())? {
         problem.control.record(Box::new(checkpoint));
     }
     let outcome = match drive::run(&problem, &mut progress) {
@@ -169,31 +159,6 @@ pub(super) fn run_one(arguments: &Run, signals: &Signals, loaded: &Loaded, direc
         say(&format!("{name}: {line}"));
     }
     print(arguments, name, directory)
-}
-
-/// Where the run is recorded, if that is asked for, with what it goes on from. Whether it is or not, the checkpoint of another run gives
-/// way only by force.
-pub(super) fn checkpoint(
-    keeping: &Keeping,
-    loaded: &Loaded,
-    directory: &Path,
-    progress: &Progress,
-) -> Result<Option<Checkpoint>> {
-    let every = keeping.every.0;
-    let new = || Checkpoint::new(directory, VERSION, &loaded.sha256, every.unwrap_or_default(), progress.speaker());
-    let mut say = progress.speaker();
-    let found = if keeping.resume && every.is_some() { new().resume() } else { new().anew() };
-    let checkpoint = match found {
-        Err(e) if keeping.force => {
-            say(&format!("starting anew: {e}"));
-            new()
-        }
-        found => found?,
-    };
-    if !checkpoint.is_empty() {
-        say(&format!("going on from the checkpoint, with {} finished steps", checkpoint.len()));
-    }
-    Ok(every.map(|_| checkpoint))
 }
 
 /// What is known of a run that was stopped.

@@ -7,6 +7,7 @@ mod built;
 pub mod estimate;
 mod inputs;
 mod json;
+mod keeping;
 mod landscape;
 pub mod library;
 mod load;
@@ -34,6 +35,7 @@ pub mod sweep;
 pub mod text;
 
 pub use built::{States, expected_images, needed_bytes};
+pub use keeping::{Keeping, Say};
 pub use landscape::{GroupConfig, LandscapeConfig};
 pub use load::{Loaded, load, load_landscape, load_states, load_text};
 pub use material::{Material, MaterialChoice, Reference};

@@ -15,9 +15,11 @@ use crate::geometry::{Direction, Vector};
 use crate::landscape::{Doubt, Landscape, Minimum, Pass};
 use crate::path::guess::{FirstGuess, GuessContext, Rotation};
 use crate::path::is_within;
+use crate::rates::LEAST_BARRIER;
 use crate::sphere::SAME;
 use crate::spins::Spins;
 use crate::stationary::{ALIKE, LOWER, RELAXED, Relaxed, both_by_factors, relax_to_minimum};
+use crate::units::K_B;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -142,10 +144,12 @@ impl<'a, 'o> Run<'a, 'o> {
         let beside = std::iter::once(&first.before).chain(links.iter().map(|link| &link.after));
         let mut minima: Vec<usize> = beside.map(|minimum| self.land.add_minimum(minimum)).collect();
         let mut saddles: Vec<f64> = links.iter().map(|link| self.land.height_mev(link.saddle.spins())).collect();
-        let forward = self.land.lowest_exit_mev(&minima, &saddles);
+        // what the hottest temperature does not hold apart is one state of the rates
+        let within_mev = self.problem.rates.as_ref().map_or(0.0, |rates| LEAST_BARRIER * K_B * rates.hottest_k());
+        let forward = self.land.lowest_exit_mev(&minima, &saddles, within_mev);
         minima.reverse();
         saddles.reverse();
-        [forward, self.land.lowest_exit_mev(&minima, &saddles)]
+        [forward, self.land.lowest_exit_mev(&minima, &saddles, within_mev)]
     }
 
     /// The first of the paths in full, or another one that could be proven where it could not or that is lower; and all others.

@@ -185,7 +185,8 @@ pub fn search(
         let wanted = aim.quiet(settings.effort, land.edges().len() > passes, land);
         let spent =
             h.evaluated().since(before).part_of(settings.most).max(land.kinds() as f64 / settings.most_kinds as f64);
-        done.spent = spent >= 1.0;
+        // what comes to its own stop has not missed the work that it has used up
+        done.spent = spent >= 1.0 && done.quiet < wanted;
         tell(&Standing { done, wanted, spent, known: [land.minima().len(), land.edges().len()] });
         if done.quiet >= wanted || done.spent {
             break;

@@ -18,8 +18,11 @@ impl Lattice {
 
     /// Width and thickness of every cell (nm); an error where they are not given.
     pub fn known_sections_nm(&self) -> Result<&[[f64; 2]]> {
-        let missing =
-            || Error::invalid("", "a continuum quantity needs the lattice's \"cross_section\" ([\"20 nm\", \"5 nm\"])");
+        let missing = || {
+            let message = "a continuum quantity needs cells: the lattice \"grid\", or a \"chain\" with its \"cross_section\" \
+                           ([\"20 nm\", \"5 nm\"])";
+            Error::invalid("", message)
+        };
         self.sections_nm.as_deref().ok_or_else(missing)
     }
 

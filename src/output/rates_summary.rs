@@ -18,7 +18,7 @@ use std::collections::BTreeMap;
 pub(super) struct RateEntry {
     pub saddle: usize,
     pub direction: Way,
-    barrier_meV: Option<Number>,
+    pub barrier_meV: Option<Number>,
     pub htst_prefactor_Hz: Option<Number>,
     pub langer_prefactor_Hz: Option<Number>,
     prefactor_temperature_K: Option<Number>,

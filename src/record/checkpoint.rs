@@ -68,10 +68,29 @@ fn begun(file: &File) -> io::Result<Option<Begun<'_>>> {
     Ok(identity.map(|identity| (frames, identity)))
 }
 
-/// Check value of the running program, also where its file has been replaced meanwhile.
+/// The library of another program that this code is in, such as Python's, if it is in one and the system tells.
+fn library() -> Option<PathBuf> {
+    let here = library as *const () as usize;
+    let maps = fs::read("/proc/self/maps").ok()?;
+    // begin-end permissions offset device inode path
+    let holds = |line: &&str| {
+        let range = line.split_once(' ').and_then(|(range, _)| range.split_once('-'));
+        let [begin, end] = range.map_or([None; 2], |(a, b)| [a, b].map(|x| usize::from_str_radix(x, 16).ok()));
+        begin.zip(end).is_some_and(|(begin, end)| (begin..end).contains(&here))
+    };
+    let maps = String::from_utf8_lossy(&maps);
+    let path = maps.lines().find(holds).and_then(|line| line.find('/').map(|k| PathBuf::from(&line[k..])))?;
+    (path != fs::read_link("/proc/self/exe").ok()?).then_some(path)
+}
+
+/// Check value of the running program, or of the library that it is, also where the program's file has been replaced meanwhile.
 fn program() -> io::Result<u32> {
     let running = Path::new("/proc/self/exe");
-    let path = if running.exists() { running.into() } else { std::env::current_exe()? };
+    let path = match library() {
+        Some(path) => path,
+        None if running.exists() => running.into(),
+        None => std::env::current_exe()?,
+    };
     let mut hash = Hasher::new();
     let mut file = File::open(path)?;
     let mut some = vec![0; 1 << 20];

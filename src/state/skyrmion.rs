@@ -26,7 +26,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use std::f64::consts::PI;
 
-/// A skyrmion leaves no trace where no spin is turned by this share of 180°.
+/// A skyrmion leaves no trace where no spin is turned by this share of 180°, and nothing around it where none is by less than all but it.
 const NO_TRACE: f64 = 0.01;
 /// Narrower than this (spacings) a wall is abrupt.
 const NARROWEST: f64 = 0.2;
@@ -159,6 +159,13 @@ impl StateBuilder for Skyrmion {
             let message = "a skyrmion there lies wholly outside the lattice or between its sites, and leaves no trace in it: move it \
                            inside or make it larger, or write {\"uniform\": {\"direction\": […]}}";
             return Err(Error::invalid(key, message));
+        }
+        if theta(placed.around.furthest(), radius, width) < NO_TRACE * PI {
+            let message = format!(
+                "a skyrmion of {radius:.1} spacings is larger than the lattice: all spins are those of its core; make it smaller, or \
+                 write {{\"uniform\": {{\"direction\": […]}}}}"
+            );
+            return Err(Error::invalid("radius", message));
         }
         Ok(placed.vectors(radius, width))
     }

@@ -5,9 +5,10 @@ from __future__ import annotations
 import json
 import os
 import sys
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, Literal, Union
+from typing import Any, Literal, Union, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -37,6 +38,7 @@ def run(
     progress: Progress = None,
     set: Mapping[str, Any] | None = None,
     force: bool = False,
+    resume: bool = False,
 ) -> Result:
     """The minimum-energy path that a config asks for: what ``spinneb run`` does, to the bit.
 
@@ -46,7 +48,8 @@ def run(
         A file, a dictionary as in such a file, or a :class:`System` with its two states. Files that a dictionary names are looked
         for in the working directory.
     out
-        Folder for the files of the result. An earlier result of another config there is refused, as on the command line.
+        Folder for the files of the result. An earlier result of another config there is refused, as on the command line. What was
+        computed when the run is interrupted stays there, in a checkpoint.
     threads
         So many; one for each core if left out. Results do not depend on it.
     progress
@@ -56,6 +59,8 @@ def run(
         Values of keys in place of the config's: ``{"path.images": 41}``.
     force
         Replace what is in ``out``.
+    resume
+        Go on from the checkpoint in ``out``, or read the finished result of this config that is there; without either, start anew.
 
     Raises
     ------
@@ -67,13 +72,11 @@ def run(
         Ctrl-C, within a second.
     """
     core = _config(config, "run", set)
-    if out is not None:
-        core.reserve(os.fspath(out), force)
-    with _telling(progress) as tell:
-        result = Result(core.run(threads, tell))
-    if out is not None:
-        result.save(out, force=force)
-    return result
+    place = _place(out, resume)
+    if place is not None and resume and core.is_finished(place, False):
+        return cast(Result, load(place))
+    with _telling(progress) as tell, _recording(place):
+        return Result(core.run(threads, tell, place, resume, force))
 
 
 def barrier(
@@ -90,6 +93,7 @@ def barrier(
     threads: int | None = None,
     progress: Progress = None,
     force: bool = False,
+    resume: bool = False,
     **options: Any,
 ) -> Result:
     """The minimum-energy path between two states of a system, with its barrier and saddles.
@@ -111,7 +115,7 @@ def barrier(
         How long lower passes are looked for.
     temperatures
         For rates and lifetimes, ``result.rates``: numbers in K, or quantities; one or several.
-    out, threads, progress, force
+    out, threads, progress, force, resume
         As in :func:`run`.
     options
         Any other key of a config: ``neb={"tolerance": 1e-8}``, ``rates={"damping": 0.5, …}``.
@@ -130,7 +134,7 @@ def barrier(
     if relax_ends is not None:
         options["relax_ends"] = relax_ends
     changed = {"initial": system.initial if initial is None else initial, "final": system.final if final is None else final}
-    return run(system.replaced(**changed, **options), out=out, threads=threads, progress=progress, force=force)
+    return run(system.replaced(**changed, **options), out=out, threads=threads, progress=progress, force=force, resume=resume)
 
 
 def relax(
@@ -191,9 +195,12 @@ def landscape(
     states: Sequence[AnyState] = (),
     groups: Mapping[str, Any] | None = None,
     temperatures: float | str | Iterable[float | str] | None = None,
+    out: str | os.PathLike[str] | None = None,
     threads: int | None = None,
     progress: Progress = None,
     set: Mapping[str, Any] | None = None,
+    force: bool = False,
+    resume: bool = False,
 ) -> Landscape:
     """All minima and saddles below an energy, how they are joined, and how long states live.
 
@@ -211,7 +218,7 @@ def landscape(
         Groups of minima for lifetimes, by name: ``{"up": {"axis": [0, 0, 1], "from": 0.5}}``.
     temperatures
         For lifetimes: numbers in K, or quantities; one or several.
-    threads, progress, set
+    out, threads, progress, set, force, resume
         As in :func:`run`.
     """
     if isinstance(states, (str, Mapping)):
@@ -225,8 +232,11 @@ def landscape(
     }
     chosen = {f"landscape.{key}": value for key, value in own.items() if value is not None}
     core = _config(config, "landscape", {**chosen, **(set or {})})
-    with _telling(progress) as tell:
-        return Landscape(core.landscape(threads, tell))
+    place = _place(out, resume)
+    if place is not None and resume and core.is_finished(place, True):
+        return cast(Landscape, load(place))
+    with _telling(progress) as tell, _recording(place):
+        return Landscape(core.landscape(threads, tell, place, resume, force))
 
 
 def rates(
@@ -307,6 +317,25 @@ def _with_files(config: dict[str, Any], folder: str) -> dict[str, Any]:
     file = os.path.join(folder, _GUESS)
     np.save(file, as_guess(guess))
     return {**config, "path": {**path, "guess": {"file": {"path": file}}}}  # type: ignore[dict-item]
+
+
+def _place(out: str | os.PathLike[str] | None, resume: bool) -> str | None:
+    if out is None and resume:
+        raise ValueError("resume=True goes on from what is in a folder: give it as out")
+    return None if out is None else os.fspath(out)
+
+
+@contextmanager
+def _recording(place: str | None) -> Iterator[None]:
+    """Tells who interrupts what is recorded in a folder how it goes on."""
+    try:
+        yield
+    except KeyboardInterrupt as stop:
+        if place is not None and os.path.isdir(os.path.join(place, "checkpoint")) and hasattr(stop, "add_note"):
+            stop.add_note(f"resume=True goes on from the checkpoint in {place}")
+        raise
+
+
 def _kelvin(temperatures: float | str | Iterable[float | str]) -> list[str]:
     several = [temperatures] if np.ndim(temperatures) == 0 else temperatures  # type: ignore[arg-type]
     return [value if isinstance(value, str) else f"{float(value)!r} K" for value in several]  # type: ignore[arg-type,union-attr]

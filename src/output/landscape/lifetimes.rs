@@ -4,7 +4,7 @@
 use super::LandscapeReport;
 use crate::drive::survey::Lifetime;
 use crate::error::Result;
-use crate::output::canvas::{Canvas, LinePlot, Marker, Series, turns};
+use crate::output::canvas::{Canvas, GREY, LinePlot, Marker, Series, turns};
 
 /// Times that are drawn (s).
 const DRAWN_S: std::ops::RangeInclusive<f64> = 1e-15..=1e25;
@@ -27,13 +27,18 @@ pub(super) fn draw(report: &LandscapeReport) -> Result<Option<Canvas>> {
     pairs.sort_by_key(|(_, to)| to.is_none());
     let mut plot = LinePlot::new("1000 K / T", "Mean time (s)").log_y().look(&report.look);
     plot.legend_above = true;
+    let mut left_out = 0;
     for (from, to) in pairs {
         let own = |r: &&Lifetime| r.from == from && r.to.as_deref() == to;
         let time = |r: &Lifetime| r.ln_time_s[1].or(r.ln_time_s[0]).map(libm::exp);
         let point = |r: &Lifetime| Some((1000.0 / r.temperature_k, time(r).filter(|t| DRAWN_S.contains(t))?));
         let mut points: Vec<(f64, f64)> = lifetimes.rows.iter().filter(own).filter_map(point).collect();
         points.sort_by(|p, q| p.0.total_cmp(&q.0));
-        if points.is_empty() || plot.series.len() == LINES {
+        if points.is_empty() {
+            continue;
+        }
+        if plot.series.len() == LINES {
+            left_out += 1;
             continue;
         }
         let words = to.map_or_else(|| format!("out of {from}"), |to| format!("{from} to {to}"));
@@ -47,5 +52,9 @@ pub(super) fn draw(report: &LandscapeReport) -> Result<Option<Canvas>> {
     let lines: Vec<Vec<(f64, f64)>> = plot.series.iter().map(|s| s.points.clone()).collect();
     let turns = turns(&lines.iter().map(Vec::as_slice).collect::<Vec<_>>());
     plot.series = plot.series.into_iter().zip(turns).map(|(series, turn)| series.in_turn(turn, None)).collect();
+    if left_out > 0 {
+        let place = plot.series[0].points[..1].to_vec();
+        plot.series.push(Series::line(place).label(format!("{left_out} more in lifetimes.csv")).colour(GREY));
+    }
     plot.draw().map(Some)
 }

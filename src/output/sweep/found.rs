@@ -7,6 +7,7 @@ use crate::output::folder::stored_result;
 use crate::output::head::Head;
 use crate::output::summary::{Saddle, Summary};
 use crate::rates::Way;
+use crate::stationary::ALIKE;
 use std::path::Path;
 
 /// What is there for a point of a sweep.
@@ -54,7 +55,7 @@ pub struct Found {
     pub saddles: usize,
     /// Negative eigenvalues of the highest of them, where counted.
     pub negative_modes: Option<usize>,
-    /// Prefactors over the highest saddle (Hz), where rates were asked for.
+    /// Prefactors of the barriers (Hz), where rates were asked for: those that the saddles next to the ends have if they are the highest.
     pub prefactors: Option<Prefactors>,
     /// How long the states live, forward and then backward, where rates were asked for.
     pub times: Vec<Times>,
@@ -105,9 +106,16 @@ pub fn look(dir: &Path, index: &SweepIndex, point: usize) -> Result<PointState> 
 fn found(summary: Summary) -> Found {
     let above = |s: &Saddle| s.energy_above_initial_meV.0;
     let highest = (summary.saddles.iter().enumerate()).max_by(|(_, a), (_, b)| above(a).total_cmp(&above(b)));
+    let barrier = summary.barrier_meV.map(Barrier::from);
+    // what leaves an end over a lower saddle, or over none of its own, is no prefactor of the barrier
     let rate = |way: Way| {
+        let (leaving, mev) = match way {
+            Way::Forward => (0, barrier?.forward_mev),
+            Way::Backward => (summary.saddles.len().checked_sub(1)?, barrier?.backward_mev),
+        };
         let mut rates = summary.rates.iter().flatten();
-        rates.find(|r| r.direction == way && Some(r.saddle) == highest.map(|(k, _)| k))
+        let own = rates.find(|r| r.direction == way && r.saddle == leaving)?;
+        own.barrier_meV.filter(|b| (b.0 - mev).abs() <= ALIKE * mev.abs()).map(|_| own)
     };
     let both = Way::BOTH.map(rate);
     let prefactors = summary.rates.as_ref().map(|_| Prefactors {
@@ -127,7 +135,7 @@ fn found(summary: Summary) -> Found {
     let times = times.collect();
     Found {
         times,
-        barrier: summary.barrier_meV.map(Barrier::from),
+        barrier,
         saddles: summary.saddles.len(),
         negative_modes: highest.and_then(|(_, s)| s.negative_modes),
         prefactors,
