@@ -23,7 +23,9 @@ pub fn raised(py: Python, error: Error) -> PyErr {
         Error::Io { source, path } if source.raw_os_error().is_some() => {
             // the system's number makes it FileNotFoundError, PermissionError …
             let number = source.raw_os_error();
-            let text = io::Error::from(source.kind()).to_string();
+            let own = io::Error::from(source.kind()).to_string();
+            let told = py.import("os").and_then(|os| os.call_method1("strerror", (number,))?.extract::<String>());
+            let text = told.unwrap_or(own);
             let class = py.import("builtins").and_then(|builtins| builtins.getattr("OSError"));
             match class.and_then(|class| class.call1((number, text, path))) {
                 Ok(value) => PyErr::from_value(value),

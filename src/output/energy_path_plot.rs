@@ -11,6 +11,7 @@ use super::canvas::{
 use super::{Certainty, Plot, PlotData};
 use crate::drive::{Barrier, Outcome};
 use crate::error::{Error, Result};
+use crate::stationary::ALIKE;
 
 /// The energy path as a figure.
 #[derive(Clone, Copy, Debug)]
@@ -67,7 +68,7 @@ impl EnergyPath {
         let mev = self.barrier?.forward_mev;
         let off = |p: &(f64, f64)| (p.1 - mev).abs();
         let nearest = |points: &[(f64, f64)]| points.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b)));
-        let saddle = nearest(&self.saddles).filter(|p| off(p) <= 1e-9 * mev.abs());
+        let saddle = self.saddles.iter().copied().find(|p| off(p) <= ALIKE * mev.abs());
         saddle.or_else(|| nearest(&self.images)).map(|p| (p.0, mev))
     }
 
@@ -194,13 +195,18 @@ const FEW: usize = 3;
 /// Marks of saddles are at least so far apart, in lengths of the path: two of their widths here, one beside the spins.
 const APART: f64 = 0.07;
 
+/// The first of those points of a path, (reaction coordinate, energy), that are as high as the highest, to rounding.
+pub(super) fn first_of_the_highest(points: &[(f64, f64)]) -> Option<usize> {
+    let highest = points.iter().map(|p| p.1).reduce(f64::max)?;
+    let lowest = points.iter().map(|p| p.1).fold(0.0, f64::min);
+    points.iter().position(|p| highest - p.1 <= ALIKE * (highest - lowest))
+}
+
 /// The saddles that have a mark: the highest, and to both sides of it each that has room for one beside the last.
 pub(super) fn marked_saddles(saddles: &[(f64, f64)], length: f64) -> Vec<(f64, f64)> {
     let mut sorted = saddles.to_vec();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let Some(top) = (0..sorted.len()).reduce(|a, b| if sorted[b].1 > sorted[a].1 { b } else { a }) else {
-        return sorted;
-    };
+    let Some(top) = first_of_the_highest(&sorted) else { return sorted };
     let mut marked = vec![sorted[top]];
     let (before, after) = sorted.split_at(top);
     for side in [&mut before.iter().rev() as &mut dyn Iterator<Item = _>, &mut after.iter()] {
@@ -427,6 +433,11 @@ mod tests {
         assert_eq!(marked, [2.0, 9.0, 16.0, 23.0, 30.0, 37.0, 44.0, 51.0, 58.0, 65.0, 72.0, 79.0, 86.0, 93.0, 100.0]);
         assert_eq!(marked_saddles(&[(8.0, 3.0), (1.0, 2.0)], 10.0), [(1.0, 2.0), (8.0, 3.0)]);
         assert_eq!(marked_saddles(&[], 10.0), []);
+        // of two that differ by rounding all figures take the first
+        assert_eq!(
+            first_of_the_highest(&[(0.0, 0.0), (1.0, 2.0), (2.0, 1.0), (3.0, 2.0 + 1e-15), (4.0, 0.0)]),
+            Some(1)
+        );
     }
 
     fn assert_levels(path: &EnergyPath, levels: &[f64]) {

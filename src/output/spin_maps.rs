@@ -10,6 +10,7 @@ use super::canvas::{
     Align, BLACK, Canvas, Colour, GREY, LABEL_PT, LIGHT_GREY, Look, MM, Rect, SMALL_PT, THIN_PT, Text, WHITE,
     direction, mix,
 };
+use super::energy_path_plot::first_of_the_highest;
 use super::site_cells::SiteCell;
 use crate::error::{Error, Result};
 use crate::field::Components;
@@ -163,7 +164,7 @@ fn maps(points: &[(f64, f64)], images: usize) -> Vec<(usize, &'static str)> {
     if points.len() != images || images < 3 {
         return [(0, "Initial"), (last, "Final")].into_iter().take(images.min(2)).collect();
     }
-    let top = (0..images).max_by(|i, j| points[*i].1.total_cmp(&points[*j].1)).unwrap_or(0);
+    let top = first_of_the_highest(points).unwrap_or(0);
     let half = |a: usize, b: usize| {
         let middle = 0.5 * (points[a].0 + points[b].0);
         (a..=b).min_by(|i, j| (points[*i].0 - middle).abs().total_cmp(&(points[*j].0 - middle).abs())).unwrap_or(a)
