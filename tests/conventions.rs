@@ -162,3 +162,29 @@ fn micromagnetic_codes_have_the_energies_of_a_config_with_the_signs_of_the_table
         }
     }
 }
+
+#[test]
+fn a_dmi_along_a_direction_between_two_kinds_of_sites_acts_from_the_first_kind_to_the_second() {
+    let energy = |between: &str| {
+        let config = format!(
+            r#"{{"material": {{"name": "m", "moment": "1 mu_B", "energy": [{{"exchange": {{"J": ["1 meV"]}}}},
+                {{"dmi": {{"D": "0.7 meV", "direction": [0, 0.6, 0.8], "between": {between}}}}}]}},
+            "lattice": {{"chain": {{"sites": 6}}}}, "initial": {{"uniform": {{"direction": [0, 0, 1]}}}},
+            "final": {{"uniform": {{"direction": [0, 0, -1]}}}}}}"#
+        );
+        let problem = load_text(Path::new("between.json"), config).expect("a config").problem().expect("a problem");
+        let m = random(6, 3);
+        let exchange: f64 = m.windows(2).map(|pair| -dot(pair[0], pair[1])).sum();
+        let components: Vec<f64> = (0..3).flat_map(|c| m.iter().map(move |v| v[c])).collect();
+        problem.hamiltonian.energy_mev(&components) - exchange
+    };
+    // from the odd sites to the even ones: each of these is left in both directions of the chain
+    let m = random(6, 3);
+    let expected: f64 = [1, 3, 5]
+        .iter()
+        .flat_map(|odd| [odd - 1, odd + 1].into_iter().filter(|even| *even < 6).map(move |even| (*odd, even)))
+        .map(|(from, to)| 0.7 * dot([0.0, 0.6, 0.8], cross(m[from], m[to])))
+        .sum();
+    let [there, back] = ["[[1, 3, 5], [0, 2, 4]]", "[[0, 2, 4], [1, 3, 5]]"].map(energy);
+    assert!((there - expected).abs() < 1e-12 && (back + expected).abs() < 1e-12, "{there} {back} {expected}");
+}
