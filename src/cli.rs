@@ -24,7 +24,7 @@ mod write;
 pub use check::report_of;
 pub use threads::check_threads;
 
-use crate::config::rates;
+use crate::config::{Keeping, rates};
 use crate::error::Error;
 use crate::files::disk::Kind;
 use crate::output::Picture;
@@ -33,6 +33,7 @@ use crate::rates::Theory;
 use crate::units::{Temperature, Time};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::ffi::OsString;
+use std::fmt;
 use std::io::{self, ErrorKind, Write};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -246,7 +247,7 @@ pub(crate) struct Run {
     /// How often a checkpoint is written; "off" writes none
     ///
     /// The first one is written after this time: shorter runs write none, unless they are interrupted.
-    #[arg(long, value_name = "TIME", default_value = EVERY, value_parser = interval)]
+    #[arg(long, value_name = "TIME", default_value_t, value_parser = interval)]
     pub checkpoint_every: Interval,
 }
 
@@ -314,12 +315,18 @@ pub(crate) struct Rate {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Interval(pub Option<Duration>);
 
-/// What it is if nothing is said.
-const EVERY: &str = "30 s";
-
 impl Default for Interval {
     fn default() -> Interval {
-        interval(EVERY).unwrap_or(Interval(None))
+        Interval(Keeping::default().every)
+    }
+}
+
+impl fmt::Display for Interval {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self.0 {
+            Some(every) => write!(f, "{} s", every.as_secs_f64()),
+            None => f.write_str("off"),
+        }
     }
 }
 

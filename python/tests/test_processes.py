@@ -126,11 +126,8 @@ except KeyboardInterrupt as stop:
 
 @pytest.mark.skipif(os.name == "nt", reason="signals of another kind")
 def test_what_was_interrupted_goes_on_from_its_folder(tmp_path):
-    def started(place, how):
-        words = [sys.executable, "-W", "error", "-c", RECORDED, str(place), how]
-        return subprocess.Popen(words, stdout=subprocess.PIPE, text=True)
-
-    process = started(tmp_path / "x", "anew")
+    anew = [sys.executable, "-W", "error", "-c", RECORDED, str(tmp_path / "x"), "anew"]
+    process = subprocess.Popen(anew, stdout=subprocess.PIPE, text=True)
     assert process.stdout.readline() == "running\n"
     process.send_signal(signal.SIGINT)
     said = process.communicate(timeout=60)[0]

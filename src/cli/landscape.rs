@@ -4,7 +4,7 @@ use super::points::{ShareOf, share};
 use super::progress::Progress;
 use super::signals::Signals;
 use super::threads::start_threads;
-use super::{EVERY, Interval, Looking, UNFINISHED, interval, note, report};
+use super::{Interval, Looking, UNFINISHED, interval, note, report};
 use crate::config::{Keeping, Loaded, discard_leftovers, load_landscape};
 use crate::drive::survey::{Survey, survey};
 use crate::error::Error;
@@ -81,7 +81,7 @@ pub struct Arguments {
     pub resume: bool,
 
     /// How often a checkpoint is written; \"off\" writes none
-    #[arg(long, value_name = "TIME", default_value = EVERY, value_parser = interval)]
+    #[arg(long, value_name = "TIME", default_value_t, value_parser = interval)]
     pub checkpoint_every: Interval,
 }
 

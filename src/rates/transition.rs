@@ -98,13 +98,11 @@ fn transition(
     // of all saddles onward, and back over all but the last: what the passage hangs on
     let both = |theory: Theory, t: f64| -> Option<[Vec<f64>; 2]> {
         let parted = parting(t);
-        let (last, others) = parted.split_last().filter(|_| doubt.is_none())?;
+        let (_, but_last) = parted.split_last().filter(|_| doubt.is_none())?;
         let ln_rates = |rates: &[&SaddleRate], side: usize, saddles: &[usize]| -> Option<Vec<f64>> {
             saddles.iter().map(|i| ln_rate(rates, side, *i, theory, t)).collect()
         };
-        let mut on = ln_rates(&onward, leaving, others)?;
-        on.push(ln_rate(&onward, leaving, *last, theory, t)?);
-        Some([on, ln_rates(&back, returning, others)?])
+        Some([ln_rates(&onward, leaving, &parted)?, ln_rates(&back, returning, but_last)?])
     };
     let escape = |theory: Theory, t: f64| -> Option<f64> {
         let first = *parting(t).first().filter(|_| doubt.is_none())?;
