@@ -11,7 +11,7 @@ use spinneb::lattice::Lattice;
 use spinneb::path::Path;
 use spinneb::path::guess::{GuessSpec, PathFile};
 use spinneb::spins::Spins;
-use spinneb::stationary::{Spectrum, State, descend, refine, relax_to_minimum};
+use spinneb::stationary::{Downhill, Spectrum, State, descend, refine, relax_to_minimum};
 use std::sync::Arc;
 
 /// Images of a first path.
@@ -306,7 +306,7 @@ fn a_descent_ends_at_a_minimum_beside_it_where_it_has_reached_that_and_nowhere_e
     for beside in [&[][..], &[&up], &[&skyrmion], &[&skyrmion, &up]] {
         let ends = [-1.0, 1.0].map(|sense| {
             let down: Vec<f64> = valley.iter().map(|v| sense * v).collect();
-            let descent = descend(h.into(), &saddle, &down, 0.2, beside);
+            let descent = descend(h.into(), &saddle, &down, Downhill { c: 0.2, level_mev: 0.0, beside });
             assert!(descent.arrived && descent.fallen_mev > 4.0, "{}", descent.fallen_mev);
             descent.m
         });

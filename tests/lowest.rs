@@ -4,6 +4,9 @@ use serde_json::{Value, json};
 use spinneb::config::load_text;
 use spinneb::drive::{Outcome, Silent, run};
 use spinneb::landscape::Effort;
+use spinneb::path::largest_angle;
+use spinneb::spins::Spins;
+use spinneb::stationary::{Downhill, State, descend};
 
 /// The outcome of a config with an effort.
 fn solve(config: &Value, effort: Effort) -> Outcome {
@@ -241,6 +244,54 @@ fn a_saddle_that_all_but_slides_is_found_to_the_last_digits() {
     let config = soft_film(lattice, "0.404 meV", "0.128 meV", "0.84 T", [skyrmion(3, [4, 4]), down()]);
     let barrier = certified(&solve(&config, Effort::None));
     assert!((barrier - 11.4207746687).abs() < 1e-8, "{barrier}");
+}
+
+/// A chain whose sites hold a wall of 6.3 meV by 2e-10 meV each.
+fn smooth(sites: usize, ends: [Value; 2]) -> Value {
+    let energy = json!([{"exchange": {"J": ["10 meV"]}}, {"anisotropy": {"K": "0.5 meV", "axis": [0, 0, 1]}}]);
+    let [initial, last] = ends;
+    chain(sites, false, energy, initial, last)
+}
+
+#[test]
+fn what_holds_a_wall_by_a_billionth_of_its_energy_is_no_saddle_of_its_way() {
+    let outcome = solve(&smooth(500, [up(), down()]), Effort::None);
+    let barrier = certified(&outcome);
+    assert!((barrier - 6.29778104052).abs() < 6e-9, "{barrier}");
+    assert_eq!(outcome.saddles.len(), 1);
+    assert!(outcome.work.force_evaluations < 20_000, "{}", outcome.work.force_evaluations);
+    // but a wall's own way out of such a well is what was asked for
+    let out = solve(&smooth(100, [wall(40.5, 1), up()]), Effort::None);
+    assert!((1e-10..4e-10).contains(&certified(&out)) && out.saddles.len() == 1, "{:?}", out.barrier);
+}
+
+#[test]
+fn a_descent_goes_on_over_wells_that_are_level_and_stops_at_the_one_it_was_to_reach() {
+    let loaded = load_text("test.json".as_ref(), smooth(200, [up(), down()]).to_string()).unwrap();
+    let problem = loaded.problem().unwrap();
+    let h = (&problem.hamiltonian).into();
+    let saddle = State::at(h, solve(&smooth(200, [up(), down()]), Effort::None).saddles[0].spins.as_slice().to_vec());
+    let valley = saddle.field(&saddle.lowest_mode(h).unwrap().vector);
+    let c = problem.hamiltonian.stiffness_mev();
+    let down = |sense: f64, to: Downhill| {
+        let valley: Vec<f64> = valley.iter().map(|v| sense * v).collect();
+        let descent = descend(h, &saddle, &valley, to);
+        assert!(descent.arrived);
+        descent
+    };
+    let level = Downhill { c, level_mev: 6e-9, beside: &[] };
+    let near = [-1.0, 1.0].map(|sense| down(sense, Downhill { level_mev: 0.0, ..level }));
+    let far = [-1.0, 1.0].map(|sense| down(sense, level));
+    assert!(near.iter().all(|d| d.fallen_mev < 1e-8) && far.iter().all(|d| d.fallen_mev > 6.0));
+    assert!(far.iter().all(|d| d.way.windows(2).all(|w| largest_angle(&w[0], &w[1]) < 1.0)), "the way has no gap");
+    let wells = near.map(|d| {
+        let n = d.m.len() / 3;
+        Spins::from_vectors(&(0..n).map(|i| [d.m[i], d.m[n + i], d.m[2 * n + i]]).collect::<Vec<_>>()).unwrap()
+    });
+    for (sense, well) in [-1.0, 1.0].into_iter().zip(&wells) {
+        let met = down(sense, Downhill { beside: &[&wells[0], &wells[1]], ..level });
+        assert!(largest_angle(&met.m, well.as_slice()) < 1e-12);
+    }
 }
 
 #[test]

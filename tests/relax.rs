@@ -215,3 +215,21 @@ fn a_saddle_is_left_where_no_force_leads_away_from_it_and_where_the_way_to_it_is
         assert_eq!(state["negative_modes"], 0);
     }
 }
+
+#[test]
+fn a_skyrmion_on_top_of_what_its_lattice_holds_it_by_comes_to_rest() {
+    let folder = folder();
+    let config = r#"{
+        "material": {"name": "film", "moment": "2.7 mu_B", "energy": [
+            {"exchange": {"J": ["7 meV"]}}, {"dmi": {"D": "2.2 meV", "kind": "interfacial"}},
+            {"anisotropy": {"K": "0.8 meV", "axis": [0, 0, 1]}}, {"zeeman": {"B": ["0 T", "0 T", "1.5 T"]}}]},
+        "lattice": {"triangular": {"cells": [30, 30], "periodic": true}},
+        "initial": {"skyrmion": {"radius": 5, "center": [15, 15]}},
+        "final": {"uniform": {"direction": [0, 0, 1]}}
+    }"#;
+    fs::write(folder.path().join("film.json"), config).unwrap();
+    let (code, out, said) = spinneb(folder.path(), &["relax", "film.json", "--json", "--quiet"]);
+    assert_eq!(code, Some(0), "{said}");
+    let state: Value = serde_json::from_str(out.lines().next().unwrap()).unwrap();
+    assert!(state["minimum"] == true && state["converged"] == true, "{state}");
+}

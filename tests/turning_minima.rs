@@ -37,7 +37,7 @@ fn barriers(j: f64, k: f64, lattice: &str, seeds: &[u32]) -> Vec<f64> {
 #[test]
 fn an_odd_ring_of_antiferromagnetic_spins_moves_its_misfit_from_bond_to_bond() {
     // five spins: two neighbours lean apart, and the misfit moves on by one bond
-    for barrier in barriers(-4.0, 1.7, r#"{"chain": {"sites": 5, "periodic": true}}"#, &[1, 2, 5, 6, 8, 12, 18]) {
+    for barrier in barriers(-4.0, 1.7, r#"{"chain": {"sites": 5, "periodic": true}}"#, &[1, 2, 5, 6, 9, 12, 18]) {
         assert!((barrier / 0.090_140_304_219_384 - 1.0).abs() < 1e-11, "{barrier}");
     }
 }

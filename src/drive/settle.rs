@@ -9,11 +9,11 @@ use super::settled::Settled;
 use crate::band::Band;
 use crate::error::Result;
 use crate::landscape::{
-    Assembled, Connector, Doubt, Minimum, Pass, PathEnd, Peak, Saddle, assemble, highest_between, peaks,
+    Assembled, Connector, Doubt, Minimum, Pass, PathEnd, Peak, Saddle, Sides, assemble, highest_between, peaks,
 };
 use crate::path::{RESOLVED, distance, is_within};
 use crate::sphere::SAME;
-use crate::stationary::{FLAT, LOWER};
+use crate::stationary::{ALIKE, FLAT, LOWER};
 
 /// How far apart (rad, any spin) the images of a path are that is put together, and where a band of these does not take the place.
 const APART: [f64; 2] = [0.9 * RESOLVED, 0.45 * RESOLVED];
@@ -29,6 +29,11 @@ fn over(c: &FirstPath, links: &[Pass]) -> f64 {
     let e = c.band.energies_mev();
     let saddles = links.iter().map(|l| l.saddle.refined.state.energy_mev - e[0]);
     saddles.fold((e[e.len() - 1] - e[0]).max(0.0), f64::max) + slack(&c.band)
+}
+
+/// What rises by less along a band is level (meV): rounding, and what changes no digit of its barrier that is told.
+fn level_mev(band: &Band) -> f64 {
+    (FLAT * band.hamiltonian().stiffness_mev()).max(ALIKE * height(band))
 }
 
 /// Heights of a band that differ by less are one (meV).
@@ -203,17 +208,15 @@ impl<'a> Run<'a, '_> {
         if self.land.height_mev(highest.spins()) >= below_mev {
             return Ok(Proof { ends, links: Vec::new(), doubts: vec![Doubt::NoRoute(0)] });
         }
+        let sides = Sides { c: scale, level_mev: level_mev(&c.band), beside: &ends.each_ref() };
         let (mut own, mut doubts): (Vec<Pass>, Vec<Doubt>) = (Vec::new(), Vec::new());
         let others = found.iter().filter(|f| !std::ptr::eq(*f, highest));
         for saddle in std::iter::once(highest).chain(others) {
-            if own.iter().any(|pass| pass.is_on_a_level_with(h, saddle)) {
-                continue;
-            }
             if self.is_spent(&c.band) {
                 doubts.push(Doubt::Spent);
                 break;
             }
-            let pass = Pass::recorded(h, saddle.clone(), scale, &ends.each_ref())?;
+            let pass = Pass::recorded(h, saddle.clone(), sides)?;
             match pass.doubt(h) {
                 None => {
                     self.land.add(pass.clone());
@@ -251,6 +254,7 @@ impl<'a> Run<'a, '_> {
             below_mev,
             evaluations: self.problem.neb.max_evaluations.saturating_mul(c.band.images()),
             c: self.scales.stiffness_mev,
+            level_mev: level_mev(&c.band),
             context: self.context(),
         };
         let gap = connector.connect(&mut self.land, self.minima)?;
@@ -279,7 +283,8 @@ impl<'a> Run<'a, '_> {
             None => Pass::between(h, saddle.clone(), ends.clone()),
             Some(_) => None,
         };
-        let descended = || Pass::recorded(h, saddle.clone(), self.scales.stiffness_mev, &ends.each_ref());
+        let sides = Sides { c: self.scales.stiffness_mev, level_mev: 0.0, beside: &ends.each_ref() };
+        let descended = || Pass::recorded(h, saddle.clone(), sides);
         let pass = alone.map_or_else(descended, Ok)?;
         let doubts = pass.doubt(h).into_iter().collect();
         Ok(Proof { ends, links: vec![pass], doubts })
@@ -308,7 +313,7 @@ impl<'a> Run<'a, '_> {
             if self.is_spent(&c.band) {
                 break;
             }
-            if found.iter().any(|f| is_level(&c.band, [&f.top, &top], scale)) {
+            if found.iter().any(|f| is_level(&c.band, [&f.top, &top])) {
                 continue;
             }
             let from_there = |f: &&Saddle| f.top.m == top.m && f.top.tau == top.tau;
@@ -349,12 +354,12 @@ impl<'a> Run<'a, '_> {
     }
 }
 
-/// Whether two maxima of a band are of one plateau, which is level to rounding.
-fn is_level(band: &Band, tops: [&Peak; 2], c: f64) -> bool {
+/// Whether two maxima of a band are of one plateau.
+fn is_level(band: &Band, tops: [&Peak; 2]) -> bool {
     let [i, j] = tops.map(|top| top.image);
     let heights = tops.map(|top| top.energy_mev);
     let all = heights.iter().chain(&band.energies_mev()[i.min(j)..=i.max(j)]);
-    all.into_iter().all(|e| (e - heights[0]).abs() < FLAT * c)
+    all.into_iter().all(|e| (e - heights[0]).abs() < level_mev(band))
 }
 
 /// Whether a saddle is image k of a band, and higher than its neighbours.

@@ -2,7 +2,7 @@
 //! peaks are refined to saddles, whose passes go into the graph; until a route leads from end to end.
 
 use super::flat::flat_way;
-use super::pass::Pass;
+use super::pass::{Pass, Sides};
 use super::ways::{WAYS, way};
 use super::zoom::{ZOOMS, zoomed};
 use super::{Doubt, Landscape, Peak, Saddle, highest, peaks, turned, turns};
@@ -36,6 +36,8 @@ pub struct Connector<'c> {
     pub evaluations: usize,
     /// Stiffness scale c (meV).
     pub c: f64,
+    /// Minima that so little of a rise parts (meV) are not parted.
+    pub level_mev: f64,
     /// What first paths need to know.
     pub context: GuessContext<'c>,
 }
@@ -99,7 +101,7 @@ impl Connector<'_> {
         let h = land.evaluator();
         let mut band = Band::new(h, way);
         self.bands.loosely(&mut band)?;
-        if let Some(flat) = flat_way(self.bands, &band, self.c)? {
+        if let Some(flat) = flat_way(self.bands, &band, self.c, self.level_mev)? {
             land.merge(pair, flat);
             return Ok(());
         }
@@ -125,7 +127,8 @@ impl Connector<'_> {
 
     /// Puts the pass of a saddle in if it is proven.
     fn add(&self, land: &mut Landscape, saddle: Saddle) -> Result<()> {
-        let pass = Pass::recorded(land.evaluator(), saddle, self.c, &[])?;
+        let pass =
+            Pass::recorded(land.evaluator(), saddle, Sides { c: self.c, level_mev: self.level_mev, beside: &[] })?;
         if pass.doubt(land.evaluator()).is_none() {
             land.add(pass);
         }

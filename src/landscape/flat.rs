@@ -8,7 +8,6 @@ use crate::geometry::Direction;
 use crate::path::{COARSE, Path, largest_angle};
 use crate::sphere::SAME;
 use crate::spins::Spins;
-use crate::stationary::FLAT;
 
 /// A way that is lower than this part of c after a little relaxation may be flat.
 const LOW: f64 = 1e-3;
@@ -91,11 +90,10 @@ fn turn(land: &Landscape, from: &Spins, to: &Spins) -> Option<Option<Stretch>> {
     }
 }
 
-/// A way between two minima that is flat as far as double precision tells: a soliton on a ring, moved along it. None if it is not.
-pub fn flat_way(bands: &dyn Bands, band: &Band, c: f64) -> Result<Option<Path>> {
+/// A way between two minima that is level to so much (meV): a soliton on a ring, moved along it. None if it is not.
+pub fn flat_way(bands: &dyn Bands, band: &Band, c: f64, level_mev: f64) -> Result<Option<Path>> {
     let h: Evaluator = band.evaluator();
-    let flat = FLAT * h.stiffness_mev();
-    let level = |band: &Band, k: usize| h.difference_mev(band.path().image(k), band.path().image(0)).abs() < flat;
+    let level = |band: &Band, k: usize| h.difference_mev(band.path().image(k), band.path().image(0)).abs() < level_mev;
     let e = band.energies_mev();
     let low = e.iter().all(|x| (x - e[0]).abs() < LOW * c);
     if !low || !level(band, band.images() - 1) {
@@ -178,13 +176,13 @@ mod tests {
         let mut band = Band::new(h, path);
         band.evaluate();
         assert!(band.energies_mev().iter().all(|e| (e - band.energies_mev()[0]).abs() < 1e-10));
-        assert!(flat_way(&AsTheyAre, &band, 10.0).unwrap().is_none());
+        assert!(flat_way(&AsTheyAre, &band, 10.0, 1e-10).unwrap().is_none());
         // a turn about the axis is flat however it is looked at
         let from = wall(29.5);
         let by = (Direction::Z, 1.0);
         let turn = turning(&from, turned(&from, &[by]), by, 9);
         let mut band = Band::new(h, turn);
         band.evaluate();
-        assert!(flat_way(&AsTheyAre, &band, 10.0).unwrap().is_some_and(|path| path.images() == 9));
+        assert!(flat_way(&AsTheyAre, &band, 10.0, 1e-10).unwrap().is_some_and(|path| path.images() == 9));
     }
 }

@@ -46,7 +46,7 @@ pub use connect::{Bands, Connector};
 pub use doubt::{Doubt, PathEnd};
 pub use graph::{Edge, Landscape, Route};
 pub use minimum::{Minimum, is_same_state};
-pub use pass::Pass;
+pub use pass::{Pass, Sides};
 pub use peaks::{Peak, direction, highest, peaks, promising};
 pub use places::{Places, Seen};
 pub use saddle::Saddle;

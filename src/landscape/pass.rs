@@ -6,7 +6,9 @@ use crate::error::Result;
 use crate::linalg::slab;
 use crate::rates::Crossing;
 use crate::spins::Spins;
-use crate::stationary::{FLAT, RELAXED, ROUGHLY, Refined, Spectrum, descend, lowest_eigenvalues_mev, relax_to_minimum};
+use crate::stationary::{
+    Downhill, RELAXED, ROUGHLY, Refined, Spectrum, descend, lowest_eigenvalues_mev, relax_to_minimum,
+};
 use crate::symmetry::{Group, Operation};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -34,6 +36,17 @@ fn falling(h: Evaluator, saddle: &Saddle) -> Vec<f64> {
     }
 }
 
+/// What the descents from a saddle need to know.
+#[derive(Clone, Copy)]
+pub struct Sides<'a> {
+    /// Stiffness scale c (meV).
+    pub c: f64,
+    /// Minima that so little of a rise parts (meV) are not parted.
+    pub level_mev: f64,
+    /// Minima beside it.
+    pub beside: &'a [&'a Minimum],
+}
+
 /// A saddle with the minima on its two sides.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Pass {
@@ -55,15 +68,15 @@ pub struct Pass {
 
 impl Pass {
     /// Descends from a saddle on both sides; where a slope forks or ends there, to one of the minima `beside` it, if one of them is.
-    pub fn of(h: Evaluator, saddle: Saddle, c: f64, beside: &[&Minimum]) -> Result<Pass> {
-        let beside: Vec<&Minimum> = beside.iter().copied().filter(|minimum| minimum.is_proven()).collect();
+    pub fn of(h: Evaluator, saddle: Saddle, sides: Sides) -> Result<Pass> {
+        let beside: Vec<&Minimum> = sides.beside.iter().copied().filter(|minimum| minimum.is_proven()).collect();
         let ends: Vec<&Spins> = beside.iter().map(|minimum| &minimum.spins).collect();
         let state = &saddle.refined.state;
         let falls = falling(h, &saddle);
         let sign = if slab::dot(&falls, &saddle.top.tau) < 0.0 { -1.0 } else { 1.0 };
         let side = |direction: f64| -> Result<(Minimum, f64, Vec<Spins>)> {
             let valley: Vec<f64> = falls.iter().map(|v| direction * sign * v).collect();
-            let d = descend(h, state, &valley, c, &ends);
+            let d = descend(h, state, &valley, Downhill { c: sides.c, level_mev: sides.level_mev, beside: &ends });
             let way = d.way.into_iter().map(|m| Spins::from_unit_components(&m)).collect();
             if let Some(known) = beside.iter().find(|minimum| minimum.spins.as_slice() == d.m) {
                 return Ok((Minimum::clone(known), d.fallen_mev, way));
@@ -90,12 +103,13 @@ impl Pass {
     }
 
     /// The same, as far as it is not on record.
-    pub fn recorded(h: Evaluator, saddle: Saddle, c: f64, beside: &[&Minimum]) -> Result<Pass> {
+    pub fn recorded(h: Evaluator, saddle: Saddle, sides: Sides) -> Result<Pass> {
         let Saddle { top, refined } = &saddle;
         let [m, valley, tau] = [&refined.state.m, &refined.valley, &top.tau].map(Vec::clone);
-        let states = beside.iter().map(|minimum| minimum.spins.as_slice());
-        let inputs: Vec<&[f64]> = [&m[..], &valley, &tau].into_iter().chain(states).collect();
-        recorded(h, "descents", &inputs, || Pass::of(h, saddle, c, beside))
+        let states = sides.beside.iter().map(|minimum| minimum.spins.as_slice());
+        let level = [sides.level_mev];
+        let inputs: Vec<&[f64]> = [&m[..], &valley, &tau, &level].into_iter().chain(states).collect();
+        recorded(h, "descents", &inputs, || Pass::of(h, saddle, sides))
     }
 
     /// The saddle's lowest eigenvalues (meV), ascending, as many as are reported: what takes longest to find of all that is told of
@@ -138,12 +152,6 @@ impl Pass {
         std::mem::swap(&mut self.before, &mut self.after);
         self.fallen_mev.reverse();
         self.ways.reverse();
-    }
-
-    /// Whether both it and a saddle are hops along one valley that is flat to rounding: a wall on a plateau of hundreds of sites.
-    pub fn is_on_a_level_with(&self, h: Evaluator, saddle: &Saddle) -> bool {
-        let flat = FLAT * h.stiffness_mev();
-        self.fallen_mev.iter().all(|f| *f < flat) && h.difference_mev(self.saddle.spins(), saddle.spins()).abs() < flat
     }
 
     /// Why this is not a proven saddle of index one between two proven minima; nothing if it is.

@@ -13,7 +13,7 @@
 //! grows with the number of passes known: of n that are found equally often, q searches miss one with a chance of e^(−q/n).
 
 use super::rivals::{Cut, Rival, rivals, scouts, vanguard};
-use super::{Landscape, Pass, Saddle};
+use super::{Landscape, Pass, Saddle, Sides};
 use crate::energy::{Evaluator, Stored, recorded_each};
 use crate::error::Result;
 use crate::path::guess::GuessContext;
@@ -272,5 +272,5 @@ fn climb(land: &Landscape, start: &[f64], below: f64, c: f64) -> Result<Caught> 
     if land.height_mev(saddle.spins()) >= below || land.knows(&saddle) {
         return Ok(Caught(None));
     }
-    Ok(Caught(Some(Box::new(Pass::of(h, saddle, c, &[])?))))
+    Ok(Caught(Some(Box::new(Pass::of(h, saddle, Sides { c, level_mev: 0.0, beside: &[] })?))))
 }

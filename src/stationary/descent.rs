@@ -5,7 +5,8 @@
 //! relaxed and cost nothing, and where several are soft the flow decides between valleys, as no step of Newton's does. Beside a point
 //! of rest a few of Newton's steps end it. Where the forces vanish but a direction is still negative, the descent goes on along that
 //! direction, and ends only where the inertia counts none. Where a direction across a slope that is next to none is about to fall, the
-//! flow's steps become short: the valley is followed again. Where factors are dear, gradients alone are tried first, from a step along
+//! flow's steps become short: the valley is followed again. From a minimum that parts nothing the descent goes on along the valley
+//! (`stroll`). Where factors are dear, gradients alone are tried first, from a step along
 //! the valley to where the slope ends.
 
 use super::flow::{D, flow};
@@ -34,6 +35,8 @@ const ERROR: f64 = 0.01;
 /// lies across the valley relaxes long before it bends.
 const CRAWL: usize = 8;
 const GENTLE: f64 = 1e-5;
+/// Where the valley itself was followed, the flow takes over at this slope.
+pub(super) const STEEP: f64 = LARGER * GENTLE;
 /// Differences of energies below this part of the stiffness may be rounding error.
 pub(super) const NOISE: f64 = 64.0 * f64::EPSILON;
 /// Most times that a descent goes on along a valley, and most steps of the flow each time.
@@ -57,13 +60,26 @@ pub struct Descent {
     pub way: Vec<Vec<f64>>,
 }
 
-/// Descends from a saddle along ± its valley (a unit field of 3N numbers); c is the stiffness scale (meV). Where its slope forks, and
-/// where it has all but reached one, it goes to one of the minima `beside` it, which are proven.
-pub fn descend(h: Evaluator, saddle: &State, valley: &[f64], c: f64, beside: &[&Spins]) -> Descent {
+/// What a descent needs to know.
+#[derive(Clone, Copy)]
+pub struct Downhill<'a> {
+    /// The stiffness scale (meV).
+    pub c: f64,
+    /// Minima that so little of a rise parts (meV) are not parted: a descent goes on over them.
+    pub level_mev: f64,
+    /// Proven minima beside the saddle: a descent ends in one where its slope forks, where it has all but reached it, and where it comes
+    /// by on a level with it.
+    pub beside: &'a [&'a Spins],
+}
+
+/// Descends from a saddle along ± its valley (a unit field of 3N numbers).
+pub fn descend(h: Evaluator, saddle: &State, valley: &[f64], to: Downhill) -> Descent {
+    let Downhill { c, level_mev, beside } = to;
     let mut walk = Walk {
         h,
         c,
         beside,
+        level_mev,
         here: saddle.point.clone(),
         next: Point::default(),
         tau: valley.to_vec(),
@@ -85,6 +101,8 @@ pub(super) struct Walk<'a> {
     pub(super) h: Evaluator<'a>,
     pub(super) c: f64,
     beside: &'a [&'a Spins],
+    /// What the energy may rise by and be level (meV).
+    pub(super) level_mev: f64,
     pub(super) here: Point,
     /// Where the step that is being tried leads.
     pub(super) next: Point,
@@ -102,7 +120,7 @@ pub(super) struct Walk<'a> {
 #[derive(Default)]
 pub(super) struct Room {
     pub pinned: Pinned,
-    matrix: Matrix,
+    pub matrix: Matrix,
     pub x: Vec<f64>,
     pub v: Vec<f64>,
 }
@@ -130,11 +148,16 @@ impl Walk<'_> {
             let end = self.fall();
             in_vain = if from.above_mev(&self.here) > noise { 0 } else { in_vain + 1 };
             if matches!(end, Fall::Crawling) && moved {
-                enough = LARGER * GENTLE * self.h.stiffness_mev();
+                enough = STEEP * self.h.stiffness_mev();
                 continue;
             }
-            if self.is_minimum() || self.h.is_stopped() {
-                return matches!(end, Fall::Arrived);
+            if self.h.is_stopped() || self.is_minimum() {
+                let goes_on = !self.h.is_stopped() && self.parts_nothing() && self.stroll();
+                if !goes_on {
+                    return matches!(end, Fall::Arrived);
+                }
+                enough = STEEP * self.h.stiffness_mev();
+                continue;
             }
             // once along the direction that was given, and once along the lowest mode
             if in_vain > 1 {
@@ -242,7 +265,7 @@ impl Walk<'_> {
     }
 
     /// The nearest of the states beside the descent.
-    fn nearest(&self) -> Option<&Spins> {
+    pub(super) fn nearest(&self) -> Option<&Spins> {
         let far = |end: &Spins| largest_angle(end.as_slice(), &self.here.m);
         self.beside.iter().copied().min_by(|p, q| far(p).total_cmp(&far(q)))
     }
@@ -268,6 +291,6 @@ impl Walk<'_> {
 
     /// Whether no direction is negative here.
     fn is_minimum(&mut self) -> bool {
-        Spectrum::negatives(self.h, &self.here, &mut self.room.matrix) == 0
+        Spectrum::softer(self.h, &self.here, 0.0, &mut self.room.matrix) == 0
     }
 }

@@ -22,13 +22,14 @@ mod search;
 mod spectrum;
 mod state;
 mod step;
+mod stroll;
 mod tolerances;
 mod trail;
 mod unfactored;
 mod valley;
 
 pub(crate) use border::{Border, Pin, pin};
-pub use descent::{Descent, descend};
+pub use descent::{Descent, Downhill, descend};
 pub use pinned::Pinned;
 pub use point::{Point, move_free};
 pub use refine::{Refined, refine};

@@ -2,7 +2,7 @@
 
 use super::tolerances::{ALIKE, FIRST_SHIFT, LARGER, LAST_SHIFT, NEARLY, ROUNDING, STATIONARY, STRIDE};
 use super::unfactored::Unfactored;
-use super::{Point, Spectrum, State, descend};
+use super::{Downhill, Point, Spectrum, State, descend, pin};
 use crate::energy::Evaluator;
 use crate::error::{Error, Result};
 use crate::field::Components;
@@ -88,6 +88,7 @@ fn stationary(h: Evaluator, mut p: Point, tolerance_mev: f64, steps: &mut usize,
     let mut shift = 0.0;
     let mut stalled = 0;
     let most = *steps + STEPS;
+    let mut best: Option<Point> = None;
     while *steps < most {
         if h.is_stopped() {
             return Err(Error::Stopped);
@@ -100,14 +101,20 @@ fn stationary(h: Evaluator, mut p: Point, tolerance_mev: f64, steps: &mut usize,
         if p.max_torque_mev() <= tolerance_mev || stalled >= 2 {
             break;
         }
-        let before = p.max_torque_mev();
+        let (before, shifted) = (p.max_torque_mev(), shift);
         let Some(next) = newton_step(h, &p, &mut shift, memory) else { break };
         let torque = next.max_torque_mev();
-        stalled = if torque > 0.5 * before && torque < NEARLY * tolerance_mev { stalled + 1 } else { 0 };
+        let nearly = NEARLY * tolerance_mev;
+        // a smaller shift is a longer step, which may be what it takes; along a soft mode it first costs torque across it
+        stalled = if torque > 0.5 * before && torque < nearly && shift >= shifted { stalled + 1 } else { 0 };
+        if before < nearly && before < torque && best.as_ref().is_none_or(|b| before < b.max_torque_mev()) {
+            best = Some(p);
+        }
         p = next;
         *steps += 1;
     }
-    Ok(p)
+    let least = p.max_torque_mev();
+    Ok(best.filter(|best| best.max_torque_mev() < least).unwrap_or(p))
 }
 
 /// One accepted step: (H + shift) v = F, capped, with a larger shift as long as the energy would rise. The shift to go on with
@@ -151,6 +158,10 @@ fn newton(h: Evaluator, p: &Point, shift: f64, memory: &mut Matrix) -> Option<Ve
     }
     let mut matrix = take(memory);
     p.write_hessian(h, shift, &mut matrix);
+    let mut used = Vec::new();
+    for zero in &p.zeros {
+        pin(&mut matrix, zero, &mut used, h.stiffness_mev());
+    }
     let factors = Factors::solving(matrix, &mut x, 1);
     let positive = factors.negatives() == 0;
     *memory = factors.into_memory();
@@ -161,7 +172,8 @@ fn newton(h: Evaluator, p: &Point, shift: f64, memory: &mut Matrix) -> Option<Ve
 /// From a state with a negative direction, stationary or nearly so: the minimum below it.
 fn way_down(h: Evaluator, state: &State) -> Option<(Point, WayDown)> {
     let mode = state.field(&state.lowest_mode(h)?.vector);
-    let below = Point::at(h, descend(h, state, &mode, h.stiffness_mev(), &[]).m);
+    let to = Downhill { c: h.stiffness_mev(), level_mev: 0.0, beside: &[] };
+    let below = Point::at(h, descend(h, state, &mode, to).m);
     let turns = Components::new(&mode);
     let largest = (0..h.sites()).max_by(|i, j| vector::norm(turns.get(*i)).total_cmp(&vector::norm(turns.get(*j))));
     let site = largest.unwrap_or(0);

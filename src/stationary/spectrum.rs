@@ -113,12 +113,13 @@ impl Spectrum {
         (counts, if negative == 1 { falling.pop() } else { None })
     }
 
-    /// Negative directions at a point, zero modes apart: one factorisation, in the memory of `matrix`.
-    pub fn negatives(h: Evaluator, point: &Point, matrix: &mut Matrix) -> usize {
+    /// Directions at a point in which the energy's curvature is less than this (meV), zero modes apart: one factorisation, in the memory
+    /// of `matrix`. Without factors those that are negative.
+    pub fn softer(h: Evaluator, point: &Point, curvature_mev: f64, matrix: &mut Matrix) -> usize {
         if h.forgoes_factors() {
             return Spectrum::of(h, &State::of(h, point.clone()), 0).negative;
         }
-        point.write_hessian(h, 0.0, matrix);
+        point.write_hessian(h, -curvature_mev, matrix);
         let floor = floor_mev(h, matrix.norm1());
         let factors = pinned(h, take(matrix), &point.zeros, floor);
         let negatives = factors.negatives();

@@ -39,6 +39,11 @@ impl Trail {
         self.points.push(m.to_vec());
     }
 
+    /// The last point.
+    pub fn last(&self) -> &[f64] {
+        self.points.last().unwrap_or(&self.start)
+    }
+
     /// How many points it has.
     pub fn len(&self) -> usize {
         self.points.len()

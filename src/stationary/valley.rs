@@ -10,8 +10,8 @@ use std::mem::swap;
 
 /// The longest step along a valley, and how fast they grow (rad, any spin). Between two soft modes the first one may be shorter, down to
 /// the shortest.
-const LONGEST: f64 = 0.4;
-const GROWTH: f64 = 1.4;
+pub(super) const LONGEST: f64 = 0.4;
+pub(super) const GROWTH: f64 = 1.4;
 const SHORTEST: f64 = 1e-4;
 /// Most Newton steps across a valley after each step along it, which end when one is less than this part of that step; and most that
 /// are taken more where the slope is not the valley's.
@@ -67,7 +67,7 @@ impl Walk<'_> {
 
     /// A step along the valley, bent as the last one was: ds (t + ½ ds ∂t/∂s), the change ∂t/∂s of its direction from
     /// the last place to this.
-    fn predict(&mut self, step: f64) {
+    pub(super) fn predict(&mut self, step: f64) {
         let speed = rotation_of(&self.tau);
         slab::scale(&mut self.tau, 1.0 / speed);
         let along = &mut self.room.v;
@@ -89,7 +89,7 @@ impl Walk<'_> {
     }
 
     /// Newton's method across the valley, after a step along it; whether it stayed near.
-    fn cross(&mut self, step: f64) -> bool {
+    pub(super) fn cross(&mut self, step: f64) -> bool {
         for _ in 0..CORRECTIONS {
             let Some(rotation) = self.correct() else { return false };
             if rotation > ASTRAY * step {
@@ -104,7 +104,7 @@ impl Walk<'_> {
 
     /// More steps across the valley, where the energy seems to rise or what is left of the torque across could hide the slope;
     /// whether the valley is still there.
-    fn settle(&mut self, noise: f64, flat: f64) -> bool {
+    pub(super) fn settle(&mut self, noise: f64, flat: f64) -> bool {
         for _ in 0..CORRECTIONS {
             let rises = self.here.above_mev(&self.next) < -noise;
             let torque = self.next.max_torque_mev();
@@ -120,14 +120,14 @@ impl Walk<'_> {
     }
 
     /// By how much the energy falls along the valley at `next` (meV/rad).
-    fn slope_ahead(&mut self) -> f64 {
+    pub(super) fn slope_ahead(&mut self) -> f64 {
         let t = &mut self.room.x;
         self.next.basis.write_coordinates(&self.tau, t);
         -slab::dot(&self.next.slope, t) / slab::norm(t)
     }
 
     /// Back to the start of the last step.
-    fn turn_back(&mut self) {
+    pub(super) fn turn_back(&mut self) {
         if let Some((before, _)) = self.last.take() {
             self.tau = before;
         }

@@ -1,0 +1,117 @@
+//! On along a valley from a minimum that parts nothing: what a lattice holds of a wall that is broader than a few of its sites is less
+//! than any digit that is told, but a well at every site, and a descent that ended in the first would need a saddle for each to go on.
+//! It goes on over them as long as the energy stays level: to where it falls, or to a minimum that it was to reach.
+
+use super::Spectrum;
+use super::descent::{FIRST, STEEP, Walk};
+use super::point::Point;
+use super::state::State;
+use super::tolerances::LARGER;
+use super::valley::{GROWTH, LONGEST};
+use crate::linalg::slab;
+use crate::path::largest_angle;
+use std::mem::swap;
+
+/// A well of depth d that is s wide (in the norm of all spins, rad) has a curvature of 2π²d/s²: wells that part nothing are softer than
+/// this times the rise that is none, if they are a seventh of a radian wide.
+const SOFT: f64 = 1e3;
+/// A state is met where its spins are turned by less (rad, any spin): less than that beyond half a step. A state is left beyond so much.
+const MET: f64 = 0.3;
+const LEFT: f64 = 1.0;
+/// Shorter steps (rad, any spin) are not tried, and no more steps than this: a wall makes about two sites a step.
+const SHORTEST: f64 = 1e-3;
+const STEPS: usize = 20_000;
+
+/// How a stroll ends.
+enum End {
+    /// On a slope.
+    Falls,
+    /// In a minimum beside the descent.
+    Met,
+    /// Where the energy rises, or where it began.
+    Nowhere,
+}
+
+impl Walk<'_> {
+    /// Whether the minimum here may be parted from others by less than what is level.
+    pub(super) fn parts_nothing(&mut self) -> bool {
+        let soft = SOFT * self.level_mev;
+        soft > 0.0 && Spectrum::softer(self.h, &self.here, soft, &mut self.room.matrix) > 0
+    }
+
+    /// On along the softest mode; whether to where the energy falls. If not, the descent is in a minimum: one beside it, or where it was.
+    pub(super) fn stroll(&mut self) -> bool {
+        if self.meets() {
+            return false;
+        }
+        let (start, points) = (self.here.clone(), self.trail.len());
+        let end = if self.set_out() { self.stay_level() } else { End::Nowhere };
+        if matches!(end, End::Nowhere) {
+            self.here = start;
+            self.trail.go_back_to(points);
+        }
+        matches!(end, End::Falls)
+    }
+
+    /// Turns towards where the descent was going, along the softest mode; whether there is one.
+    fn set_out(&mut self) -> bool {
+        let state = State::of(self.h, self.here.clone());
+        let Some(mode) = state.lowest_mode(self.h) else { return false };
+        self.tau = state.field(&mode.vector);
+        let moved = self.here.m.iter().zip(self.trail.last());
+        let ahead: f64 = moved.zip(&self.tau).map(|((m, before), t)| (m - before) * t).sum();
+        if ahead < 0.0 {
+            slab::scale(&mut self.tau, -1.0);
+        }
+        self.last = None;
+        true
+    }
+
+    /// Along the valley while it rises by no more than what is level above the lowest place so far.
+    fn stay_level(&mut self) -> End {
+        let (start, steep) = (self.here.clone(), STEEP * self.h.stiffness_mev());
+        let (mut step, mut deepest_mev, mut is_away) = (FIRST, 0.0_f64, false);
+        for _ in 0..STEPS {
+            self.predict(step);
+            let kept = self.cross(step) && self.settle(self.level_mev, f64::INFINITY);
+            let fallen_mev = start.above_mev(&self.next);
+            if !kept || deepest_mev - fallen_mev > self.level_mev {
+                if step < SHORTEST || self.h.is_stopped() {
+                    return End::Nowhere;
+                }
+                self.turn_back();
+                step /= LARGER;
+                continue;
+            }
+            let slope = self.slope_ahead();
+            swap(&mut self.here, &mut self.next);
+            self.trail.pass(&self.here.m);
+            deepest_mev = deepest_mev.max(fallen_mev);
+            if self.meets() {
+                return End::Met;
+            }
+            if slope > steep {
+                return End::Falls;
+            }
+            let far = largest_angle(&start.m, &self.here.m);
+            if is_away && far < MET {
+                return End::Nowhere;
+            }
+            is_away |= far > LEFT;
+            step = (GROWTH * step).min(LONGEST);
+        }
+        End::Nowhere
+    }
+
+    /// Into a minimum beside the descent that it comes by on a level; whether there is one.
+    fn meets(&mut self) -> bool {
+        let here = &self.here.m;
+        let Some(end) = self.nearest().filter(|end| largest_angle(end.as_slice(), here) < MET) else { return false };
+        let end = Point::at(self.h, end.as_slice().to_vec());
+        let is_level = self.here.above_mev(&end) > -self.level_mev;
+        if is_level {
+            self.here = end;
+        }
+        is_level
+    }
+}
