@@ -246,6 +246,19 @@ fn a_saddle_that_all_but_slides_is_found_to_the_last_digits() {
     assert!((barrier - 11.4207746687).abs() < 1e-8, "{barrier}");
 }
 
+/// The nucleus all but slides, and where a search comes to rest it may stand on top of what its lattice holds it by, 1e-12 meV.
+#[test]
+fn a_nucleus_on_a_ring_has_the_same_certified_barrier_on_all_lengths() {
+    let energy = json!([
+        {"exchange": {"J": ["10 meV"]}}, {"anisotropy": {"K": "0.31 meV", "axis": [0, 0, 1]}},
+        {"zeeman": {"B": ["0 T", "0 T", "-0.075 T"]}}
+    ]);
+    for sites in [200, 300, 400] {
+        let barrier = certified(&solve(&chain(sites, true, energy.clone(), up(), down()), Effort::None));
+        assert!((barrier / 9.470_666_872_626 - 1.0).abs() < 1e-11, "{sites} sites: {barrier}");
+    }
+}
+
 /// A chain whose sites hold a wall of 6.3 meV by 2e-10 meV each.
 fn smooth(sites: usize, ends: [Value; 2]) -> Value {
     let energy = json!([{"exchange": {"J": ["10 meV"]}}, {"anisotropy": {"K": "0.5 meV", "axis": [0, 0, 1]}}]);

@@ -41,9 +41,9 @@ pub struct Refined {
 pub fn refine(h: Evaluator, m: &[f64], tau: &[f64], floor_mev: f64) -> Refined {
     let mut search = Search::from(h, m, STEP);
     let left = |here: &Point| largest_angle(m, &here.m) > FARTHEST || here.energy_mev < floor_mev;
-    let found = search.run(STEPS, |here, _| left(here).then_some(GaveUp::Stuck));
+    let found = search.saddle(STEPS, true, |here, _| left(here).then_some(GaveUp::Stuck));
     let factorisations = search.steps;
-    match found.and_then(|()| search.saddle(true)) {
+    match found {
         Ok(Saddle { state, mode: valley, spectrum, .. }) => {
             let index = spectrum.negative;
             Refined { arrived: true, state, valley, factorisations, index, spectrum: Some(spectrum) }

@@ -7,6 +7,7 @@ use super::state::State;
 use super::step::{Region, Step};
 use super::tolerances::{FLAT, ROUGHLY, SHARP, STEP};
 use crate::energy::Evaluator;
+use crate::linalg::slab;
 use std::mem::swap;
 
 /// How far a stationary state of too many negative directions is left along the lowest of the wrong ones (rad, any spin).
@@ -72,7 +73,7 @@ pub struct Saddle {
 pub fn climb(h: Evaluator, start: &[f64], limits: &Limits) -> Climb {
     let mut search = Search::from(h, start, limits.radius);
     let mut without = 0;
-    let ended = search.run(limits.steps, |here, step| {
+    let saddle = search.saddle(limits.steps, false, |here, step| {
         without = if step.negative == 0 { without + 1 } else { 0 };
         if without > limits.without_mode {
             return Some(GaveUp::NoMode);
@@ -87,8 +88,7 @@ pub fn climb(h: Evaluator, start: &[f64], limits: &Limits) -> Climb {
         let there = here.energy_mev + step.rise_mev - ROUGHLY * step.rise_mev.abs();
         (step.is_newton && step.rotation < STEP && there > limits.ceiling_mev).then_some(GaveUp::TooHigh)
     });
-    let steps = search.steps;
-    Climb { saddle: ended.and_then(|()| search.saddle(false)), steps }
+    Climb { saddle, steps: search.steps }
 }
 
 /// A search on its way.
@@ -97,17 +97,44 @@ pub(super) struct Search<'a> {
     region: Region<'a>,
     here: Point,
     next: Point,
+    /// The last way along a wrong mode (3N).
+    away: Vec<f64>,
     pub steps: usize,
 }
 
 impl<'a> Search<'a> {
     pub fn from(h: Evaluator<'a>, start: &[f64], radius: f64) -> Search<'a> {
         let here = Point::at(h, start.to_vec());
-        Search { h, region: Region::new(h, radius), here, next: Point::default(), steps: 0 }
+        Search { h, region: Region::new(h, radius), here, next: Point::default(), away: Vec::new(), steps: 0 }
     }
 
-    /// Until the torque is rounding error; `each` may end it before any step.
-    pub fn run(&mut self, most: usize, mut each: impl FnMut(&Point, &Step) -> Option<GaveUp>) -> Result<(), GaveUp> {
+    /// To a saddle of index one, or, if it `may_be_flat`, with one mode flat to rounding and none that falls, by `most` steps; `each` may
+    /// end it before any.
+    pub fn saddle(
+        &mut self,
+        most: usize,
+        may_be_flat: bool,
+        mut each: impl FnMut(&Point, &Step) -> Option<GaveUp>,
+    ) -> Result<Saddle, GaveUp> {
+        loop {
+            self.run(most, &mut each)?;
+            let state = State::of(self.h, self.here.clone());
+            let (spectrum, lowest) = Spectrum::of_saddle(self.h, &state);
+            let is_saddle = spectrum.negative == 1 || may_be_flat && spectrum.negative == 0 && spectrum.flat == 1;
+            if let Some(lowest) = lowest.filter(|_| is_saddle) {
+                let (mut mode, curvature_mev) = (state.field(&lowest), state.curvature_mev(&lowest));
+                self.h.hold_frozen(&mut mode);
+                return Ok(Saddle { state, mode, curvature_mev, spectrum });
+            }
+            // a mode that steps leave alone may be one too many
+            if !self.leave(spectrum.negative) {
+                return Err(GaveUp::Stuck);
+            }
+        }
+    }
+
+    /// Until the torque is rounding error.
+    fn run(&mut self, most: usize, each: &mut impl FnMut(&Point, &Step) -> Option<GaveUp>) -> Result<(), GaveUp> {
         let [sharp, loose] = [SHARP, FLAT].map(|part| part * self.h.stiffness_mev());
         while self.steps < most {
             if self.h.is_stopped() {
@@ -131,7 +158,7 @@ impl<'a> Search<'a> {
             } else if step.negative <= 1 {
                 self.here = polish(self.h, std::mem::take(&mut self.here));
                 return Ok(());
-            } else if !self.leave(&step) {
+            } else if !self.leave(step.negative) {
                 return Err(GaveUp::Stuck);
             }
         }
@@ -144,23 +171,17 @@ impl<'a> Search<'a> {
         swap(&mut self.here, &mut self.next);
     }
 
-    /// Leaves a stationary state along the lowest of its wrong modes; not one that has none too many.
-    fn leave(&mut self, step: &Step) -> bool {
-        let leads_away = step.negative > 1 && self.region.along_second(&self.here, LEAVE);
+    /// Leaves a stationary state along the lowest of its wrong modes, on the way that it left one before; not one that has none too many.
+    fn leave(&mut self, negative: usize) -> bool {
+        let leads_away = negative > 1 && self.region.along_second(&self.here, LEAVE);
         if leads_away {
-            self.here.move_by(self.h, &self.region.v);
+            let v = &mut self.region.v;
+            if self.away.len() == v.len() && slab::dot(&self.away, v) < 0.0 {
+                slab::scale(v, -1.0);
+            }
+            self.away.clone_from(v);
+            self.here.move_by(self.h, v);
         }
         leads_away
-    }
-
-    /// Where it is, if that is a saddle of index one; or, if it `may_be_flat`, if one mode is flat to rounding and none falls.
-    pub fn saddle(self, may_be_flat: bool) -> Result<Saddle, GaveUp> {
-        let state = State::of(self.h, self.here);
-        let (spectrum, lowest) = Spectrum::of_saddle(self.h, &state);
-        let is_saddle = spectrum.negative == 1 || may_be_flat && spectrum.negative == 0 && spectrum.flat == 1;
-        let lowest = lowest.filter(|_| is_saddle).ok_or(GaveUp::Stuck)?;
-        let (mut mode, curvature_mev) = (state.field(&lowest), state.curvature_mev(&lowest));
-        self.h.hold_frozen(&mut mode);
-        Ok(Saddle { state, mode, curvature_mev, spectrum })
     }
 }
