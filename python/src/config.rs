@@ -106,17 +106,15 @@ impl Config {
     }
 
     /// The minimum-energy path; into a folder, if there is to be one.
-    #[pyo3(signature = (threads, progress, out, resume, force))]
+    #[pyo3(signature = (threads, progress, recorded))]
     fn run(
         &self,
         py: Python,
         threads: Option<usize>,
         progress: Option<Bound<PyAny>>,
-        out: Option<PathBuf>,
-        resume: bool,
-        force: bool,
+        recorded: Recorded,
     ) -> PyResult<Outcome> {
-        let (loaded, recorded) = (self.loaded.clone(), Recorded { out, resume, force });
+        let loaded = self.loaded.clone();
         let found = supervised(py, threads, progress.as_ref(), &self.trouble, move |ways| {
             recorded.make::<Problem>(&loaded, ways)
         })?;
@@ -172,17 +170,15 @@ impl Config {
     }
 
     /// All minima and saddles below an energy; into a folder, if there is to be one.
-    #[pyo3(signature = (threads, progress, out, resume, force))]
+    #[pyo3(signature = (threads, progress, recorded))]
     fn landscape(
         &self,
         py: Python,
         threads: Option<usize>,
         progress: Option<Bound<PyAny>>,
-        out: Option<PathBuf>,
-        resume: bool,
-        force: bool,
+        recorded: Recorded,
     ) -> PyResult<Landscape> {
-        let (loaded, recorded) = (self.loaded.clone(), Recorded { out, resume, force });
+        let loaded = self.loaded.clone();
         let files = supervised(py, threads, progress.as_ref(), &self.trouble, move |ways| {
             let found = recorded.make::<SurveyProblem>(&loaded, ways)?;
             SurveyProblem::files(&loaded, &found)

@@ -2,6 +2,7 @@
 
 use crate::handing::Place;
 use crate::supervise::{Teller, Ways};
+use pyo3::prelude::*;
 use spinneb::config::{Keeping, Loaded, discard_leftovers};
 use spinneb::control::Control;
 use spinneb::drive::survey::{Survey, SurveyProblem, survey};
@@ -69,24 +70,20 @@ impl Computed for SurveyProblem {
     }
 }
 
-/// Where a computation is recorded and its files go.
-pub struct Recorded {
-    /// The folder; nothing where there is to be none.
-    pub out: Option<PathBuf>,
-    /// Go on from what is there.
-    pub resume: bool,
-    /// Replace what is there.
-    pub force: bool,
-}
+/// Where a computation is recorded and its files go: the folder, if there is to be one; whether it goes on from what is there, and whether
+/// it replaces that.
+#[derive(FromPyObject)]
+pub struct Recorded(Option<PathBuf>, bool, bool);
 
 impl Recorded {
     /// Computes what a config asks for, and writes it.
     pub fn make<C: Computed>(self, loaded: &Loaded, ways: &mut Ways) -> Result<C::Found, Error> {
+        let Recorded(out, resume, force) = self;
         let mut asked = C::asked(loaded)?;
         asked.control().obey(ways.switch.clone());
-        let Some(dir) = self.out else { return asked.compute(&mut ways.teller) };
-        let place = Place::take(loaded, dir, &C::names(loaded), self.force)?;
-        let keeping = Keeping { resume: self.resume, force: place.force, ..Keeping::default() };
+        let Some(dir) = out else { return asked.compute(&mut ways.teller) };
+        let place = Place::take(loaded, dir, &C::names(loaded), force)?;
+        let keeping = Keeping { resume, force: place.force, ..Keeping::default() };
         if let Some(checkpoint) = loaded.checkpoint(&place.dir, &keeping, || ways.teller.speaker())? {
             asked.control().record(Box::new(checkpoint));
         }

@@ -9,13 +9,11 @@ use super::relaxation::{height, prominent_maxima};
 use super::{Partial, Problem, Verdict};
 use crate::band::{Band, Extremum, Profile};
 use crate::energy::Evaluator;
-use crate::landscape::Saddle;
-use crate::landscape::{Doubt, Effort};
-use crate::landscape::{Minimum, Pass};
+use crate::landscape::{Doubt, Effort, Minimum, Pass, Saddle};
 use crate::linalg::slab;
 use crate::path::{Path, RESOLVED, is_within};
 use crate::spins::Spins;
-use crate::stationary::{LOWER, RELAXED, Relaxed, relax_to_minimum};
+use crate::stationary::{LOWER, RELAXED, Relaxed, Spectrum, relax_to_minimum};
 use crate::threads::{MADE, apiece};
 use rayon::prelude::*;
 use std::time::Instant;
@@ -234,21 +232,28 @@ impl Course {
     }
 }
 
-/// Modes under the noise floor are said, not guessed.
+/// Modes under the noise floor are said, not guessed: of many saddles at once.
 fn flat_warnings(ends: &[Minimum; 2], links: &[Pass]) -> Vec<String> {
-    let say = |what: &str, flat: usize, floor: f64| {
-        format!("{what}: {flat} mode(s) flat to {floor:.1e} meV, counted with the zero modes")
+    let say = |what: &str, s: &Spectrum| {
+        format!("{what}: {} mode(s) flat to {:.1e} meV, counted with the zero modes", s.flat, s.floor_mev)
     };
-    let mut warnings = Vec::new();
-    for (end, which) in ends.iter().zip(["initial state", "final state"]) {
-        if end.spectrum.flat > 0 {
-            warnings.push(say(which, end.spectrum.flat, end.spectrum.floor_mev));
-        }
-    }
-    for (k, link) in links.iter().enumerate().filter(|(_, l)| l.spectrum.flat > 0) {
-        warnings.push(say(&format!("saddle {k}"), link.spectrum.flat, link.spectrum.floor_mev));
+    let of_ends = ends.iter().zip(["initial state", "final state"]).filter(|(end, _)| end.spectrum.flat > 0);
+    let mut warnings: Vec<String> = of_ends.map(|(end, which)| say(which, &end.spectrum)).collect();
+    let flat: Vec<usize> = (0..links.len()).filter(|k| links[*k].spectrum.flat > 0).collect();
+    for alike in flat.chunk_by(|a, b| say("", &links[*a].spectrum) == say("", &links[*b].spectrum)) {
+        let rows: Vec<String> = alike.chunk_by(|a, b| a + 1 == *b).map(row).collect();
+        let saddles = if alike.len() == 1 { "saddle" } else { "saddles" };
+        warnings.push(say(&format!("{saddles} {}", rows.join(", ")), &links[alike[0]].spectrum));
     }
     warnings
+}
+
+/// A row of numbers without a gap.
+fn row(numbers: &[usize]) -> String {
+    match numbers {
+        [first, .., last] => format!("{first}–{last}"),
+        _ => numbers.iter().map(usize::to_string).collect(),
+    }
 }
 
 fn end_of(m: &Minimum) -> EndPoint {

@@ -35,9 +35,7 @@ class Config:
         self,
         threads: int | None,
         progress: Callable[[dict[str, Any]], object] | None,
-        out: Any,
-        resume: bool,
-        force: bool,
+        recorded: tuple[str | None, bool, bool],
     ) -> Outcome: ...
     def is_finished(self, dir: Any, landscape: bool) -> bool: ...
     def relax(
@@ -47,9 +45,7 @@ class Config:
         self,
         threads: int | None,
         progress: Callable[[dict[str, Any]], object] | None,
-        out: Any,
-        resume: bool,
-        force: bool,
+        recorded: tuple[str | None, bool, bool],
     ) -> Landscape: ...
 
 @final

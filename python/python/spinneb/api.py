@@ -76,7 +76,7 @@ def run(
     if place is not None and resume and core.is_finished(place, False):
         return cast(Result, load(place))
     with _telling(progress) as tell, _recording(place):
-        return Result(core.run(threads, tell, place, resume, force))
+        return Result(core.run(threads, tell, (place, resume, force)))
 
 
 def barrier(
@@ -236,7 +236,7 @@ def landscape(
     if place is not None and resume and core.is_finished(place, True):
         return cast(Landscape, load(place))
     with _telling(progress) as tell, _recording(place):
-        return Landscape(core.landscape(threads, tell, place, resume, force))
+        return Landscape(core.landscape(threads, tell, (place, resume, force)))
 
 
 def rates(
