@@ -233,3 +233,22 @@ fn a_skyrmion_on_top_of_what_its_lattice_holds_it_by_comes_to_rest() {
     let state: Value = serde_json::from_str(out.lines().next().unwrap()).unwrap();
     assert!(state["minimum"] == true && state["converged"] == true, "{state}");
 }
+
+#[test]
+fn a_wall_that_an_end_far_away_draws_out_of_the_chain_is_followed_there() {
+    let folder = folder();
+    let config = r#"{
+        "material": {"name": "chain", "moment": "1 mu_B", "energy": [
+            {"exchange": {"J": ["10 meV"]}}, {"anisotropy": {"K": "0.5 meV", "axis": [0, 0, 1]}}]},
+        "lattice": {"chain": {"sites": 100}},
+        "initial": {"domain_wall": {"center": 70.5}},
+        "final": {"domain_wall": {"center": 30.5}}
+    }"#;
+    fs::write(folder.path().join("far.json"), config).unwrap();
+    let (code, out, said) = spinneb(folder.path(), &["relax", "far.json", "--json"]);
+    assert!(code == Some(0) && said.contains("relaxed far from where it was put"), "{said}");
+    for line in out.lines() {
+        let state: Value = serde_json::from_str(line).unwrap();
+        assert!(state["minimum"] == true && (number(&state["energy_meV"]) + 1040.0).abs() < 1e-9, "{state}");
+    }
+}

@@ -384,7 +384,8 @@ fn image_state(band: &Band, k: usize) -> EndPoint {
 /// Says that a path over proven saddles has other maxima than at their images, higher than both sides by this much (meV): where a slope
 /// forks, a relaxed path may leave the descent for another valley.
 fn lower_maxima(e: &[f64], prominence: f64, saddles: &[usize]) -> Option<String> {
-    let is_other = |k: &usize| saddles.iter().all(|image| image.abs_diff(*k) > 1);
+    let on_a_level = |k: usize, image: usize| e[k.min(image)..=k.max(image)].iter().all(|x| *x >= e[k] - prominence);
+    let is_other = |k: &usize| saddles.iter().all(|image| image.abs_diff(*k) > 1 && !on_a_level(*k, *image));
     let others = prominent_maxima(e, prominence).into_iter().filter(is_other);
     let (count, highest) = others.fold((0, f64::NEG_INFINITY), |(n, high), k| (n + 1, f64::max(high, e[k] - e[0])));
     (count > 0 && !saddles.is_empty()).then(|| {
@@ -512,6 +513,9 @@ mod tests {
         assert_eq!(lower_maxima(&e, 1.0, &[2]).map(|told| told.contains("has 1 more")), Some(true));
         assert_eq!(lower_maxima(&e, 1e-3, &[1, 4, 8]), None);
         assert_eq!(lower_maxima(&e, 1e-3, &[]), None);
+        // nor is what is level with it one more
+        let level = [0.0, 5.0, 5.000_1, 5.0, 5.0, 5.000_2, 5.0, 0.0];
+        assert_eq!(lower_maxima(&level, 1e-3, &[2]), None);
     }
 
     #[test]

@@ -61,13 +61,16 @@ pub fn relax_to_minimum(h: Evaluator, start: &Spins, tolerance_mev: f64) -> Resu
         p = stationary(h, p, tolerance_mev, &mut steps, &mut memory)?;
         let state = State::of(h, p);
         let here = Spectrum::of(h, &state, 0);
-        let down = if here.negative > 0 { way_down(h, &state) } else { None };
+        let (is_saddle, rests) = (here.negative > 0, state.max_torque_mev() <= NEARLY * tolerance_mev);
+        let down = if is_saddle || !rests { way_down(h, &state, rests) } else { None };
         spectrum = here;
         let Some((below, way)) = down.filter(|(_, way)| way.fallen_mev > 0.0) else {
             p = state.point;
             break;
         };
-        left.get_or_insert(way);
+        if is_saddle {
+            left.get_or_insert(way);
+        }
         steps += 1;
         p = below;
     }
@@ -169,9 +172,12 @@ fn newton(h: Evaluator, p: &Point, shift: f64, memory: &mut Matrix) -> Option<Ve
     positive.then(|| p.field(&x))
 }
 
-/// From a state with a negative direction, stationary or nearly so: the minimum below it.
-fn way_down(h: Evaluator, state: &State) -> Option<(Point, WayDown)> {
-    let mode = state.field(&state.lowest_mode(h)?.vector);
+/// From a state with a negative direction, or one that Newton's steps were too many for and that does not rest: the minimum below it.
+fn way_down(h: Evaluator, state: &State, rests: bool) -> Option<(Point, WayDown)> {
+    let mut mode = state.field(&state.lowest_mode(h)?.vector);
+    if !rests && slab::dot(&mode, &state.gradient) > 0.0 {
+        slab::scale(&mut mode, -1.0);
+    }
     let to = Downhill { c: h.stiffness_mev(), level_mev: 0.0, beside: &[] };
     let below = Point::at(h, descend(h, state, &mode, to).m);
     let turns = Components::new(&mode);

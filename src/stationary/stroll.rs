@@ -72,12 +72,15 @@ impl Walk<'_> {
         let (start, steep) = (self.here.clone(), STEEP * self.h.stiffness_mev());
         let (mut step, mut deepest_mev, mut is_away) = (FIRST, 0.0_f64, false);
         for _ in 0..STEPS {
+            if self.h.is_stopped() {
+                break;
+            }
             self.predict(step);
             let kept = self.cross(step) && self.settle(self.level_mev, f64::INFINITY);
             let fallen_mev = start.above_mev(&self.next);
             if !kept || deepest_mev - fallen_mev > self.level_mev {
-                if step < SHORTEST || self.h.is_stopped() {
-                    return End::Nowhere;
+                if step < SHORTEST {
+                    break;
                 }
                 self.turn_back();
                 step /= LARGER;

@@ -21,6 +21,11 @@ const BUNDLE: f64 = 0.8;
 const POINTS: usize = 16;
 /// With no more minima than these each has its number.
 const NUMBERED: usize = 60;
+/// Radius of a disc with a number, and what is left around all of them (pt).
+const DISC: f64 = 5.2;
+const MARGIN: f64 = 10.0;
+/// How often those that overlap are moved apart, at most.
+const PUSHES: usize = 50;
 
 /// What is drawn where; a step is 1 long or so.
 pub struct Network {
@@ -41,7 +46,10 @@ impl Network {
             .filter(|k| s.saddles[*k].minima[0] != s.saddles[*k].minima[1])
             .collect();
         let pair = |k: usize| [0, 1].map(|side| s.saddles[k].minima[side]);
-        let minima = layout(lowest.len(), &drawn.iter().map(|k| pair(*k)).collect::<Vec<_>>());
+        let mut minima = layout(lowest.len(), &drawn.iter().map(|k| pair(*k)).collect::<Vec<_>>());
+        if minima.len() <= NUMBERED {
+            part(&mut minima);
+        }
         let mut between: BTreeMap<[usize; 2], Vec<usize>> = BTreeMap::new();
         for &k in &drawn {
             let [a, b] = pair(k);
@@ -66,6 +74,33 @@ impl Network {
     }
 }
 
+/// Moves places apart where a disc would cover another one's number.
+fn part(places: &mut [[f64; 2]]) {
+    let extent = [0, 1].map(|c| {
+        let (low, high) = places.iter().fold((f64::MAX, f64::MIN), |(l, h), p| (p[c].min(l), p[c].max(h)));
+        high - low
+    });
+    let apart = 2.1 * DISC * extent[0].max(extent[1]) / (HEIGHT_MM * MM - 2.0 * MARGIN);
+    for _ in 0..PUSHES {
+        let mut any = false;
+        for (i, j) in (0..places.len()).flat_map(|j| (0..j).map(move |i| (i, j))) {
+            let [p, q] = [places[i], places[j]];
+            let far = libm::hypot(q[0] - p[0], q[1] - p[1]);
+            if (1e-9..apart).contains(&far) {
+                let push = 0.5 * (apart / far - 1.0);
+                for c in 0..2 {
+                    places[i][c] -= push * (q[c] - p[c]);
+                    places[j][c] += push * (q[c] - p[c]);
+                }
+                any = true;
+            }
+        }
+        if !any {
+            break;
+        }
+    }
+}
+
 /// The control point of the arc that is so many steps beside the straight line in its middle.
 fn bend(p: [f64; 2], q: [f64; 2], beside: f64) -> [f64; 2] {
     let along = [q[0] - p[0], q[1] - p[1]];
@@ -83,7 +118,7 @@ pub(super) fn draw(report: &LandscapeReport) -> Result<Option<Canvas>> {
     let network = Network::of(s);
     let mut canvas = Canvas::styled(&report.look, HEIGHT_MM);
     let bar = bar(report, &network)?;
-    let room = Rect { x0: 10.0, y0: 10.0, x1: bar.x0 - 14.0, y1: HEIGHT_MM * MM - 10.0 };
+    let room = Rect { x0: MARGIN, y0: MARGIN, x1: bar.x0 - 14.0, y1: HEIGHT_MM * MM - MARGIN };
     let place = placed(&network, room);
     let colour = |mev: f64| sequential(network.fraction(mev));
     for (k, control) in &network.saddles {
@@ -100,7 +135,7 @@ pub(super) fn draw(report: &LandscapeReport) -> Result<Option<Canvas>> {
         canvas.line(&arc, 0.8, colour(s.saddle_kind(*k).above_lowest_mev));
     }
     let numbered = network.minima.len() <= NUMBERED;
-    let radius = if numbered { 5.2 } else { 2.4 };
+    let radius = if numbered { DISC } else { 2.4 };
     for (k, p) in network.minima.iter().enumerate().rev() {
         let (x, y) = place(*p);
         canvas.disc((x, y), radius, BLACK);

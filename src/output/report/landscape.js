@@ -128,8 +128,9 @@ const power = log10 => (Math.abs(log10) < 300 ? number(10 ** log10, 4) : `10^${n
 
 function lifetimes() {
   const time = log10 => (log10 === null ? "–" : power(log10));
-  const rows = data.lifetimes.map(l => [l.from, l.to ?? "anywhere", number(l.temperature_K, 5), number(l.climb_meV, 6), time(l.log10_htst_time_s), time(l.log10_langer_time_s), l.reason ?? "–"]);
-  const headings = ["From", "To", "T (K)", "Climb (meV)", "HTST (s)", "Langer (s)", ""];
+  const why = data.lifetimes.some(l => l.reason) ? ["Why there is none"] : [];
+  const rows = data.lifetimes.map(l => [l.from, l.to ?? "anywhere", number(l.temperature_K, 5), number(l.climb_meV, 6), time(l.log10_htst_time_s), time(l.log10_langer_time_s), ...why.map(() => l.reason ?? "–")]);
+  const headings = ["From", "To", "T (K)", "Climb (meV)", "HTST (s)", "Langer (s)", ...why];
   section("Lifetimes", table("Mean times over the whole network, minima between counted; \"anywhere\": until the group is left", headings, rows, [6]));
 }
 
