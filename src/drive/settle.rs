@@ -33,7 +33,14 @@ fn over(c: &FirstPath, links: &[Pass]) -> f64 {
 
 /// What rises by less along a band is level (meV): rounding, and what changes no digit of its barrier that is told.
 fn level_mev(band: &Band) -> f64 {
-    (FLAT * band.hamiltonian().stiffness_mev()).max(ALIKE * height(band))
+    (FLAT * band.hamiltonian().stiffness_mev()).max(passed_mev(band))
+}
+
+/// Out of minima that so little of a rise parts (meV) a descent goes on: what changes no digit of the barrier, where that is more than
+/// rounding.
+fn passed_mev(band: &Band) -> f64 {
+    let passed = ALIKE * height(band);
+    if passed > FLAT * band.hamiltonian().stiffness_mev() { passed } else { 0.0 }
 }
 
 /// Heights of a band that differ by less are one (meV).
@@ -191,27 +198,30 @@ impl<'a> Run<'a, '_> {
         let h = self.problem.evaluator();
         let ends = self.minima.map(|k| self.land.minima()[k].clone());
         let highest = found.iter().max_by(|p, q| p.refined.state.energy_mev.total_cmp(&q.refined.state.energy_mev));
-        let Some(highest) = highest.filter(|_| self.problem.certify) else {
-            let doubt = match (self.problem.certify, self.problem.seeks_saddles()) {
-                (false, _) => Doubt::NotAskedFor,
-                (_, false) => Doubt::NotRefined,
-                _ if self.is_spent(&c.band) => Doubt::Spent,
-                _ => Doubt::NoSaddle,
-            };
-            return Ok(Proof { ends, links: Vec::new(), doubts: vec![doubt] });
+        let doubt = match (self.problem.certify, self.problem.seeks_saddles()) {
+            (false, _) => Some(Doubt::NotAskedFor),
+            (_, false) => Some(Doubt::NotRefined),
+            _ if highest.is_some() => None,
+            _ if self.is_spent(&c.band) => Some(Doubt::Spent),
+            // images may lie in minima, and what is between these is found by connecting them
+            _ if self.problem.relax_ends => None,
+            _ => Some(Doubt::NoSaddle),
         };
+        if let Some(doubt) = doubt {
+            return Ok(Proof { ends, links: Vec::new(), doubts: vec![doubt] });
+        }
         self.observer.stage("proving the saddles");
         let scale = self.scales.stiffness_mev;
-        if !self.problem.relax_ends {
-            return self.prove_alone(highest, ends);
+        if let Some(alone) = highest.filter(|_| !self.problem.relax_ends) {
+            return self.prove_alone(alone, ends);
         }
-        if self.land.height_mev(highest.spins()) >= below_mev {
+        if highest.is_some_and(|highest| self.land.height_mev(highest.spins()) >= below_mev) {
             return Ok(Proof { ends, links: Vec::new(), doubts: vec![Doubt::NoRoute(0)] });
         }
-        let sides = Sides { c: scale, level_mev: level_mev(&c.band), beside: &ends.each_ref() };
+        let sides = Sides { c: scale, level_mev: passed_mev(&c.band), beside: &ends.each_ref() };
         let (mut own, mut doubts): (Vec<Pass>, Vec<Doubt>) = (Vec::new(), Vec::new());
-        let others = found.iter().filter(|f| !std::ptr::eq(*f, highest));
-        for saddle in std::iter::once(highest).chain(others) {
+        let others = found.iter().filter(|f| highest.is_some_and(|highest| !std::ptr::eq(*f, highest)));
+        for saddle in highest.into_iter().chain(others) {
             if self.is_spent(&c.band) {
                 doubts.push(Doubt::Spent);
                 break;
@@ -237,6 +247,9 @@ impl<'a> Run<'a, '_> {
             }
             None => own,
         };
+        if highest.is_none() && gap.is_some() {
+            doubts.push(Doubt::NoSaddle);
+        }
         doubts.extend(gap);
         let unproven = ends.iter().zip(PathEnd::BOTH).filter(|(end, _)| !end.is_proven());
         doubts.extend(unproven.map(|(_, which)| Doubt::NoMinimum(which)));
@@ -253,8 +266,8 @@ impl<'a> Run<'a, '_> {
             path: c.band.path(),
             below_mev,
             evaluations: self.problem.neb.max_evaluations.saturating_mul(c.band.images()),
-            c: self.scales.stiffness_mev,
             level_mev: level_mev(&c.band),
+            sides: Sides { c: self.scales.stiffness_mev, level_mev: passed_mev(&c.band), beside: &[] },
             context: self.context(),
         };
         let gap = connector.connect(&mut self.land, self.minima)?;

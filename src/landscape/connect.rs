@@ -34,10 +34,10 @@ pub struct Connector<'c> {
     pub below_mev: f64,
     /// Most evaluations of single states, all that were made before counted.
     pub evaluations: usize,
-    /// Stiffness scale c (meV).
-    pub c: f64,
-    /// Minima that so little of a rise parts (meV) are not parted.
+    /// What rises by less is level (meV).
     pub level_mev: f64,
+    /// What the descents from its saddles need to know.
+    pub sides: Sides<'c>,
     /// What first paths need to know.
     pub context: GuessContext<'c>,
 }
@@ -101,24 +101,24 @@ impl Connector<'_> {
         let h = land.evaluator();
         let mut band = Band::new(h, way);
         self.bands.loosely(&mut band)?;
-        if let Some(flat) = flat_way(self.bands, &band, self.c, self.level_mev)? {
+        if let Some(flat) = flat_way(self.bands, &band, self.sides.c, self.level_mev)? {
             land.merge(pair, flat);
             return Ok(());
         }
         for _ in 0..ZOOMS {
-            let Some(path) = zoomed(&band, highest(&band, self.c).as_ref(), band.images() + 4) else { break };
+            let Some(path) = zoomed(&band, highest(&band, self.sides.c).as_ref(), band.images() + 4) else { break };
             band = Band::new(h, path);
             self.bands.loosely(&mut band)?;
         }
-        let tops = peaks(&band, self.c);
+        let tops = peaks(&band, self.sides.c);
         if tops.first().is_some_and(|top| top.floor_mev - land.reference_mev() > self.below_mev) {
             return Ok(());
         }
-        // a saddle between the two lies above both, and may lie far below a peak that it is not near
-        let ends_mev = band.energies_mev()[0].max(band.energies_mev()[band.images() - 1]);
+        // a saddle on the way lies above the lower of the two, and may lie far below a peak that it is not near
+        let ends_mev = band.energies_mev()[0].min(band.energies_mev()[band.images() - 1]);
         for top in tops {
             let found = Saddle::recorded(h, Peak { floor_mev: top.floor_mev.min(ends_mev), ..top })?;
-            if found.is_saddle(self.c) && !land.knows(&found) {
+            if found.is_saddle(self.sides.c) && !land.knows(&found) {
                 return self.add(land, found);
             }
         }
@@ -127,8 +127,7 @@ impl Connector<'_> {
 
     /// Puts the pass of a saddle in if it is proven.
     fn add(&self, land: &mut Landscape, saddle: Saddle) -> Result<()> {
-        let pass =
-            Pass::recorded(land.evaluator(), saddle, Sides { c: self.c, level_mev: self.level_mev, beside: &[] })?;
+        let pass = Pass::recorded(land.evaluator(), saddle, self.sides)?;
         if pass.doubt(land.evaluator()).is_none() {
             land.add(pass);
         }

@@ -1,6 +1,6 @@
 //! Minima: what a descent ends in, and whether two of them are the same.
 
-use super::turns::{turned, turns};
+use super::{turned, turns};
 use crate::energy::Evaluator;
 use crate::field::Components;
 use crate::geometry::vector;

@@ -36,10 +36,10 @@ mod rivals;
 mod saddle;
 mod search;
 mod stored;
-mod turns;
 mod ways;
 mod zoom;
 
+pub use crate::path::{turned, turns};
 pub use assemble::{Assembled, assemble};
 pub use bound::highest_between;
 pub use connect::{Bands, Connector};
@@ -52,5 +52,4 @@ pub use places::{Places, Seen};
 pub use saddle::Saddle;
 pub use search::{Aim, Effort, KINDS, Searched, Settings, Standing, search};
 pub use stored::{are_counts, are_finite, fit};
-pub use turns::{turned, turns};
 pub use zoom::{ZOOMS, zoomed};

@@ -5,8 +5,10 @@
 
 pub mod guess;
 mod resample;
+mod turns;
 
 pub use resample::blend;
+pub use turns::{turned, turns};
 
 use crate::field::Components;
 use crate::geometry::vector;

@@ -41,7 +41,7 @@ pub(super) const STEEP: f64 = LARGER * GENTLE;
 pub(super) const NOISE: f64 = 64.0 * f64::EPSILON;
 /// Most times that a descent goes on along a valley, and most steps of the flow each time.
 const ROUNDS: usize = 24;
-const STEPS: usize = 20_000;
+pub(super) const STEPS: usize = 20_000;
 /// A state whose spins are turned by less than this (rad, any spin) is beside another, and by less than that has reached it.
 const BESIDE: f64 = 1.5;
 const REACHED: f64 = 0.03;
@@ -100,7 +100,7 @@ pub fn descend(h: Evaluator, saddle: &State, valley: &[f64], to: Downhill) -> De
 pub(super) struct Walk<'a> {
     pub(super) h: Evaluator<'a>,
     pub(super) c: f64,
-    beside: &'a [&'a Spins],
+    pub(super) beside: &'a [&'a Spins],
     /// What the energy may rise by and be level (meV).
     pub(super) level_mev: f64,
     pub(super) here: Point,
@@ -265,7 +265,7 @@ impl Walk<'_> {
     }
 
     /// The nearest of the states beside the descent.
-    pub(super) fn nearest(&self) -> Option<&Spins> {
+    fn nearest(&self) -> Option<&Spins> {
         let far = |end: &Spins| largest_angle(end.as_slice(), &self.here.m);
         self.beside.iter().copied().min_by(|p, q| far(p).total_cmp(&far(q)))
     }

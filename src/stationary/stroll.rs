@@ -3,24 +3,19 @@
 //! It goes on over them as long as the energy stays level: to where it falls, or to a minimum that it was to reach.
 
 use super::Spectrum;
-use super::descent::{FIRST, STEEP, Walk};
+use super::descent::{FIRST, STEEP, STEPS, Walk};
 use super::point::Point;
 use super::state::State;
-use super::tolerances::LARGER;
-use super::valley::{GROWTH, LONGEST};
+use super::tolerances::{LARGER, STEP};
+use super::valley::{GROWTH, LONGEST, SHORTEST};
 use crate::linalg::slab;
-use crate::path::largest_angle;
+use crate::path::{largest_angle, turned, turns};
+use crate::spins::Spins;
 use std::mem::swap;
 
 /// A well of depth d that is s wide (in the norm of all spins, rad) has a curvature of 2π²d/s²: wells that part nothing are softer than
 /// this times the rise that is none, if they are a seventh of a radian wide.
 const SOFT: f64 = 1e3;
-/// A state is met where its spins are turned by less (rad, any spin): less than that beyond half a step. A state is left beyond so much.
-const MET: f64 = 0.3;
-const LEFT: f64 = 1.0;
-/// Shorter steps (rad, any spin) are not tried, and no more steps than this: a wall makes about two sites a step.
-const SHORTEST: f64 = 1e-3;
-const STEPS: usize = 20_000;
 
 /// How a stroll ends.
 enum End {
@@ -58,7 +53,9 @@ impl Walk<'_> {
         let state = State::of(self.h, self.here.clone());
         let Some(mode) = state.lowest_mode(self.h) else { return false };
         self.tau = state.field(&mode.vector);
-        let moved = self.here.m.iter().zip(self.trail.last());
+        // a descent that steps over the top before a well comes back to it
+        let before = self.trail.last_beyond(&self.here.m, STEP);
+        let moved = self.here.m.iter().zip(before);
         let ahead: f64 = moved.zip(&self.tau).map(|((m, before), t)| (m - before) * t).sum();
         if ahead < 0.0 {
             slab::scale(&mut self.tau, -1.0);
@@ -97,20 +94,23 @@ impl Walk<'_> {
                 return End::Falls;
             }
             let far = largest_angle(&start.m, &self.here.m);
-            if is_away && far < MET {
+            if is_away && far < STEP {
                 return End::Nowhere;
             }
-            is_away |= far > LEFT;
+            is_away |= far > LARGER * STEP;
             step = (GROWTH * step).min(LONGEST);
         }
         End::Nowhere
     }
 
-    /// Into a minimum beside the descent that it comes by on a level; whether there is one.
+    /// Into a minimum beside the descent that it comes by on a level, turned about the symmetry axes as it is here; whether there is one.
     fn meets(&mut self) -> bool {
-        let here = &self.here.m;
-        let Some(end) = self.nearest().filter(|end| largest_angle(end.as_slice(), here) < MET) else { return false };
-        let end = Point::at(self.h, end.as_slice().to_vec());
+        let here = Spins::from_unit_components(&self.here.m);
+        let ends = self.beside.iter().map(|end| turned(end, &turns(self.h, end, &here)));
+        let near = |end: &Spins| largest_angle(end.as_slice(), here.as_slice()) < STEP;
+        let Some(end) = ends.into_iter().find(near).map(|end| Point::at(self.h, end.as_slice().to_vec())) else {
+            return false;
+        };
         let is_level = self.here.above_mev(&end) > -self.level_mev;
         if is_level {
             self.here = end;

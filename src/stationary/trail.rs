@@ -39,9 +39,9 @@ impl Trail {
         self.points.push(m.to_vec());
     }
 
-    /// The last point.
-    pub fn last(&self) -> &[f64] {
-        self.points.last().unwrap_or(&self.start)
+    /// The last point that is farther than this (rad, any spin) from a state, or the start.
+    pub fn last_beyond(&self, m: &[f64], angle: f64) -> &[f64] {
+        self.points.iter().rev().find(|point| largest_angle(point, m) > angle).unwrap_or(&self.start)
     }
 
     /// How many points it has.

@@ -12,7 +12,7 @@ use std::mem::swap;
 /// the shortest.
 pub(super) const LONGEST: f64 = 0.4;
 pub(super) const GROWTH: f64 = 1.4;
-const SHORTEST: f64 = 1e-4;
+pub(super) const SHORTEST: f64 = 1e-4;
 /// Most Newton steps across a valley after each step along it, which end when one is less than this part of that step; and most that
 /// are taken more where the slope is not the valley's.
 const CORRECTIONS: usize = 3;

@@ -1,8 +1,8 @@
 //! Turns about symmetry axes that bring one state nearest to another.
 
+use super::guess::best_turn;
 use crate::energy::Evaluator;
 use crate::geometry::Direction;
-use crate::path::guess::best_turn;
 use crate::sphere::rotate_sites;
 use crate::spins::Spins;
 
