@@ -278,6 +278,27 @@ fn what_holds_a_wall_by_a_billionth_of_its_energy_is_no_saddle_of_its_way() {
     assert!((1e-10..4e-10).contains(&certified(&out)) && out.saddles.len() == 1, "{:?}", out.barrier);
 }
 
+/// Images of a relaxed path may all lie in minima, and a wall that a field drives down a staircase falls further at every step.
+#[test]
+fn a_wall_that_a_field_drives_leaves_over_the_steps_before_it() {
+    let energy = json!([
+        {"exchange": {"J": ["10 meV"]}}, {"anisotropy": {"K": "1.25 meV", "axis": [0, 0, 1]}},
+        {"zeeman": {"B": ["0 T", "0 T", "0.00005 T"]}},
+        {"anisotropy": {"K": "9.261408e-05 meV", "axis": [0, 0, 1], "sites": [46]}}
+    ]);
+    let driven = chain(72, false, energy, json!({"domain_wall": {"center": 33.7}}), up());
+    // the field draws the wall out to the right; to the left, and round over both ends, it is 2.3e-4 meV
+    let barrier = certified(&solve(&driven, Effort::Normal));
+    assert!((barrier / 1.206_463_83e-5 - 1.0).abs() < 1e-6, "{barrier:e}");
+}
+
+#[test]
+fn a_hop_of_a_billionth_of_the_stiffness_is_found_between_images_that_show_none() {
+    let barrier = certified(&solve(&smooth(100, [40.5, 43.5].map(|center| wall(center, 1))), Effort::None));
+    // three wells on, up the slope towards the middle of the chain
+    assert!((6e-10..1e-9).contains(&barrier), "{barrier:e}");
+}
+
 #[test]
 fn a_descent_goes_on_over_wells_that_are_level_and_stops_at_the_one_it_was_to_reach() {
     let loaded = load_text("test.json".as_ref(), smooth(200, [up(), down()]).to_string()).unwrap();
