@@ -198,16 +198,7 @@ impl<'a> Run<'a, '_> {
         let h = self.problem.evaluator();
         let ends = self.minima.map(|k| self.land.minima()[k].clone());
         let highest = found.iter().max_by(|p, q| p.refined.state.energy_mev.total_cmp(&q.refined.state.energy_mev));
-        let doubt = match (self.problem.certify, self.problem.seeks_saddles()) {
-            (false, _) => Some(Doubt::NotAskedFor),
-            (_, false) => Some(Doubt::NotRefined),
-            _ if highest.is_some() => None,
-            _ if self.is_spent(&c.band) => Some(Doubt::Spent),
-            // images may lie in minima, and what is between these is found by connecting them
-            _ if self.problem.relax_ends => None,
-            _ => Some(Doubt::NoSaddle),
-        };
-        if let Some(doubt) = doubt {
+        if let Some(doubt) = self.foregone(c, highest) {
             return Ok(Proof { ends, links: Vec::new(), doubts: vec![doubt] });
         }
         self.observer.stage("proving the saddles");
@@ -255,6 +246,19 @@ impl<'a> Run<'a, '_> {
         doubts.extend(unproven.map(|(_, which)| Doubt::NoMinimum(which)));
         doubts.dedup_by_key(|doubt| doubt.to_string());
         Ok(Proof { ends, links, doubts })
+    }
+
+    /// What stands against a proof before it is tried.
+    fn foregone(&self, c: &FirstPath<'a>, highest: Option<&Saddle>) -> Option<Doubt> {
+        match (self.problem.certify, self.problem.seeks_saddles()) {
+            (false, _) => Some(Doubt::NotAskedFor),
+            (_, false) => Some(Doubt::NotRefined),
+            _ if highest.is_some() => None,
+            _ if self.is_spent(&c.band) => Some(Doubt::Spent),
+            // images may lie in minima, and what is between these is found by connecting them
+            _ if self.problem.relax_ends => None,
+            _ => Some(Doubt::NoSaddle),
+        }
     }
 
     /// Connects the ends below a height (meV above the initial state), and not higher than the path itself rises; what stands against
