@@ -213,10 +213,23 @@ fn an_interrupted_run_of_several_leaves_the_others_undone() {
 fn two_runs_into_one_directory_exclude_each_other() {
     let folder = folder();
     let mut first = at_work(folder.path(), &[]);
-    let (code, _, said) = run(folder.path(), &["--resume"]);
-    assert_eq!(code, Some(1), "{said}");
-    let holder = format!("error: out: another run (process {}", first.id());
-    assert!(said.starts_with(&holder) && said.contains("is at work in this directory"), "{said}");
+    signal(&first, "STOP");
+    let refused = || {
+        let (code, _, said) = run(folder.path(), &["--resume"]);
+        assert_eq!(code, Some(1), "{said}");
+        let holder = format!("error: out: another run (process {}", first.id());
+        assert!(said.starts_with(&holder) && said.contains("is at work in this directory"), "{said}");
+    };
+    refused();
+    // whatever the holder has half written
+    let [journal, aside] = ["out/checkpoint/journal", "aside"].map(|name| folder.path().join(name));
+    fs::rename(&journal, &aside).unwrap();
+    fs::create_dir(&journal).unwrap();
+    fs::write(folder.path().join("out/summary.json"), "{").unwrap();
+    refused();
+    fs::remove_file(folder.path().join("out/summary.json")).unwrap();
+    fs::remove_dir(&journal).unwrap();
+    fs::rename(&aside, &journal).unwrap();
     first.kill().unwrap();
     first.wait().unwrap();
     goes_on(folder.path(), &[]);

@@ -82,22 +82,28 @@ impl Loaded {
     /// already.
     pub fn reserve(&self, directory: &Path, names: &[String], force: bool) -> Result<Option<Lock>> {
         let finished = || self.is_finished(directory, names, force);
-        if finished()? {
-            // a run that was killed between its last file and the end leaves some
-            let left = Checkpoint::is_left(directory) || Lock::is_left(directory) || is_partial_left(directory);
-            if (left || folder::is_note_left(directory))
-                && let Ok(_lock) = Lock::of(directory)
-            {
-                discard_leftovers(directory)?;
+        match finished() {
+            Ok(true) => {
+                // a run that was killed between its last file and the end leaves some
+                let left = Checkpoint::is_left(directory) || Lock::is_left(directory) || is_partial_left(directory);
+                if (left || folder::is_note_left(directory))
+                    && let Ok(_lock) = Lock::of(directory)
+                {
+                    discard_leftovers(directory)?;
+                }
+                return Ok(None);
             }
-            return Ok(None);
+            // a folder that another run is writing is looked at once it is locked
+            Err(error) if !Lock::is_left(directory) => return Err(error),
+            _ => {}
         }
-        Checkpoint::check(directory, force)?;
         let lock = Lock::of(directory)?;
         // who held the lock may have finished meanwhile
         if finished()? {
             return Ok(None);
         }
+        // not before: who is at work there has its snapshot under no name for a moment
+        Checkpoint::check(directory, force)?;
         disk::clean(directory)?;
         let all = file_names(|_| true);
         all.iter().filter_map(|name| name.strip_suffix('/')).try_for_each(|name| disk::clean(&directory.join(name)))?;
