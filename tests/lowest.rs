@@ -317,6 +317,11 @@ fn a_descent_goes_on_over_wells_that_are_level_and_stops_at_the_one_it_was_to_re
     let near = [-1.0, 1.0].map(|sense| down(sense, Downhill { level_mev: 0.0, ..level }));
     let far = [-1.0, 1.0].map(|sense| down(sense, level));
     assert!(near.iter().all(|d| d.fallen_mev < 1e-8) && far.iter().all(|d| d.fallen_mev > 6.0));
+    let side = |m: &[f64]| {
+        let up = |m: &[f64]| m[m.len() / 3 * 2..].iter().sum::<f64>();
+        (up(m) - up(&saddle.m)).signum()
+    };
+    assert!(near.iter().zip(&far).all(|(near, far)| side(&near.m) == side(&far.m)), "it goes on, not back");
     assert!(far.iter().all(|d| d.way.windows(2).all(|w| largest_angle(&w[0], &w[1]) < 1.0)), "the way has no gap");
     let wells = near.map(|d| {
         let n = d.m.len() / 3;

@@ -106,7 +106,6 @@ impl Config {
     }
 
     /// The minimum-energy path; into a folder, if there is to be one.
-    #[pyo3(signature = (threads, progress, recorded))]
     fn run(
         &self,
         py: Python,
@@ -170,7 +169,6 @@ impl Config {
     }
 
     /// All minima and saddles below an energy; into a folder, if there is to be one.
-    #[pyo3(signature = (threads, progress, recorded))]
     fn landscape(
         &self,
         py: Python,

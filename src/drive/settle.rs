@@ -33,14 +33,7 @@ fn over(c: &FirstPath, links: &[Pass]) -> f64 {
 
 /// What rises by less along a band is level (meV): rounding, and what changes no digit of its barrier that is told.
 fn level_mev(band: &Band) -> f64 {
-    (FLAT * band.hamiltonian().stiffness_mev()).max(passed_mev(band))
-}
-
-/// Out of minima that so little of a rise parts (meV) a descent goes on: what changes no digit of the barrier, where that is more than
-/// rounding.
-fn passed_mev(band: &Band) -> f64 {
-    let passed = ALIKE * height(band);
-    if passed > FLAT * band.hamiltonian().stiffness_mev() { passed } else { 0.0 }
+    (FLAT * band.hamiltonian().stiffness_mev()).max(ALIKE * height(band))
 }
 
 /// Heights of a band that differ by less are one (meV).
@@ -209,7 +202,7 @@ impl<'a> Run<'a, '_> {
         if highest.is_some_and(|highest| self.land.height_mev(highest.spins()) >= below_mev) {
             return Ok(Proof { ends, links: Vec::new(), doubts: vec![Doubt::NoRoute(0)] });
         }
-        let sides = Sides { c: scale, level_mev: passed_mev(&c.band), beside: &ends.each_ref() };
+        let sides = Sides { c: scale, level_mev: level_mev(&c.band), beside: &ends.each_ref() };
         let (mut own, mut doubts): (Vec<Pass>, Vec<Doubt>) = (Vec::new(), Vec::new());
         let others = found.iter().filter(|f| highest.is_some_and(|highest| !std::ptr::eq(*f, highest)));
         for saddle in highest.into_iter().chain(others) {
@@ -270,8 +263,7 @@ impl<'a> Run<'a, '_> {
             path: c.band.path(),
             below_mev,
             evaluations: self.problem.neb.max_evaluations.saturating_mul(c.band.images()),
-            level_mev: level_mev(&c.band),
-            sides: Sides { c: self.scales.stiffness_mev, level_mev: passed_mev(&c.band), beside: &[] },
+            sides: Sides { c: self.scales.stiffness_mev, level_mev: level_mev(&c.band), beside: &[] },
             context: self.context(),
         };
         let gap = connector.connect(&mut self.land, self.minima)?;

@@ -34,8 +34,6 @@ pub struct Connector<'c> {
     pub below_mev: f64,
     /// Most evaluations of single states, all that were made before counted.
     pub evaluations: usize,
-    /// What rises by less is level (meV).
-    pub level_mev: f64,
     /// What the descents from its saddles need to know.
     pub sides: Sides<'c>,
     /// What first paths need to know.
@@ -101,7 +99,7 @@ impl Connector<'_> {
         let h = land.evaluator();
         let mut band = Band::new(h, way);
         self.bands.loosely(&mut band)?;
-        if let Some(flat) = flat_way(self.bands, &band, self.sides.c, self.level_mev)? {
+        if let Some(flat) = flat_way(self.bands, &band, self.sides.c, self.sides.level_mev)? {
             land.merge(pair, flat);
             return Ok(());
         }

@@ -41,7 +41,7 @@ fn falling(h: Evaluator, saddle: &Saddle) -> Vec<f64> {
 pub struct Sides<'a> {
     /// Stiffness scale c (meV).
     pub c: f64,
-    /// Minima that so little of a rise parts (meV) are not parted.
+    /// What rises by less is level (meV).
     pub level_mev: f64,
     /// Minima beside it.
     pub beside: &'a [&'a Minimum],

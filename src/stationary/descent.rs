@@ -16,6 +16,7 @@ use super::polish::polish;
 use super::quench::quench;
 use super::spectrum::Spectrum;
 use super::state::State;
+use super::stroll::SOFT;
 use super::tolerances::{FLAT, LARGER, LAST_SHIFT, SHARP, STATIONARY, STEP};
 use super::trail::Trail;
 use super::unfactored::Unfactored;
@@ -65,7 +66,7 @@ pub struct Descent {
 pub struct Downhill<'a> {
     /// The stiffness scale (meV).
     pub c: f64,
-    /// Minima that so little of a rise parts (meV) are not parted: a descent goes on over them.
+    /// What rises by less is level (meV): where that is more than rounding, a descent goes on over minima that no more parts.
     pub level_mev: f64,
     /// Proven minima beside the saddle: a descent ends in one where its slope forks, where it has all but reached it, and where it comes
     /// by on a level with it.
@@ -79,7 +80,7 @@ pub fn descend(h: Evaluator, saddle: &State, valley: &[f64], to: Downhill) -> De
         h,
         c,
         beside,
-        level_mev,
+        level_mev: if level_mev > FLAT * h.stiffness_mev() && !h.forgoes_factors() { level_mev } else { 0.0 },
         here: saddle.point.clone(),
         next: Point::default(),
         tau: valley.to_vec(),
@@ -101,7 +102,7 @@ pub(super) struct Walk<'a> {
     pub(super) h: Evaluator<'a>,
     pub(super) c: f64,
     pub(super) beside: &'a [&'a Spins],
-    /// What the energy may rise by and be level (meV).
+    /// Over minima that so little of a rise parts (meV) the descent goes on; over none if 0.
     pub(super) level_mev: f64,
     pub(super) here: Point,
     /// Where the step that is being tried leads.
@@ -151,11 +152,13 @@ impl Walk<'_> {
                 enough = STEEP * self.h.stiffness_mev();
                 continue;
             }
-            if self.h.is_stopped() || self.is_minimum() {
-                let goes_on = !self.h.is_stopped() && self.parts_nothing() && self.stroll();
-                if !goes_on {
-                    return matches!(end, Fall::Arrived);
-                }
+            // where nothing is softer than a well that parts nothing one look tells a minimum
+            let is_firm = self.h.is_stopped() || self.has_none_softer(SOFT * self.level_mev);
+            let is_minimum = is_firm || self.level_mev > 0.0 && self.has_none_softer(0.0);
+            if is_firm || is_minimum && !self.stroll() {
+                return matches!(end, Fall::Arrived);
+            }
+            if is_minimum {
                 enough = STEEP * self.h.stiffness_mev();
                 continue;
             }
@@ -238,7 +241,7 @@ impl Walk<'_> {
         self.here.go(self.h, &from, &self.room.v);
         let arrived = self.quench()
             && from.above_mev(&self.here) > self.h.rounding_mev()
-            && (self.join() || matches!(self.fall(), Fall::Arrived) && (self.is_minimum() || self.fork()));
+            && (self.join() || matches!(self.fall(), Fall::Arrived) && (self.has_none_softer(0.0) || self.fork()));
         if !arrived {
             self.trail.go_back_to(points);
             (self.here, self.tau) = (from, tau);
@@ -289,8 +292,8 @@ impl Walk<'_> {
         falls
     }
 
-    /// Whether no direction is negative here.
-    fn is_minimum(&mut self) -> bool {
-        Spectrum::softer(self.h, &self.here, 0.0, &mut self.room.matrix) == 0
+    /// Whether in no direction the energy's curvature here is less than this (meV).
+    fn has_none_softer(&mut self, curvature_mev: f64) -> bool {
+        Spectrum::softer(self.h, &self.here, curvature_mev, &mut self.room.matrix) == 0
     }
 }

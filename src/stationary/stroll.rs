@@ -2,7 +2,6 @@
 //! than any digit that is told, but a well at every site, and a descent that ended in the first would need a saddle for each to go on.
 //! It goes on over them as long as the energy stays level: to where it falls, or to a minimum that it was to reach.
 
-use super::Spectrum;
 use super::descent::{FIRST, STEEP, STEPS, Walk};
 use super::point::Point;
 use super::state::State;
@@ -15,7 +14,7 @@ use std::mem::swap;
 
 /// A well of depth d that is s wide (in the norm of all spins, rad) has a curvature of 2π²d/s²: wells that part nothing are softer than
 /// this times the rise that is none, if they are a seventh of a radian wide.
-const SOFT: f64 = 1e3;
+pub(super) const SOFT: f64 = 1e3;
 
 /// How a stroll ends.
 enum End {
@@ -28,12 +27,6 @@ enum End {
 }
 
 impl Walk<'_> {
-    /// Whether the minimum here may be parted from others by less than what is level.
-    pub(super) fn parts_nothing(&mut self) -> bool {
-        let soft = SOFT * self.level_mev;
-        soft > 0.0 && Spectrum::softer(self.h, &self.here, soft, &mut self.room.matrix) > 0
-    }
-
     /// On along the softest mode; whether to where the energy falls. If not, the descent is in a minimum: one beside it, or where it was.
     pub(super) fn stroll(&mut self) -> bool {
         if self.meets() {
