@@ -629,6 +629,63 @@ fn a_state_that_wanders_between_the_edges_of_its_film_has_no_rate_and_what_comes
 }
 
 #[test]
+fn a_row_of_spins_that_are_all_but_alike_has_rates_along_whatever_direction_it_lies() {
+    let energy = r#"{"exchange": {"J": ["3 meV"]}}, {"anisotropy": {"K": "0.8 meV", "axis": [0, 0, 1]}},
+        {"anisotropy": {"K": "-0.2 meV", "axis": [1, 0, 0]}}, {"zeeman": {"B": ["0.01 T", "0 T", "0 T"], "sites": [0]}}"#;
+    let lattices = [
+        r#"{"chain": {"sites": 7}}"#,
+        r#"{"square": {"cells": [7, 1]}}"#,
+        r#"{"square": {"cells": [1, 7]}}"#,
+        r#"{"cubic": {"cells": [1, 1, 7]}}"#,
+    ];
+    let found = lattices.map(|lattice| {
+        let outcome = solve(&film(lattice, energy, [UP, DOWN], 3.0));
+        Theory::ALL.map(|theory| rate(&outcome, Way::Forward).ln_rate_per_s(theory, 3.0).expect(lattice))
+    });
+    for (of, lattice) in found.iter().zip(lattices) {
+        assert!(of.iter().zip(&found[0]).all(|(a, b)| (a - b).abs() < 1e-9), "{lattice}: {of:?} {:?}", found[0]);
+    }
+}
+
+#[test]
+fn two_bonds_round_a_periodic_film_have_the_rates_of_one_that_is_twice_as_strong() {
+    let energy = |pairs: &str| {
+        format!(
+            r#"{{"exchange": {{"J": ["1.5 meV"]}}}}, {{"anisotropy": {{"K": "0.8 meV", "axis": [0, 0, 1]}}}},
+               {{"anisotropy": {{"K": "-0.3 meV", "axis": [1, 0.5, 0]}}}}, {{"zeeman": {{"B": ["1 T", "0.4 T", "-0.5 T"]}}}},
+               {{"anisotropy": {{"K": "0.3 meV", "axis": [0, 1, 1], "sites": [0]}}}}{pairs}"#
+        )
+    };
+    let round = r#"{"square": {"cells": [5, 2], "periodic": [false, true]}}"#;
+    let pairs = r#", {"pairs": {"bonds": [{"from": 0, "to": 0, "cell": [0, 1, 0], "J": "1.5 meV"}]}}"#;
+    let ways = [(round, ""), (r#"{"square": {"cells": [5, 2]}}"#, pairs)];
+    let [round, open] = ways.map(|(lattice, pairs)| {
+        let outcome = solve(&film(lattice, &energy(pairs), [UP, DOWN], 3.0));
+        Theory::ALL.map(|theory| rate(&outcome, Way::Forward).ln_rate_per_s(theory, 3.0).expect(lattice))
+    });
+    assert!(round.iter().zip(&open).all(|(a, b)| (a - b).abs() < 1e-9), "{round:?} {open:?}");
+}
+
+#[test]
+fn a_nucleus_that_slides_has_no_rate_where_its_ring_is_all_but_regular() {
+    let energy = |field: &str| {
+        format!(
+            r#"{{"exchange": {{"J": ["3 meV"]}}}}, {{"anisotropy": {{"K": "0.8 meV", "axis": [0, 0, 1]}}}},
+               {{"anisotropy": {{"K": "-0.5 meV", "axis": [1, 0, 0]}}}}{field}"#
+        )
+    };
+    let ring = r#"{"chain": {"sites": 9, "periodic": true}}"#;
+    let outcome = solve(&film(ring, &energy(""), [UP, DOWN], 3.0));
+    let zeros = &made(rate(&outcome, Way::Forward)).saddle_zeros;
+    assert!(zeros.iter().any(|z| z.kind == ZeroKind::Translation), "{zeros:?}");
+    // what holds it now is of no size beside k_BT, and says nothing of how far it slides
+    let field = r#", {"zeeman": {"B": ["0 T", "0.0001 T", "0 T"], "sites": [0]}}"#;
+    let outcome = solve(&film(ring, &energy(field), [UP, DOWN], 3.0));
+    let why = refusal(&outcome, Theory::Htst);
+    assert!(why.contains("the saddle has a translation that nothing holds"), "{why}");
+}
+
+#[test]
 fn forward_and_backward_rates_are_in_detailed_balance() {
     let mut r = ChaCha8Rng::seed_from_u64(12);
     let mut checked = 0;

@@ -3,7 +3,7 @@
 use super::outcome::MOVED_FAR_RAD;
 use crate::energy::Evaluator;
 use crate::spins::Spins;
-use crate::stationary::{Point, Relaxed, WayDown};
+use crate::stationary::{ALIKE, Point, Relaxed, WayDown};
 
 /// An end that stays as given.
 pub fn kept(h: Evaluator, spins: &Spins) -> Relaxed {
@@ -19,10 +19,11 @@ pub fn kept(h: Evaluator, spins: &Spins) -> Relaxed {
 }
 
 /// What a user should know of how an end relaxed.
-pub fn judge_end(r: &Relaxed, which: &str) -> Vec<String> {
+pub fn judge_end(h: Evaluator, r: &Relaxed, which: &str) -> Vec<String> {
     let mut warnings = Vec::new();
     let degrees = r.largest_rotation_rad.to_degrees();
-    if let Some(WayDown { site, direction: [x, y, z], fallen_mev }) = &r.left {
+    let falls = |way: &&WayDown| way.fallen_mev > ALIKE * h.stiffness_mev();
+    if let Some(WayDown { site, direction: [x, y, z], fallen_mev }) = r.left.as_ref().filter(falls) {
         warnings.push(format!(
             "the {which} state came to rest where it is no minimum: the energy falls by {fallen_mev:.3e} meV on the way that \
              turns site {site} most, towards ({x:.2}, {y:.2}, {z:.2}); it was relaxed further that way"

@@ -33,7 +33,7 @@ impl RelaxedState {
 pub fn relaxed_state(h: Evaluator, spins: &Spins, modes: usize, which: &str) -> Result<RelaxedState> {
     let relaxed = relax_to_minimum(h, spins, RELAXED * h.stiffness_mev())?;
     let minimum = Minimum::with_modes(h, &relaxed.spins, modes);
-    let mut warnings = judge_end(&relaxed, which);
+    let mut warnings = judge_end(h, &relaxed, which);
     let s = &minimum.spectrum;
     if s.negative > 0 {
         warnings.push(format!("the {which} state is no minimum: {} directions lead down from it", s.negative));

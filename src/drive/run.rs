@@ -84,7 +84,7 @@ impl<'a, 'o> Run<'a, 'o> {
             given.map(|spins| kept(h, spins))
         };
         if problem.relax_ends {
-            warnings.extend(ends.iter().zip(["initial", "final"]).flat_map(|(end, which)| judge_end(end, which)));
+            warnings.extend(ends.iter().zip(["initial", "final"]).flat_map(|(end, which)| judge_end(h, end, which)));
         } else {
             warnings.push(
                 "the ends were not relaxed (relax_ends is false): they need not be minima, and a certificate speaks of the saddle alone"
@@ -135,7 +135,13 @@ impl<'a, 'o> Run<'a, 'o> {
         let mut rejected: Vec<RejectedPath> = others.iter().map(|c| rejection(c, &best.first, scale)).collect();
         let mut search = self.search(&mut best, &mut rejected)?;
         search.lowest_exits_mev = self.lowest_exits(&best.proof.links);
-        Ok(report::outcome(self.prepared(), best.first, &best.found, best.proof, search, rejected))
+        if self.problem.rates.is_some() {
+            self.observer.stage("computing the rates");
+        }
+        let outcome = report::outcome(self.prepared(), best.first, &best.found, best.proof, search, rejected);
+        // rates that were stopped on their way look like rates that there are none of
+        self.problem.rates.as_ref().map_or(Ok(()), |_| self.problem.control.check())?;
+        Ok(outcome)
     }
 
     /// Beside the path over these saddles, of the initial and of the final state (meV above it).

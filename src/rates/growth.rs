@@ -5,19 +5,32 @@
 //! ```
 //! A saddle with one negative mode has one eigenvalue with a positive real part, and it is real: det M(σ) changes its sign at
 //! σ = λ₊ alone (σ > 0). Inverse iteration x ← M(σ)⁻¹ B x gives λ ≈ σ − 1/μ, μ the growth of x, and the next shift; the sign of the
-//! determinant, free with each factorisation, keeps it in a bracket. In the lattice's order of elimination the matrix is a band.
+//! determinant, free with each factorisation, keeps it in a bracket. In a row the matrix is a band.
+//!
+//! Where sites are coupled every way, M(σ) y = b is solved by iteration, with the factors of one symmetric matrix that is positive:
+//!
+//! ```text
+//! S = H + t Γ⁻¹,  t ≥ 2|λ₁|:      (1 + S⁻¹(σB − tΓ⁻¹)) y = S⁻¹ b
+//! ```
+//! To all but the soft modes that is the identity. There is no determinant then, and none is needed: of all eigenvalues λ₊ is the nearest to
+//! any σ > λ₊/2, for the others have no positive real part; and what is found is λ₊ if it is positive.
 
 use super::Unstable;
-use crate::energy::Hamiltonian;
-use crate::linalg::{General, slab};
+use crate::energy::Evaluator;
+use crate::linalg::{Factors, General, Matrix, gmres, slab};
 use crate::stationary::State;
 
 /// Most factorisations; halving alone would need about fifty.
 const ROUNDS: usize = 200;
+/// Most products of one solution by iteration, and the part of a right-hand side that it may leave.
+const PRODUCTS: usize = 500;
+const LEFT: f64 = 1e-13;
+/// A shift by iteration lies above the estimate by this part, where the matrix is far enough from singular.
+const ABOVE: f64 = 1e-3;
 
 /// The linearised equation at a saddle, in units of the largest Γ.
 struct Linearised<'a> {
-    h: &'a Hamiltonian,
+    h: Evaluator<'a>,
     saddle: &'a State,
     /// Where each site stands in the band.
     places: Vec<usize>,
@@ -26,29 +39,78 @@ struct Linearised<'a> {
     damping: f64,
 }
 
-/// λ₊ (rad/s) at a saddle of index one; `gyration` is Γ (rad/s per meV), a number a site. Nothing if it cannot be told from zero.
-pub fn growth_rate(
-    h: &Hamiltonian,
-    saddle: &State,
-    unstable: &Unstable,
-    gyration: &[f64],
-    damping: f64,
-) -> Option<f64> {
+/// λ₊ (rad/s) at a saddle of index one; `gyration` is Γ (rad/s per meV), a number a site. Nothing if it cannot be told from zero, or
+/// the run is stopped.
+pub fn growth_rate(h: Evaluator, saddle: &State, unstable: &Unstable, gyration: &[f64], damping: f64) -> Option<f64> {
     let scale = gyration.iter().fold(0.0f64, |s, g| s.max(*g));
     let slowness = gyration.iter().map(|g| scale / g).collect();
-    let lin = Linearised { h, saddle, places: h.lattice().places(), slowness, damping };
+    let places = if by_iteration(saddle) { (0..h.sites()).collect() } else { h.lattice().places() };
+    let lin = Linearised { h, saddle, places, slowness, damping };
     lin.eigenvalue(&unstable.mode, unstable.eigenvalue_mev).map(|rate| scale * rate)
+}
+
+/// Whether the sites around a saddle are coupled every way, so that no band is narrow.
+fn by_iteration(saddle: &State) -> bool {
+    matches!(saddle.hessian, Matrix::Sparse(_))
 }
 
 impl Linearised<'_> {
     fn eigenvalue(&self, mode: &[f64], lambda1: f64) -> Option<f64> {
-        let (mut sigma, mut x) = self.guess(mode, lambda1)?;
+        let start = self.guess(mode, lambda1)?;
+        // the descending curvature is known to the rounding error of the Hessian, and λ₊ goes with it
+        let rounding = (4.0 * f64::EPSILON * self.saddle.hessian.norm1() / -lambda1).clamp(1e-13, 1e-2);
+        if by_iteration(self.saddle) { self.iterated(start, lambda1, rounding) } else { self.banded(start, rounding) }
+    }
+
+    fn iterated(&self, (guess, mut x): (f64, Vec<f64>), lambda1: f64, rounding: f64) -> Option<f64> {
+        let shift = guess.max(-2.0 * lambda1);
+        let factors = self.positive(shift);
+        let solved = |mut b: Vec<f64>| {
+            factors.solve(&mut b, 1);
+            b
+        };
+        // rather above than below
+        let (mut sigma, mut last, mut before) = (4.0 * guess, f64::INFINITY, f64::INFINITY);
+        for _ in 0..ROUNDS {
+            let product = |v: &[f64]| {
+                let mut sum = self.weighted(v);
+                slab::scale(&mut sum, sigma);
+                let slow = sum.iter_mut().zip(v).enumerate();
+                slow.for_each(|(k, (s, v))| *s -= shift * self.slowness[k / 2] * v);
+                let mut sum = solved(sum);
+                slab::add_scaled(&mut sum, 1.0, v);
+                (!self.h.is_stopped()).then_some(sum)
+            };
+            let mut y = gmres(product, &solved(self.weighted(&x)), LEFT, PRODUCTS)?;
+            let (growth, size) = (slab::dot(&x, &y), slab::norm(&y));
+            let next = sigma - 1.0 / growth;
+            let (aligned, change) = ((growth.abs() / size - 1.0).abs(), (next - last).abs());
+            let is_sharp = change <= rounding * next || (change <= 1e-6 * next && change >= 0.5 * before);
+            if aligned < 1e-9 && is_sharp && next > 0.0 {
+                return Some(next);
+            }
+            slab::scale(&mut y, 1.0 / size);
+            (x, last, before) = (y, next, change);
+            sigma = ((1.0 + ABOVE) * next).clamp(sigma / 4.0, 4.0 * sigma);
+        }
+        None
+    }
+
+    /// The factors of H + t Γ⁻¹.
+    fn positive(&self, t: f64) -> Factors {
+        let mut matrix = self.saddle.hessian.clone();
+        (0..matrix.order()).for_each(|k| matrix.add(k, k, t * self.slowness[k / 2]));
+        matrix.factor()
+    }
+
+    fn banded(&self, (mut sigma, mut x): (f64, Vec<f64>), rounding: f64) -> Option<f64> {
         let hessian = self.hessian();
         let (mut low, mut high) = (0.0, f64::INFINITY);
         let mut before = f64::INFINITY;
-        // the descending curvature is known to the rounding error of the Hessian, and λ₊ goes with it
-        let rounding = (4.0 * f64::EPSILON * self.saddle.hessian.norm1() / -lambda1).clamp(1e-13, 1e-2);
         for _ in 0..ROUNDS {
+            if self.h.is_stopped() {
+                return None;
+            }
             let factors = self.shifted(&hessian, sigma).factor();
             if factors.sign() > 0.0 {
                 high = sigma;
@@ -113,12 +175,16 @@ impl Linearised<'_> {
         self.h.sites()
     }
 
-    /// All pairs of sites that are coupled, each once.
-    fn pairs(&self) -> Box<dyn Iterator<Item = [usize; 2]> + '_> {
-        match self.h.coupling().pairs() {
-            Some(_) => Box::new((0..self.sites()).flat_map(|i| (0..i).map(move |j| [i, j]))),
-            None => Box::new(self.h.constant_blocks().bond.iter().flat_map(|bonds| bonds.family.bonds())),
+    /// All pairs of sites that are coupled, each once, however many bonds join them.
+    fn pairs(&self) -> Vec<[usize; 2]> {
+        if self.h.coupling().pairs().is_some() {
+            return (0..self.sites()).flat_map(|i| (0..i).map(move |j| [j, i])).collect();
         }
+        let bonds = self.h.constant_blocks().bond.iter().flat_map(|bonds| bonds.family.bonds());
+        let mut pairs: Vec<[usize; 2]> = bonds.map(|[i, j]| [i.min(j), i.max(j)]).collect();
+        pairs.sort_unstable();
+        pairs.dedup();
+        pairs
     }
 
     /// A vector by site, in the order of the band.
@@ -134,7 +200,8 @@ impl Linearised<'_> {
     /// H, in the order of the band.
     fn hessian(&self) -> General {
         let n = self.sites();
-        let spread = self.pairs().map(|[i, j]| self.places[i].abs_diff(self.places[j])).max().unwrap_or(0);
+        let pairs = self.pairs();
+        let spread = pairs.iter().map(|&[i, j]| self.places[i].abs_diff(self.places[j])).max().unwrap_or(0);
         let mut matrix = General::zeros(2 * n, 2 * spread + 1);
         let mut add = |i: usize, j: usize| {
             for (a, b) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
@@ -145,7 +212,7 @@ impl Linearised<'_> {
             }
         };
         (0..n).for_each(|i| add(i, i));
-        self.pairs().for_each(|[i, j]| {
+        pairs.into_iter().for_each(|[i, j]| {
             add(i, j);
             add(j, i);
         });

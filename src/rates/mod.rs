@@ -55,7 +55,7 @@ pub use sliding::{Pinning, Turn};
 pub use symmetry::{Equivalents, equivalent_saddles};
 pub use transition::{Orbits, TransitionRate, TransitionRow, transitions};
 pub use unstable::{Unstable, unstable_mode};
-pub use validity::{LOW_BARRIER, Validity, digits};
+pub use validity::{LOW_BARRIER, ORDER, Validity, digits};
 use zero_modes::zero_modes;
 pub use zero_modes::{ZeroKind, ZeroModes};
 

@@ -3,7 +3,7 @@
 use super::passage::{TEN_YEARS_S, blocking_temperature};
 use super::refusal::{conserved_moment, unfit};
 use super::sliding::{Pinning, Turn};
-use super::validity::{Fluctuations, Validity, warnings};
+use super::validity::{Fluctuations, Validity, of_cells, warnings};
 use super::wells::{Beside, Found};
 use super::{
     Equivalents, RateSettings, Refusal, Theory, Unstable, ZeroModes, crossover_temperature, growth_rate, unstable_mode,
@@ -333,7 +333,7 @@ fn frequencies(h: Evaluator, crossing: &Crossing, unstable: &Unstable, settings:
     let dense = h.coupling().pairs().is_some() && h.sites() > MOST_DENSE;
     let growth = match dense {
         true => None,
-        false => growth_rate(&h, top, unstable, &gyration, settings.damping),
+        false => growth_rate(h, top, unstable, &gyration, settings.damping),
     };
     let frequency = |theory: Theory| -> Option<f64> {
         if !settings.wants(theory) {
@@ -403,6 +403,7 @@ fn computed(
             warnings: Vec::new(),
         };
         rate.warnings = warnings(settings, barriers[side], rate.at(settings.hottest_k()));
+        rate.warnings.extend(of_cells(h.lattice()));
         rate
     }))
 }

@@ -6,6 +6,7 @@
 use super::determinant::PinnedHessian;
 use super::{Prefactor, RateSettings, Regime, Unstable};
 use crate::energy::Hamiltonian;
+use crate::lattice::Lattice;
 use crate::stationary::State;
 use crate::units::K_B;
 use std::f64::consts::PI;
@@ -13,14 +14,14 @@ use std::f64::consts::PI;
 /// Barriers below so many k_BT are low.
 pub const LOW_BARRIER: f64 = 5.0;
 /// A mean square deviation of a spin (rad²) from which the harmonic approximation is rough.
-const LARGE: f64 = 0.3;
+pub(super) const LARGE: f64 = 0.3;
 /// A relative error of the descending curvature that is worth a word.
 const VAGUE: f64 = 1e-6;
 /// Damping times ΔE/k_BT below which the bath feeds energy slowly.
 const WEAK: f64 = 3.0;
 
-/// A mode that reaches round the sphere leaves the order of magnitude.
-const ORDER: f64 = 10.0;
+/// A mode that reaches round the sphere leaves the order of magnitude, if that.
+pub const ORDER: f64 = 10.0;
 /// Most digits of a rate that are shown.
 const MOST_DIGITS: usize = 4;
 
@@ -81,7 +82,8 @@ impl Fluctuations {
     /// What modes that are not harmonic leave: wrong by terms of the order of σ², one that is free by σ over its true extent.
     fn factor(&self, thermal_mev: f64) -> f64 {
         let angle = (thermal_mev * self.mean_square_per_mev).sqrt();
-        if angle < PI { 1.0 + angle.min(angle * angle) } else { ORDER }
+        // what goes round the sphere has less room than the harmonic integral counts, by as many times
+        if angle < PI { 1.0 + angle.min(angle * angle) } else { ORDER * angle / PI }
     }
 
     /// About a minimum.
@@ -163,7 +165,10 @@ fn large_fluctuations(which: &str, spread: &Fluctuations, hottest: f64) -> Optio
     let angle = (K_B * hottest * spread.mean_square_per_mev).sqrt();
     let range = match angle < PI {
         true => format!("within a factor of about {:.2}", spread.factor(K_B * hottest)),
-        false => "no better than as an order of magnitude, if at all: a mode reaches round the sphere".into(),
+        false => format!(
+            "no better than within a factor of about {:.0}, if at all: a mode reaches round the sphere",
+            spread.factor(K_B * hottest)
+        ),
     };
     (hottest > from).then(|| {
         format!(
@@ -198,6 +203,18 @@ fn vague_curvature(vague: f64, langer: Option<Prefactor>) -> Option<String> {
         "the curvature of the descending mode is known to {:.1e} of itself only, and Langer's rate to half of that",
         vague
     ))
+}
+
+/// The spin waves of a film or a body have ever more room for entropy the smaller its cells are (those of a wire have not).
+pub(super) fn of_cells(lattice: &Lattice) -> Option<String> {
+    let is_row = lattice.grid.size.iter().filter(|cells| **cells > 1).count() < 2;
+    (lattice.sections_nm.is_some() && !is_row).then(|| {
+        format!(
+            "the prefactor counts the spin waves of {} cells, and changes with their size; A, K and Ms as measured at a temperature \
+             hold the part of these waves already",
+            lattice.sites
+        )
+    })
 }
 
 /// A temperature in a few digits.

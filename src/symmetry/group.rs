@@ -70,17 +70,17 @@ impl Group {
 
     /// Products of shifts, of each no times or a multiple of `steps` less than `until`; the identity is the first.
     pub fn products<'a>(&'a self, steps: &[usize], until: &[usize]) -> impl Iterator<Item = Operation> + use<'a> {
-        let counts: Vec<usize> = until.iter().zip(steps).map(|(until, step)| until.div_ceil(*step)).collect();
-        let steps = steps.to_vec();
-        (0..counts.iter().product()).map(move |mut k: usize| {
-            self.shifts.iter().zip(&steps).zip(&counts).fold(
-                self.classes[0].clone(),
-                |before, ((shift, step), count)| {
-                    let times = k % count * step;
-                    k /= count;
-                    shift.times(times).after(&before)
-                },
-            )
+        let counts = until.iter().zip(steps).map(|(until, step)| until.div_ceil(*step));
+        let multiples = |((shift, step), count): ((&'a Shift, &usize), usize)| -> Vec<Operation> {
+            (0..count).map(|k| shift.times(k * step)).collect()
+        };
+        let all: Vec<Vec<Operation>> = self.shifts.iter().zip(steps).zip(counts).map(multiples).collect();
+        (0..all.iter().map(Vec::len).product()).map(move |mut k: usize| {
+            all.iter().fold(self.classes[0].clone(), |before, multiples| {
+                let times = k % multiples.len();
+                k /= multiples.len();
+                multiples[times].after(&before)
+            })
         })
     }
 

@@ -33,6 +33,7 @@ mod pinning;
 mod valleys;
 mod ways;
 
+use super::validity::LARGE;
 use super::{UnknownModes, Unstable, ZeroKind, ZeroModes};
 use crate::energy::{Evaluator, Hamiltonian};
 use crate::linalg::{eigen_symmetric, orthonormal, remove, slab};
@@ -109,7 +110,8 @@ impl<'a> Slide<'a> {
         let held = Held::new(state, unstable, h.stiffness_mev() / 3.0);
         let roomy = (0..3).filter(|d| h.lattice().grid.size[*d] >= FEWEST);
         let (along, across): (Vec<usize>, Vec<usize>) = roomy.partition(|d| ways::shift_along(group, *d).is_some());
-        let across = across.into_iter().filter(|_| !h.lattice().is_row());
+        // an open row ends by what its walls rest at
+        let across = across.into_iter().filter(|d| !h.lattice().is_row() || h.lattice().grid.periodic[*d]);
         let wanders = across.filter_map(|d| wanders(&h, &held, d)).min_by(|a, b| a[0].total_cmp(&b[0]));
         let ways = ways::all(h, &held, group, &along, most_mev);
         Slide { h, held, ways, wanders, known: BTreeMap::new() }
@@ -301,7 +303,8 @@ fn volume<'m>(moves: impl Iterator<Item = &'m Vec<f64>>) -> f64 {
 }
 
 /// Above which k_BT (meV) the state slides far along a direction that no shift of the energy goes along, and by how many cells there:
-/// what holds it is no row of places, and may be anything.
+/// what holds it is no row of places, and may be anything. A valley in which no spin fluctuates much is a well, however little of a
+/// translation it is.
 fn wanders(h: &Hamiltonian, held: &Held, direction: usize) -> Option<[f64; 2]> {
     let v = held.tangent(&ways::derivative(h.lattice(), &held.state.m, direction))?;
     let cells = ROOM * h.lattice().grid.size[direction] as f64;
@@ -309,7 +312,9 @@ fn wanders(h: &Hamiltonian, held: &Held, direction: usize) -> Option<[f64; 2]> {
         let by = slab::dot(&v, &valley.along);
         // what is mostly something else may be soft: it moves the state nowhere
         let is_translation = by * by > 0.5 * slab::dot(&v, &v);
-        is_translation.then_some([valley.stiffness_mev * (cells * by) * (cells * by), cells])
+        let spin = valley.along.chunks_exact(2).map(|s| s[0] * s[0] + s[1] * s[1]).fold(0.0, f64::max);
+        let far = (cells * by * cells * by).max(LARGE / spin);
+        is_translation.then_some([valley.stiffness_mev * far, (far / (by * by)).sqrt()])
     };
     let valleys = held.valleys(&orthonormal(vec![v.clone()], 0.0));
     valleys.iter().filter_map(from).min_by(|a, b| a[0].total_cmp(&b[0]))
