@@ -111,6 +111,8 @@ fn lifetimes_between_up_and_down_are_those_of_a_run_between_them() {
                 .iter()
                 .find(|e| e["from"] == "up" && e["to"] == "down" && number(&e["temperature_K"]) == kelvin);
             let own = own.unwrap();
+            let within = [own, run].map(|of| number(&of["known_within_factor"]));
+            assert!((within[0] / within[1] - 1.0).abs() < 1e-4, "{sites} {kelvin} K: {within:?}");
             for theory in ["htst", "langer"] {
                 let expected = 1.0 / number(&run[format!("{theory}_rate_per_s")]);
                 let found = number(&own[format!("{theory}_time_s")]);

@@ -542,9 +542,10 @@ class Rates:
         return self.temperatures_K[order], self.lifetimes_s(way, log10=True)[order], low[order]
 
     def _told(self, way: Way) -> list[str]:
-        """The lifetimes in words, also those too long for a number, or why there are none."""
-        times = zip(self.lifetimes_s(way), self.lifetimes_s(way, log10=True), self._reasons(way))
-        return [f"none: {why}" if why else f"{s:.3g} s" if np.isfinite(s) else f"10^{log10:.0f} s" for s, log10, why in times]
+        """The lifetimes in words, also those too long for a number, each with what is known of its error, or why there are none."""
+        within = [row["known_within_factor"] for row in self._rows(way)]
+        times = zip(self.lifetimes_s(way), self.lifetimes_s(way, log10=True), within, self._reasons(way))
+        return [f"none: {why}" if why else _time(s, log10, factor) for s, log10, factor, why in times]
 
     def _lines(self, way: Way) -> list[tuple[str, str, str]]:
         """Temperature, barrier over kT and lifetime; one line for neighbours that have none for one reason."""
@@ -568,6 +569,14 @@ class Rates:
 
     def __repr__(self) -> str:
         return "\n".join([f"<Rates {self.result.name}", *(f"  {t}: {told}" for t, _, told in self._lines("forward"))]) + ">"
+
+
+def _time(seconds: float, log10: float, factor: float | None) -> str:
+    """A lifetime with as many digits as its error leaves, and the error."""
+    digits = 1 if factor is None else min(max(int(np.ceil(-np.log10(max(factor - 1, 1e-12)))), 1), 4)
+    time = f"{seconds:.{digits}g} s" if np.isfinite(seconds) else f"10^{log10:.0f} s"
+    known = "no better than an order of magnitude, if at all" if factor is None else f"within a factor of {factor:.2g}"
+    return f"{time} ({known})"
 
 
 class Landscape:

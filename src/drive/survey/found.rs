@@ -123,7 +123,7 @@ impl Survey {
         survey.judge(asked.window_mev);
         if let Some(settings) = &asked.rates {
             let passes: Vec<_> = passes.into_iter().map(|k| &land.passes()[k]).collect();
-            let lifetimes = Lifetimes::of(&survey, asked, settings, land, group, &passes);
+            let lifetimes = Lifetimes::of(&survey, asked, settings, land, group, &passes)?;
             survey.warnings.extend(lifetimes.warnings(&survey, &asked.groups));
             survey.lifetimes = Some(lifetimes);
         }

@@ -1,9 +1,10 @@
 //! How long the states of a survey live: rates over every saddle, and the times of the network that they make.
 
 use super::{Label, Survey, SurveyProblem};
+use crate::error::Result;
 use crate::landscape::{Landscape, Pass};
 use crate::network::{Network, Parts};
-use crate::rates::{LEAST_BARRIER, RateSettings, SaddleRate, Theory, saddle_rates};
+use crate::rates::{LEAST_BARRIER, ORDER, RateSettings, SaddleRate, Theory, saddle_rates};
 use crate::stationary::ALIKE;
 use crate::symmetry::Group;
 use crate::units::K_B;
@@ -11,6 +12,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// So many of the lowest minima are groups of their own, where none are named.
 const LOWEST: usize = 8;
+
+/// The logarithm of the factor that stands for an error of which nothing is known.
+const UNKNOWN: f64 = 700.0;
+/// The part of all errors by which a time's dependence on them is told.
+const STEP: f64 = 1e-4;
 
 /// The mean time from one group of minima to another, or until it is left.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,6 +31,9 @@ pub struct Lifetime {
     pub climb_mev: f64,
     /// ln of the mean time (s), by theory: HTST, Langer.
     pub ln_time_s: [Option<f64>; 2],
+    /// The time, Langer's where there is one, may be longer or shorter by this factor; nothing where there is no time, or nothing known
+    /// of its error.
+    pub known_within: Option<f64>,
     /// Why there is none.
     pub reason: Option<String>,
 }
@@ -50,15 +59,21 @@ impl Lifetimes {
         land: &Landscape,
         group: &Group,
         passes: &[&Pass],
-    ) -> Lifetimes {
-        let saddles = passes.iter().enumerate().map(|(k, pass)| over(land, group, pass, k, settings)).collect();
+    ) -> Result<Lifetimes> {
+        let rates = |(k, pass): (usize, &&Pass)| {
+            let rates = over(land, group, pass, k, settings);
+            // rates that were stopped on their way look like rates that there are none of
+            asked.problem.control.check().map(|()| rates)
+        };
+        let saddles = passes.iter().enumerate().map(rates).collect::<Result<_>>()?;
         let groups = groups(survey, asked);
         let mut found = Lifetimes { settings: settings.clone(), groups, saddles, rows: Vec::new() };
         // most temperatures have the same states and passes as the one before
         let (mut known, mut transitions) = ((Vec::new(), Vec::new()), Vec::new());
         for t in &settings.temperatures_k {
             let places = found.places(survey, *t);
-            let networks = Theory::ALL.map(|theory| found.network(survey, &places, theory, *t));
+            let networks =
+                [0.0, STEP].map(|part| Theory::ALL.map(|theory| found.network(survey, &places, theory, *t, part)));
             let rated = found.rated(*t);
             if known.0 != places.state || known.1 != rated {
                 transitions = found.transitions(survey, &places, &found.ascending(survey, &rated));
@@ -68,7 +83,7 @@ impl Lifetimes {
                 transitions.iter().map(|transition| found.row(survey, transition, *t, &networks)).collect();
             found.rows.extend(rows);
         }
-        found
+        Ok(found)
     }
 
     /// What the user should know of the times.
@@ -88,6 +103,18 @@ impl Lifetimes {
              holds the spins there, and its part in the times is formal"
         );
         words.extend((count > 0).then_some(low));
+        let is_vague = |row: &&Lifetime| {
+            row.ln_time_s.iter().any(Option::is_some) && row.known_within.is_none_or(|factor| factor > ORDER)
+        };
+        let vague = self.rows.iter().filter(is_vague).count();
+        let vague_words = || {
+            let times = if vague == 1 { "one time is".into() } else { format!("{vague} times are") };
+            format!(
+                "{times} known no better than as an order of magnitude, if at all (\"known_within_factor\"): soft modes of their saddles or \
+                 minima are not harmonic at k_BT"
+            )
+        };
+        words.extend((vague > 0).then(vague_words));
         words
     }
 
@@ -138,8 +165,16 @@ impl Lifetimes {
         Places { state, ln_alike }
     }
 
-    /// The network at a temperature (K), of all saddles that have a rate; nothing where none has.
-    fn network(&self, survey: &Survey, places: &Places, theory: Theory, temperature_k: f64) -> Option<Network> {
+    /// The network at a temperature (K), of all saddles that have a rate, each of them slower by this part of the error of its ln;
+    /// nothing where none has.
+    fn network(
+        &self,
+        survey: &Survey,
+        places: &Places,
+        theory: Theory,
+        temperature_k: f64,
+        slower: f64,
+    ) -> Option<Network> {
         let mut network = Network::new(survey.minima.len());
         for saddle in &survey.saddles {
             let [a, b] = saddle.minima;
@@ -147,7 +182,8 @@ impl Lifetimes {
             // those that are equivalent are saddles of their own here, and places share a state's time, each kind of them all of it
             let ln = |r: &SaddleRate, from: usize| {
                 let ln_ways = survey.saddle_kinds[saddle.kind].ln_ways(survey.minimum_kind(from));
-                Some(r.ln_rate_of_one_per_s(theory, temperature_k)? + ln_ways - places.ln_alike[from])
+                let ln = r.ln_rate_of_one_per_s(theory, temperature_k)? + ln_ways - places.ln_alike[from];
+                Some(ln - slower * r.ln_known_within(temperature_k).min(UNKNOWN))
             };
             if let (Some(on), Some(back)) = (ln(on, a), ln(back, b)) {
                 network.add(places.state[a], places.state[b], on);
@@ -207,17 +243,18 @@ impl Lifetimes {
         survey: &Survey,
         transition: &Transition,
         temperature_k: f64,
-        networks: &[Option<Network>; 2],
+        [networks, slower]: &[[Option<Network>; 2]; 2],
     ) -> Lifetime {
         let Transition { from, to, states, goal, climb_mev, leads, rated } = transition;
         let climb_mev = *climb_mev;
-        let time = |k: usize| {
+        let of = |networks: &[Option<Network>; 2], k: usize| {
             let network = networks[k].as_ref().filter(|_| rated[k])?;
             // what no passes join with the lowest of the group is no part of its equilibrium
             let joined = network.joined_with(states[0]);
             let states: Vec<usize> = states.iter().copied().filter(|k| joined.contains(k)).collect();
             network.ln_passage_s(&states, goal)
         };
+        let time = |k: usize| of(networks, k);
         let reason = if !survey.is_whole() {
             Some("not all states that symmetry makes are listed".to_string())
         } else if climb_mev == f64::INFINITY {
@@ -234,7 +271,10 @@ impl Lifetimes {
             None
         };
         let ln_time_s = if reason.is_some() { [None; 2] } else { [time(0), time(1)] };
-        Lifetime { from: from.clone(), to: to.clone(), temperature_k, climb_mev, ln_time_s, reason }
+        // to first order a sum over all saddles, each by its part in the time, as along a path
+        let error = |k: usize| Some((of(slower, k)? - ln_time_s[k]?).abs() / STEP);
+        let known_within = error(1).or_else(|| error(0)).filter(|ln| *ln < 0.1 * UNKNOWN).map(libm::exp);
+        Lifetime { from: from.clone(), to: to.clone(), temperature_k, climb_mev, ln_time_s, known_within, reason }
     }
 
     /// Why there is no time.
@@ -384,7 +424,7 @@ mod tests {
         let found = Lifetimes { settings: settings(&[20.0, 1e-6]), groups: Vec::new(), saddles, rows: Vec::new() };
         let escape = |kelvin: f64, group: &[usize]| {
             let places = found.places(&survey, kelvin);
-            let network = found.network(&survey, &places, Theory::Langer, kelvin).unwrap();
+            let network = found.network(&survey, &places, Theory::Langer, kelvin, 0.0).unwrap();
             let all: Vec<usize> = places.all_of(group).into_iter().collect();
             (all.len(), network.ln_escape_s(&places.states_of(group)).unwrap())
         };

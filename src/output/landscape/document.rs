@@ -100,6 +100,7 @@ struct LifetimeEntry<'a> {
     langer_time_s: Option<Number>,
     log10_htst_time_s: Option<Number>,
     log10_langer_time_s: Option<Number>,
+    known_within_factor: Option<Number>,
     #[serde(skip_serializing_if = "Option::is_none")]
     reason: Option<&'a str>,
 }
@@ -198,6 +199,7 @@ fn lifetime(l: &Lifetime) -> LifetimeEntry<'_> {
         langer_time_s: time(langer),
         log10_htst_time_s: digits(htst),
         log10_langer_time_s: digits(langer),
+        known_within_factor: l.known_within.map(Number),
         reason: l.reason.as_deref(),
     }
 }

@@ -70,6 +70,7 @@ pub(super) fn lifetimes(report: &LandscapeReport) -> Result<Vec<u8>> {
         let digits = |r: &Lifetime| real(ln(r).map(|ln| ln / std::f64::consts::LN_10));
         table.add(&format!("log10_{theory}_time_s"), rows.iter().map(digits).collect());
     }
+    table.add("known_within_factor", rows.iter().map(|r| real(r.known_within)).collect());
     table.add("reason", rows.iter().map(|r| r.reason.clone().map_or(Cell::Missing, words)).collect());
     table.render()
 }
