@@ -186,3 +186,24 @@ fn equivalent_forms_of_a_film_have_one_barrier() {
         }
     }
 }
+
+#[test]
+fn a_layer_that_is_its_own_neighbour_across_is_no_stiffer_and_no_softer_for_it() {
+    let width = |periodic: Value| {
+        let config = json!({
+            "material": {"name": "film", "Ms": "580 kA/m", "energy": [
+                {"exchange": {"A": "15 pJ/m"}}, {"anisotropy": {"K": "0.589 MJ/m^3", "axis": [0, 0, 1]}}
+            ]},
+            "lattice": {"grid": {"cells": [12, 9, 1], "cell": ["1 nm", "1 nm", "0.4 nm"], "periodic": periodic}},
+            "initial": {"uniform": {"direction": [0, 0, 1]}}, "final": {"uniform": {"direction": [0, 0, -1]}}
+        });
+        let problem = load_text(std::path::Path::new("film.json"), config.to_string()).unwrap().problem().unwrap();
+        spinneb::drive::Scales::of_terms(&problem.hamiltonian).wall_width_sites
+    };
+    // √(A/K) in cells of 1 nm
+    let expected = (15.0f64 / 0.589).sqrt();
+    for periodic in [json!([true, true, false]), json!(true), json!(false), json!([false, true, true])] {
+        let found = width(periodic.clone());
+        assert!((found / expected - 1.0).abs() < 1e-9, "{periodic}: {found} {expected}");
+    }
+}

@@ -430,6 +430,25 @@ fn what_has_no_place_in_a_config_is_refused_and_not_left_out() {
 }
 
 #[test]
+fn what_spirit_itself_does_not_read_is_noted() {
+    let common = "bravais_lattice sc\nmu_s 1\nn_shells_exchange 1\njij 1\n";
+    for (lines, said) in [
+        ("interaction_pairs_file pairs.txt\n", Some("interaction_pairs_file is not read, as in Spirit")),
+        (
+            "hamiltonian heisenberg_pairs\nn_interaction_pairs 1\ni j da db dc Jij\n0 0 1 0 0 1\n",
+            Some("n_shells_exchange is not read"),
+        ),
+        ("", None),
+    ] {
+        let folder = folder(&[("a.cfg", &format!("{common}{lines}"))]);
+        let notes = read("spirit", &[folder.path().join("a.cfg")], "").unwrap().notes;
+        let found: Vec<&String> = notes.iter().filter(|note| note.contains("is not read")).collect();
+        assert_eq!(found.len(), usize::from(said.is_some()), "{notes:?}");
+        assert!(said.is_none_or(|said| found[0].contains(said)), "{notes:?}");
+    }
+}
+
+#[test]
 fn files_that_are_cut_or_garbled_are_errors_and_nothing_else() {
     let garbage = ["x", "-1", "nan", "1e999", "99999999999999999999", "0", "", "\u{fffd}", "[", "1e30", "-1e300"];
     let mut r = ChaCha8Rng::seed_from_u64(7);

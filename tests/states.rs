@@ -343,6 +343,10 @@ fn states_that_leave_no_trace_are_refused() {
     }
     for (text, words) in [
         (r#"{"skyrmion": {"radius": -3}}"#, "radius: found -3, but a radius is greater than 0"),
+        (
+            r#"{"skyrmion": {"radius": 9, "width": 1}}"#,
+            "radius: a skyrmion of 9.0 spacings is larger than the lattice, whose furthest site is 7.8",
+        ),
         (r#"{"skyrmion": {"radius": "3 nm"}}"#, "radius: a length with a unit needs the lattice's \"spacing\""),
         (r#"{"skyrmion": {"radius": 3, "width": -1}}"#, "width: found -1"),
         (r#"{"skyrmion": {"radius": 3, "vorticity": 0}}"#, "vorticity: found 0"),

@@ -3,9 +3,9 @@
 use crate::energy::{Evaluator, Hamiltonian};
 use crate::field::Components;
 use crate::lattice::{BondFamily, Lattice};
-use crate::linalg::{eigenvalues_symmetric, slab};
+use crate::linalg::{eigenvalues_symmetric, orthonormal, slab};
 use crate::state::StateContext;
-use crate::stationary::{ALIKE, State};
+use crate::stationary::{ALIKE, INDEPENDENT, State};
 use crate::threads::both;
 use serde::{Deserialize, Serialize};
 
@@ -91,7 +91,7 @@ fn on_site_gap(h: &Hamiltonian) -> f64 {
 }
 
 /// ⟨½ Σ_j s J_ij |r_ij|²⟩/(d a²) of all sites, without sign: the exchange stiffness in units of the lattice constant a, the mean of
-/// the d directions of the lattice; in a row Σ_n n² J_n sⁿ. Of each family the median of its bonds; s is −1 where the order of
+/// the d directions that bonds span; in a row Σ_n n² J_n sⁿ. Of each family the median of its bonds; s is −1 where the order of
 /// nearest neighbours is staggered and the bond joins the two sublattices.
 fn exchange_stiffness(h: &Hamiltonian) -> f64 {
     let lattice = h.lattice();
@@ -114,6 +114,7 @@ fn exchange_stiffness(h: &Hamiltonian) -> f64 {
         let squared = lattice.squared_length(family.hop);
         squared * j * if lattice.joins_sublattices(family.hop) { sign } else { 1.0 }
     };
-    let directions = (0..3).filter(|d| lattice.grid.extends(*d)).count().max(1) * lattice.atoms.len();
+    let hops = medians.iter().filter(|(_, j)| *j != 0.0).map(|(family, _)| lattice.along(family.hop).to_vec());
+    let directions = orthonormal(hops.collect(), INDEPENDENT).len().max(1) * lattice.atoms.len();
     (medians.iter().map(part).sum::<f64>() / directions as f64).abs()
 }

@@ -46,6 +46,10 @@ const OTHERS: &[&str] = &[
     "quadruplets_from_file",
 ];
 
+/// The Hamiltonian of shells of neighbours, which is meant where none is named.
+const SHELLS: &str = "heisenberg_neighbours";
+/// Where the pairs of the other one are.
+const PAIRS_FILES: [&str; 2] = ["interaction_pairs_file", "pairs_from_file"];
 const NO_MOMENT: &str = "there is no mu_s: moments are 1 μ_B, as in Spirit then";
 
 struct Input<'a> {
@@ -75,8 +79,8 @@ fn read(paths: &[PathBuf], told: Told) -> Result<Model> {
     let mut files = vec![text.file.clone()];
     files.extend(input.anisotropies(&mut atoms)?);
     let lattice = Shells { vectors, atoms: &atoms, cells, scale };
-    let (bonds, pairs) = match input.word("hamiltonian", "heisenberg_neighbours")? {
-        "heisenberg_neighbours" => (input.shells(&lattice, convention)?, None),
+    let (bonds, pairs) = match input.word("hamiltonian", SHELLS)? {
+        SHELLS => (input.shells(&lattice, convention)?, None),
         "heisenberg_pairs" => input.pairs(atoms.len(), convention)?,
         other => {
             let message = format!("found \"{other}\", but heisenberg_neighbours and heisenberg_pairs are imported");
@@ -96,7 +100,7 @@ fn read(paths: &[PathBuf], told: Told) -> Result<Model> {
         cells: Some(cells),
         periodic: Some(input.boundaries()?),
         convention: vec![formula, format!("{factors}; meV; unit vectors; K (n·e)² is written with K")],
-        notes: if input.line("mu_s").is_none() { vec![NO_MOMENT.into()] } else { Vec::new() },
+        notes: input.notes()?,
     };
     let of_vectors = model.spacing_nm.is_none() && input.line("bravais_lattice").is_none();
     let model = if of_vectors { model.scaled_to_first(1.0) } else { model };
@@ -110,6 +114,24 @@ impl<'a> Input<'a> {
 
     fn line(&self, keyword: &str) -> Option<&Line<'a>> {
         self.find(keyword).map(|k| &self.lines[k])
+    }
+
+    /// What a user of the file may not expect.
+    fn notes(&self) -> Result<Vec<String>> {
+        let kind = self.word("hamiltonian", SHELLS)?;
+        let unread: &[&str] = if kind == SHELLS { &PAIRS_FILES } else { &["n_shells_exchange", "n_shells_dmi"] };
+        let unread = unread.iter().filter(|keyword| self.line(keyword).is_some());
+        let words = |keyword: &&str| {
+            format!(
+                "{keyword} is not read, as in Spirit: \"hamiltonian\" is {kind}, {}",
+                match self.line("hamiltonian") {
+                    Some(_) => "as the file says",
+                    None => "which it is where the file does not say",
+                }
+            )
+        };
+        let no_moment = self.line("mu_s").is_none().then(|| NO_MOMENT.to_string());
+        Ok(no_moment.into_iter().chain(unread.map(words)).collect())
     }
 
     fn needed(&self, keyword: &str) -> Result<&Line<'a>> {
@@ -268,9 +290,8 @@ impl<'a> Input<'a> {
     }
 
     fn pairs(&self, atoms: usize, convention: Convention) -> Result<(Vec<Bond>, Option<String>)> {
-        let names = ["interaction_pairs_file", "pairs_from_file"];
         let missing = || self.text.ends("there is no \"n_interaction_pairs\" and no \"interaction_pairs_file\" in it");
-        let table = self.table("n_interaction_pairs", &names)?.ok_or_else(missing)?;
+        let table = self.table("n_interaction_pairs", &PAIRS_FILES)?.ok_or_else(missing)?;
         let mut listed = Vec::new();
         let columns = ["i", "j", "da", "db", "dc", "jij", "dij", "dijx", "dijy", "dijz"];
         table.each(&columns, |row| {

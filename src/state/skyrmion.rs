@@ -160,10 +160,12 @@ impl StateBuilder for Skyrmion {
                            inside or make it larger, or write {\"uniform\": {\"direction\": […]}}";
             return Err(Error::invalid(key, message));
         }
-        if theta(placed.around.furthest(), radius, width) < NO_TRACE * PI {
+        // beside its radius all spins are more of its core than of what is around it
+        if placed.around.furthest() < radius {
             let message = format!(
-                "a skyrmion of {radius:.1} spacings is larger than the lattice: all spins are those of its core; make it smaller, or \
-                 write {{\"uniform\": {{\"direction\": […]}}}}"
+                "a skyrmion of {radius:.1} spacings is larger than the lattice, whose furthest site is {:.1} from its centre: make it \
+                 smaller, or write {{\"uniform\": {{\"direction\": […]}}}}",
+                placed.around.furthest()
             );
             return Err(Error::invalid("radius", message));
         }

@@ -74,11 +74,13 @@ const fn symbol(names: &'static [&'static str], prefixes: &'static str, unit: Un
 
 /// Prefixes from the likeliest to the least: the order in which a misspelt one is guessed.
 const ALL: &str = "mkunpfMGTaz";
+/// Those of energies of atoms: an M would be a slip for m.
+const OF_ATOMS: &str = "mkunpfaz";
 
 pub(super) const SYMBOLS: &[Symbol] = &[
-    symbol(&["eV"], ALL, unit(ENERGY_J, [1, 0, 0, 0, 0, 0, 0], -19)),
+    symbol(&["eV"], OF_ATOMS, unit(ENERGY_J, [1, 0, 0, 0, 0, 0, 0], -19)),
     symbol(&["J"], ALL, unit(ENERGY_J, PLAIN, 0)),
-    symbol(&["Ry"], ALL, unit(ENERGY_J, [1, 1, 0, 0, 0, 0, 0], -19)),
+    symbol(&["Ry"], OF_ATOMS, unit(ENERGY_J, [1, 1, 0, 0, 0, 0, 0], -19)),
     symbol(&["erg"], ALL, unit(ENERGY_J, PLAIN, -7)),
     symbol(&["mu_B", "muB", "u_B", "uB"], "mkun", unit(MOMENT_A_M2, [1, 0, 1, 0, 0, 0, 0], -24)),
     symbol(&["emu"], ALL, unit(MOMENT_A_M2, [0, 0, 0, 0, 0, 0, 1], -3)),
@@ -121,10 +123,15 @@ const WORDS: &[(&str, &str)] = &[
 /// Things that are counted; an energy "per bond" is an energy.
 const COUNTED: &[&str] = &["atom", "atoms", "site", "bond", "link", "spin", "cell", "pair", "f.u."];
 
+/// Numbers below this are of no use in the units that this field takes.
+const TINY: f64 = 1e-6;
+
 /// One kind of quantity: the unit it is written in and, for each dimension it may have, the unit it is converted to.
 #[derive(Debug)]
 pub(super) struct Kind {
     pub(super) unit: &'static str,
+    /// What a number that is tiny in that unit is likely to be in.
+    si: &'static str,
     targets: &'static [Unit],
 }
 
@@ -137,9 +144,9 @@ pub(super) struct Wanted {
     pub(super) kinds: &'static [Kind],
 }
 
-const MEV: Kind = Kind { unit: "meV", targets: &[unit(ENERGY_J, [1, 0, 0, 0, 0, 0, 0], -22)] };
-const J_M2: Kind = Kind { unit: "J/m^2", targets: &[unit(SURFACE_J_M2, PLAIN, 0)] };
-const J_M3: Kind = Kind { unit: "J/m^3", targets: &[unit(DENSITY_J_M3, PLAIN, 0)] };
+const MEV: Kind = Kind { unit: "meV", si: "J", targets: &[unit(ENERGY_J, [1, 0, 0, 0, 0, 0, 0], -22)] };
+const J_M2: Kind = Kind { unit: "J/m^2", si: "J/m^2", targets: &[unit(SURFACE_J_M2, PLAIN, 0)] };
+const J_M3: Kind = Kind { unit: "J/m^3", si: "J/m^3", targets: &[unit(DENSITY_J_M3, PLAIN, 0)] };
 
 pub(super) static ENERGY: Wanted =
     Wanted { name: "an energy", units: "J, eV, Ry or erg, with SI prefixes", example: "10 meV", kinds: &[MEV] };
@@ -147,19 +154,23 @@ pub(super) static MOMENT: Wanted = Wanted {
     name: "a magnetic moment",
     units: "mu_B or A m^2, with SI prefixes",
     example: "2 mu_B",
-    kinds: &[Kind { unit: "mu_B", targets: &[unit(MOMENT_A_M2, [1, 0, 1, 0, 0, 0, 0], -24)] }],
+    kinds: &[Kind { unit: "mu_B", si: "A m^2", targets: &[unit(MOMENT_A_M2, [1, 0, 1, 0, 0, 0, 0], -24)] }],
 };
 pub(super) static FLUX_DENSITY: Wanted = Wanted {
     name: "a magnetic field",
     units: "T, Oe, G or A/m, with SI prefixes",
     example: "50 mT",
-    kinds: &[Kind { unit: "T", targets: &[unit(FLUX_T, PLAIN, 0), unit(FIELD_A_M, [0, 0, 0, 0, 0, -1, 0], 6)] }],
+    kinds: &[Kind {
+        unit: "T",
+        si: "T",
+        targets: &[unit(FLUX_T, PLAIN, 0), unit(FIELD_A_M, [0, 0, 0, 0, 0, -1, 0], 6)],
+    }],
 };
 pub(super) static EXCHANGE_STIFFNESS: Wanted = Wanted {
     name: "an exchange stiffness",
     units: "J/m or erg/cm, with SI prefixes",
     example: "13 pJ/m",
-    kinds: &[Kind { unit: "J/m", targets: &[unit(STIFFNESS_J_M, PLAIN, 0)] }],
+    kinds: &[Kind { unit: "J/m", si: "J/m", targets: &[unit(STIFFNESS_J_M, PLAIN, 0)] }],
 };
 pub(super) static SURFACE_ENERGY: Wanted = Wanted {
     name: "an energy per area",
@@ -177,31 +188,34 @@ pub(super) static MAGNETISATION: Wanted = Wanted {
     name: "a magnetisation",
     units: "A/m or emu/cm^3, with SI prefixes",
     example: "800 kA/m",
-    kinds: &[Kind { unit: "A/m", targets: &[unit(FIELD_A_M, PLAIN, 0)] }],
+    kinds: &[Kind { unit: "A/m", si: "A/m", targets: &[unit(FIELD_A_M, PLAIN, 0)] }],
 };
 pub(super) static LENGTH: Wanted = Wanted {
     name: "a length",
     units: "m with SI prefixes, or angstrom",
     example: "0.25 nm",
-    kinds: &[Kind { unit: "nm", targets: &[unit(LENGTH_M, PLAIN, -9)] }],
+    kinds: &[Kind { unit: "nm", si: "m", targets: &[unit(LENGTH_M, PLAIN, -9)] }],
 };
 pub(super) static TEMPERATURE: Wanted = Wanted {
     name: "a temperature",
     units: "K, with SI prefixes",
     example: "300 K",
-    kinds: &[Kind { unit: "K", targets: &[unit(TEMPERATURE_K, PLAIN, 0)] }],
+    kinds: &[Kind { unit: "K", si: "K", targets: &[unit(TEMPERATURE_K, PLAIN, 0)] }],
 };
 pub(super) static TIME: Wanted = Wanted {
     name: "a time",
     units: "s, with SI prefixes",
     example: "1 ps",
-    kinds: &[Kind { unit: "ps", targets: &[unit(TIME_S, PLAIN, -12)] }],
+    kinds: &[Kind { unit: "ps", si: "s", targets: &[unit(TIME_S, PLAIN, -12)] }],
 };
 pub(super) static ANGLE: Wanted = Wanted {
     name: "an angle",
     units: "deg or rad, with SI prefixes",
     example: "2 deg",
-    kinds: &[Kind { unit: "rad", targets: &[unit(ANGLE_RAD, PLAIN, 0)] }],
+    kinds: &[
+        Kind { unit: "deg", si: "deg", targets: &[] },
+        Kind { unit: "rad", si: "rad", targets: &[unit(ANGLE_RAD, PLAIN, 0)] },
+    ],
 };
 pub(super) static SITE_ENERGY: Wanted = Wanted {
     name: "an energy per site or per volume",
@@ -289,7 +303,9 @@ impl Wanted {
 
     /// A message about a number without a unit: how it could be written with one.
     pub(super) fn bare(&self, found: &str, digits: &str) -> String {
-        let ways: Vec<String> = self.kinds.iter().map(|kind| format!("\"{digits} {}\"", kind.unit)).collect();
+        let is_tiny = digits.parse().is_ok_and(|number: f64| number != 0.0 && number.abs() < TINY);
+        let unit = |kind: &Kind| if is_tiny { kind.si } else { kind.unit };
+        let ways: Vec<String> = self.kinds.iter().map(|kind| format!("\"{digits} {}\"", unit(kind))).collect();
         format!("{found}: write {} ({})", ways.join(" or "), self.units)
     }
 

@@ -101,7 +101,7 @@ fn bad_quantities_are_refused_with_what_would_do() {
         10 => r#"found the number 10, but an energy needs its unit: write "10 meV" (J, eV, Ry or erg, with SI prefixes)"#,
         (-3) => r#"found the number -3, but an energy needs its unit: write "-3 meV" (J, eV, Ry or erg, with SI prefixes)"#,
         0.5 => r#"found the number 0.5, but an energy needs its unit: write "0.5 meV" (J, eV, Ry or erg, with SI prefixes)"#,
-        1e-22 => r#"found the number 1e-22, but an energy needs its unit: write "1e-22 meV" (J, eV, Ry or erg, with SI prefixes)"#,
+        1e-22 => r#"found the number 1e-22, but an energy needs its unit: write "1e-22 J" (J, eV, Ry or erg, with SI prefixes)"#,
         true => r#"invalid type: boolean `true`, expected an energy with its unit, such as "10 meV""#,
         null => r#"invalid type: null, expected an energy with its unit, such as "10 meV""#,
         [1] => r#"invalid type: sequence, expected an energy with its unit, such as "10 meV""#,
@@ -213,9 +213,9 @@ fn bad_quantities_are_refused_with_what_would_do() {
         "1 PS" => r#"unknown unit "PS" in "1 PS": did you mean "ps"? (s, with SI prefixes)"#,
     }
     refuses! { Angle:
-        1 => r#"found the number 1, but an angle needs its unit: write "1 rad" (deg or rad, with SI prefixes)"#,
+        1 => r#"found the number 1, but an angle needs its unit: write "1 deg" or "1 rad" (deg or rad, with SI prefixes)"#,
         "1 degrees" => r#"unknown unit "degrees" in "1 degrees": did you mean "deg"? (deg or rad, with SI prefixes)"#,
         "1 Rad" => r#"unknown unit "Rad" in "1 Rad": did you mean "rad"? (deg or rad, with SI prefixes)"#,
-        "1" => r#""1" has no unit, but an angle needs one: write "1 rad" (deg or rad, with SI prefixes)"#,
+        "1" => r#""1" has no unit, but an angle needs one: write "1 deg" or "1 rad" (deg or rad, with SI prefixes)"#,
     }
 }

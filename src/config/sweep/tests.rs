@@ -84,11 +84,11 @@ fn set_changes_all_points() {
 fn folders_of_values_that_no_name_can_have_differ_by_a_hash() {
     let (_dir, sweep) = sweep(
         r#"{"config": "chain.json", "grid": {"energy[0].anisotropy.axis": [[0, 0, 1], [0, 1, 0]],
-            "energy[0].anisotropy.K": ["1 meV", "1 MeV"]}}"#,
+            "energy[0].anisotropy.K": ["1 mJ", "1 MJ"]}}"#,
     );
     let sweep = sweep.unwrap();
     let names: Vec<&str> = (0..4).map(|k| sweep.directory(k)).collect();
-    assert!(names[0].starts_with("axis_-0-0-1-__K_1meV-"), "{names:?}");
+    assert!(names[0].starts_with("axis_-0-0-1-__K_1mJ-"), "{names:?}");
     let lower: std::collections::BTreeSet<String> = names.iter().map(|n| n.to_lowercase()).collect();
     assert_eq!(lower.len(), 4);
     assert!(names.iter().all(|n| Name::new(n).is_ok()));
