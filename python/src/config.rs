@@ -160,6 +160,7 @@ impl Config {
                 states: &relaxed,
                 same_minimum,
                 formats: &loaded.config.output.formats,
+                warnings: &loaded.warnings,
             };
             let files = report.files()?;
             Ok((files, relaxed.into_iter().map(|(_, state)| state.relaxed.spins).collect::<Vec<_>>()))

@@ -113,6 +113,10 @@ def test_states_are_relaxed_and_told_of(chain, command, tmp_path):
     (tmp_path / "c.json").write_text(chain.to_json(sn.domain_wall(10), sn.uniform("z")))
     told = command("relax", tmp_path / "c.json", "--json", "--quiet").stdout.splitlines()
     assert json.loads(told[0])["energy_meV"] == state.energy_meV
+    # and what was said of the config is said of the state
+    np.save(tmp_path / "long.npy", np.tile([0.0, 0.0, 3.0], (20, 1)))
+    long = sn.relax(chain, sn.file(str(tmp_path / "long.npy")))
+    assert any("only their directions are used" in warning for warning in long.warnings), long.warnings
 
 
 def test_a_check_says_what_the_command_line_says(configs, command):

@@ -87,6 +87,7 @@ def test_wrong_terms_are_refused_with_what_is_wrong():
     refused(sn.Term(lambda m: easy(m) * np.nan, easy_gradient, name="nan"), "not finite")
     refused(sn.Term(lambda m: easy(m) ** 2, lambda m: 2 * easy(m)[:, None] * easy_gradient(m), name="q", quadratic=True),
             "said to be quadratic")
+    refused(sn.Term(lambda m: None, easy_gradient, name="none"), "energy of the term 'none' returned nothing")
     refused(sn.Term(lambda m: easy(m)[:3], easy_gradient), r"shape \(3,\), expected \(20,\)")
     refused(sn.Term(easy, lambda m: m[:, :2]), r"shape \(20, 2\), expected \(20, 3\)")
     refused(sn.Term(easy, easy_gradient, name="exchange"), "the name of something else")

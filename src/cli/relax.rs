@@ -115,6 +115,7 @@ fn relax_one(arguments: &Relax, config: &Path) -> Result<u8> {
         states: &relaxed,
         same_minimum,
         formats,
+        warnings: &loaded.warnings,
     };
     if let Some(dir) = &directory {
         for file in found.files()? {

@@ -33,6 +33,8 @@ pub struct RelaxReport<'a> {
     pub same_minimum: Option<bool>,
     /// Kinds of files, as in a config's `output.formats`.
     pub formats: &'a [String],
+    /// What was said of the config.
+    pub warnings: &'a [String],
 }
 
 /// What is told of a state. Energies and eigenvalues in meV.
@@ -57,7 +59,7 @@ pub struct StateReport<'a> {
     largest_rotation_rad: Number,
     left_saddle: bool,
     steps: usize,
-    warnings: &'a [String],
+    warnings: Vec<&'a String>,
     files: Vec<String>,
 }
 
@@ -97,7 +99,7 @@ impl<'a> RelaxReport<'a> {
             largest_rotation_rad: Number(relaxed.largest_rotation_rad),
             left_saddle: relaxed.left.is_some(),
             steps: relaxed.steps,
-            warnings: &state.warnings,
+            warnings: self.warnings.iter().chain(&state.warnings).collect(),
             files: if written { spin_files(which, self.formats, self.lattice) } else { Vec::new() },
         }
     }

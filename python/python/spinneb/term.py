@@ -75,7 +75,7 @@ class Term:
     def _energy(self, view: object) -> bytes:
         m = np.asarray(view)
         with np.errstate(all="ignore"):
-            e = np.asarray(self.energy(m), dtype=np.float64)
+            e = self._asked(self.energy(m), "energy")
         if e.ndim == 0:
             e = np.full(len(m), float(e) / len(m))
         return self._checked(e, (len(m),), "energy").tobytes()
@@ -83,15 +83,20 @@ class Term:
     def _gradient(self, view: object) -> bytes:
         m = np.asarray(view)
         with np.errstate(all="ignore"):
-            g = np.asarray(self.gradient(m), dtype=np.float64)
+            g = self._asked(self.gradient(m), "gradient")
         return self._checked(g, m.shape, "gradient").T.tobytes()
 
     def _hessian(self, views: Sequence[object]) -> bytes:
         m, v = (np.asarray(view) for view in views)
         assert self.hessian is not None
         with np.errstate(all="ignore"):
-            h = np.asarray(self.hessian(m, v), dtype=np.float64)
+            h = self._asked(self.hessian(m, v), "hessian")
         return self._checked(h, m.shape, "hessian").T.tobytes()
+
+    def _asked(self, found: Any, what: str) -> NDArray[Any]:
+        if found is None:
+            raise ValueError(f"the {what} of the term {self.name!r} returned nothing: does the function end with return?")
+        return np.asarray(found, dtype=np.float64)
 
     def _checked(self, found: NDArray[Any], shape: tuple[int, ...], what: str) -> NDArray[Any]:
         if found.shape != shape:
