@@ -90,6 +90,10 @@ impl Lifetimes {
     pub(super) fn warnings(&self, survey: &Survey, asked: &[(String, Label)]) -> Vec<String> {
         let mut words = self.unrated();
         words.extend(self.apart(survey));
+        let (all, own) = (survey.minima.len(), self.groups.len());
+        words.extend((asked.is_empty() && own < all).then(|| {
+            format!("times are told out of the {own} lowest of {all} minima and among them: \"groups\" of \"landscape\" name others")
+        }));
         let is_empty = |name: &String| self.groups.iter().all(|(own, _)| own != name);
         let empty = asked.iter().filter(|(name, _)| is_empty(name));
         words.extend(empty.map(|(name, _)| format!("no minimum that was found is of the group \"{name}\"")));
@@ -131,15 +135,18 @@ impl Lifetimes {
 
     /// Which kinds of saddles have no part in the times, and why: each reason once.
     fn unrated(&self) -> Vec<String> {
-        let asked = Theory::ALL.into_iter().filter(|theory| self.settings.wants(*theory));
+        let asked = Theory::ALL.into_iter().enumerate().filter(|(_, theory)| self.settings.wants(*theory));
         let told = self.settings.first_k();
-        let of = |theory: Theory| {
+        let of = |(k, theory): (usize, Theory)| {
             let without: Vec<&[SaddleRate; 2]> =
                 self.saddles.iter().filter(|both| !rated(both, theory, told)).collect();
             let refused = without.iter().copied().flatten().flat_map(|r| &r.at(told).refused);
             let reason = refused.into_iter().find(|(by, _)| *by == theory)?.1.clone();
+            let timed = self.rows.iter().any(|row| row.ln_time_s[k].is_some());
+            let so =
+                if timed { "and no part in its times, which are upper bounds" } else { "and there are no times by it" };
             Some(format!(
-                "{} of {} kinds of saddles have no rate by {} and no part in its times, which are upper bounds: {reason}",
+                "{} of {} kinds of saddles have no rate by {} {so}: {reason}",
                 without.len(),
                 self.saddles.len(),
                 theory.name()
