@@ -92,6 +92,10 @@ impl Linearised<'_> {
             slab::scale(&mut y, 1.0 / size);
             (x, last, before) = (y, next, change);
             sigma = ((1.0 + ABOVE) * next).clamp(sigma / 4.0, 4.0 * sigma);
+            // no growth that could be told from none
+            if sigma < f64::EPSILON * guess {
+                return None;
+            }
         }
         None
     }
