@@ -173,8 +173,9 @@ impl Outcome {
         }
         loaded.config.rates = Some(rates);
         let own = loaded.clone();
-        let done = supervised(py, None, None, &self.trouble, move |_| {
-            let problem = own.problem()?;
+        let done = supervised(py, None, None, &self.trouble, move |ways| {
+            let mut problem = own.problem()?;
+            problem.control.obey(ways.switch.clone());
             let found = drive::Outcome::clone(&found);
             let minima = found.minima();
             Ok(found.with_rates(&problem, &minima, &own.warnings))
