@@ -639,7 +639,10 @@ fn a_row_of_spins_that_are_all_but_alike_has_rates_along_whatever_direction_it_l
         r#"{"cubic": {"cells": [1, 1, 7]}}"#,
     ];
     let found = lattices.map(|lattice| {
-        let outcome = solve(&film(lattice, energy, [UP, DOWN], 3.0));
+        let mut problem = film(lattice, energy, [UP, DOWN], 3.0);
+        // each spin precesses at a speed of its own
+        problem.rates.as_mut().unwrap().moments_mub = (0..7).map(|i| 1.0 + 0.3 * i as f64).collect();
+        let outcome = solve(&problem);
         Theory::ALL.map(|theory| rate(&outcome, Way::Forward).ln_rate_per_s(theory, 3.0).expect(lattice))
     });
     for (of, lattice) in found.iter().zip(lattices) {

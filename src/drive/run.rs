@@ -135,12 +135,15 @@ impl<'a, 'o> Run<'a, 'o> {
         let mut rejected: Vec<RejectedPath> = others.iter().map(|c| rejection(c, &best.first, scale)).collect();
         let mut search = self.search(&mut best, &mut rejected)?;
         search.lowest_exits_mev = self.lowest_exits(&best.proof.links);
-        if self.problem.rates.is_some() {
+        let has_rates = self.problem.rates.is_some();
+        if has_rates {
             self.observer.stage("computing the rates");
         }
         let outcome = report::outcome(self.prepared(), best.first, &best.found, best.proof, search, rejected);
         // rates that were stopped on their way look like rates that there are none of
-        self.problem.rates.as_ref().map_or(Ok(()), |_| self.problem.control.check())?;
+        if has_rates {
+            self.problem.control.check()?;
+        }
         Ok(outcome)
     }
 

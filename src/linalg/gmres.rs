@@ -17,9 +17,7 @@ pub fn gmres(multiply: impl Fn(&[f64]) -> Option<Vec<f64>>, b: &[f64], part: f64
         let mut column = vec![0.0; basis.len()];
         // once more, for what rounding left
         for _ in 0..2 {
-            let parts = slab::overlaps(&basis, &next);
-            let away: Vec<f64> = parts.iter().map(|p| -p).collect();
-            slab::add_all(&mut next, &away, &basis);
+            let parts = slab::without(&mut next, &basis);
             slab::add_scaled(&mut column, 1.0, &parts);
         }
         let beyond = slab::norm(&next);

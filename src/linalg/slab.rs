@@ -153,10 +153,12 @@ pub fn largest(a: &[f64]) -> f64 {
     largest.iter().chain(rest).fold(0.0, |m: f64, x| m.max(x.abs()))
 }
 
-/// v minus its parts along orthonormal vectors, all taken at once.
-pub fn without(v: &mut [f64], space: &[Vec<f64>]) {
-    let parts: Vec<f64> = overlaps(space, v).iter().map(|o| -o).collect();
-    add_all(v, &parts, space);
+/// v minus its parts along orthonormal vectors, all taken at once; these parts.
+pub fn without(v: &mut [f64], space: &[Vec<f64>]) -> Vec<f64> {
+    let parts = overlaps(space, v);
+    let away: Vec<f64> = parts.iter().map(|o| -o).collect();
+    add_all(v, &away, space);
+    parts
 }
 
 /// Columns side by side: a_0, b_0, …, a_1, b_1, …

@@ -49,6 +49,12 @@ pub fn growth_rate(h: Evaluator, saddle: &State, unstable: &Unstable, gyration: 
     lin.eigenvalue(&unstable.mode, unstable.eigenvalue_mev).map(|rate| scale * rate)
 }
 
+/// Whether x was an eigenvector already, and its eigenvalue changes by rounding only; its last two changes.
+fn is_settled(aligned: f64, [before, change]: [f64; 2], rounding: f64, eigenvalue: f64) -> bool {
+    let is_sharp = change <= rounding * eigenvalue || (change <= 1e-6 * eigenvalue && change >= 0.5 * before);
+    aligned < 1e-9 && is_sharp
+}
+
 /// Whether the sites around a saddle are coupled every way, so that no band is narrow.
 fn by_iteration(saddle: &State) -> bool {
     matches!(saddle.hessian, Matrix::Sparse(_))
@@ -85,8 +91,7 @@ impl Linearised<'_> {
             let (growth, size) = (slab::dot(&x, &y), slab::norm(&y));
             let next = sigma - 1.0 / growth;
             let (aligned, change) = ((growth.abs() / size - 1.0).abs(), (next - last).abs());
-            let is_sharp = change <= rounding * next || (change <= 1e-6 * next && change >= 0.5 * before);
-            if aligned < 1e-9 && is_sharp && next > 0.0 {
+            if is_settled(aligned, [before, change], rounding, next) && next > 0.0 {
                 return Some(next);
             }
             slab::scale(&mut y, 1.0 / size);
@@ -129,9 +134,7 @@ impl Linearised<'_> {
             }
             let next = sigma - 1.0 / growth;
             let (aligned, change) = ((growth.abs() / size - 1.0).abs(), (next - sigma).abs());
-            // x was an eigenvector already, and its eigenvalue changes by rounding only
-            let settled =
-                aligned < 1e-9 && (change <= rounding * sigma || (change <= 1e-6 * sigma && change >= 0.5 * before));
+            let settled = is_settled(aligned, [before, change], rounding, sigma);
             before = change;
             if settled || high - low <= 4.0 * f64::EPSILON * low {
                 return Some(if next > 0.0 && settled { next } else { sigma });

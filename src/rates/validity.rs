@@ -207,8 +207,8 @@ fn vague_curvature(vague: f64, langer: Option<Prefactor>) -> Option<String> {
 
 /// The spin waves of a film or a body have ever more room for entropy the smaller its cells are (those of a wire have not).
 pub(super) fn of_cells(lattice: &Lattice) -> Option<String> {
-    let is_row = lattice.grid.size.iter().filter(|cells| **cells > 1).count() < 2;
-    (lattice.sections_nm.is_some() && !is_row).then(|| {
+    let directions = lattice.grid.size.iter().filter(|cells| **cells > 1).count();
+    (lattice.sections_nm.is_some() && directions > 1).then(|| {
         format!(
             "the prefactor counts the spin waves of {} cells, and changes with their size; A, K and Ms as measured at a temperature \
              hold the part of these waves already",

@@ -213,6 +213,7 @@ pub(super) static ANGLE: Wanted = Wanted {
     units: "deg or rad, with SI prefixes",
     example: "2 deg",
     kinds: &[
+        // proposed too, and converted to the other
         Kind { unit: "deg", si: "deg", targets: &[] },
         Kind { unit: "rad", si: "rad", targets: &[unit(ANGLE_RAD, PLAIN, 0)] },
     ],

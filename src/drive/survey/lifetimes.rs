@@ -261,8 +261,7 @@ impl Lifetimes {
             let states: Vec<usize> = states.iter().copied().filter(|k| joined.contains(k)).collect();
             network.ln_passage_s(&states, goal)
         };
-        let time = |k: usize| of(networks, k);
-        let reason = if !survey.is_whole() {
+        let refused = if !survey.is_whole() {
             Some("not all states that symmetry makes are listed".to_string())
         } else if climb_mev == f64::INFINITY {
             Some("no passes lead there".to_string())
@@ -272,12 +271,12 @@ impl Lifetimes {
             Some("some of both are places of one state".to_string())
         } else if climb_mev < LEAST_BARRIER * K_B * temperature_k {
             Some(format!("the climb is below {LEAST_BARRIER} k_BT"))
-        } else if (0..2).all(|k| time(k).is_none()) {
-            Some(self.refusal(temperature_k))
         } else {
             None
         };
-        let ln_time_s = if reason.is_some() { [None; 2] } else { [time(0), time(1)] };
+        let ln_time_s = if refused.is_some() { [None; 2] } else { [0, 1].map(|k| of(networks, k)) };
+        let none = || ln_time_s.iter().all(Option::is_none).then(|| self.refusal(temperature_k));
+        let reason = refused.or_else(none);
         // to first order a sum over all saddles, each by its part in the time, as along a path
         let error = |k: usize| Some((of(slower, k)? - ln_time_s[k]?).abs() / STEP);
         let known_within = error(1).or_else(|| error(0)).filter(|ln| *ln < 0.1 * UNKNOWN).map(libm::exp);
