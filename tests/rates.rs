@@ -733,8 +733,12 @@ fn saddles_that_symmetry_makes_alike_are_counted() {
     assert_eq!(count(Build::open(20).easy(0.05).hard(0.05).reversal(), 1.0).0, 4);
     // turned about z the two planes are one saddle with a zero mode
     assert_eq!(count(Build::open(20).easy(0.05).reversal(), 1.0), (2, "mirrored chain".into()));
-    // a defect next to one end leaves one way in
-    assert_eq!(count(Build::open(20).easy(0.05).defect(2, -0.02).reversal(), 1.0), (1, "none found".into()));
+    // over a defect next to one end a wall comes from either: what time reversal makes of the way there is the way back
+    let (count_at_defect, by) = count(Build::open(20).easy(0.05).defect(2, -0.02).reversal(), 1.0);
+    assert!(count_at_defect == 2 && by != "mirrored chain", "{by}");
+    // in a field it does not
+    let held = Build::open(20).easy(0.05).defect(2, -0.02).field([0.0, 0.0, -0.01]);
+    assert_eq!(count(held.reversal(), 1.0), (1, "none found".into()));
     // a narrow nucleus on a ring can be at each of the 30 sites
     let (places, by) = count(Build::ring(30).easy(0.6).field([0.0, 0.0, -0.5]).reversal(), 1e-3);
     assert_eq!(places, 30, "{by}");
@@ -1201,6 +1205,33 @@ fn a_network_of_all_places_of_a_skyrmion_says_what_its_path_says() {
         }
         let [each, one] = ways_there[..] else { panic!("{ways_there:?}") };
         assert!(each.iter().zip(one).all(|(each, one)| (each - one).abs() < 1e-9), "{tesla} T: {each:?} {one:?}");
+    }
+}
+
+/// Without a field time reversal makes each end the other, and of a wall that comes from one edge one that comes from the other.
+#[test]
+fn the_way_back_of_what_time_reversal_makes_is_another_way_there() {
+    for (sites, saddles, cant) in [(10, 2, -0.46), (1, 1, 0.0)] {
+        let text = format!(
+            r#"{{"material": {{"name": "tilted", "moment": "2 mu_B", "energy": [{{"exchange": {{"J": ["3.79 meV"]}}}},
+            {{"anisotropy": {{"K": "0.489 meV", "axis": [0.2, {cant}, 1]}}}}, {{"dmi": {{"D": "1.136 meV", "kind": "interfacial"}}}},
+            {{"anisotropy": {{"K": "-0.111 meV", "axis": [1, -0.24, 0.3]}}}}, {{"cubic_anisotropy": {{"K": "0.1 meV", "axes": [[1, 2, 2], [2, 1, -2]]}}}}]}},
+            "lattice": {{"chain": {{"sites": {sites}}}}}, "initial": {{"uniform": {{"direction": [0, 0, 1]}}}},
+            "final": {{"uniform": {{"direction": [0, 0, -1]}}}}, "rates": {{"temperatures": ["1 K"]}}, "landscape": {{}}}}"#
+        );
+        let loaded = load_text("tilted.json".as_ref(), text).unwrap();
+        let outcome = solve(&loaded.problem().unwrap());
+        assert_eq!(outcome.saddles.len(), saddles);
+        let [forward, backward] = &outcome.rates.as_ref().unwrap().transitions[..] else { panic!() };
+        let found = survey(&loaded.survey().unwrap(), &mut Silent).unwrap();
+        let rows = &found.lifetimes.as_ref().unwrap().rows;
+        let row = rows.iter().find(|r| r.from == "minimum 0" && r.to.as_deref() == Some("minimum 1")).unwrap();
+        for way in [forward, backward] {
+            let passage = &way.rows[0].passage;
+            for (time, rate) in row.ln_time_s.into_iter().zip([passage.ln_htst_per_s, passage.ln_langer_per_s]) {
+                assert!((time.unwrap() + rate.unwrap()).abs() < 1e-3, "{sites}: {time:?} {rate:?} {row:?}");
+            }
+        }
     }
 }
 

@@ -10,7 +10,7 @@ use crate::landscape::{Minimum, Pass};
 use crate::linalg::slab;
 use crate::rates::{
     Equivalents, Orbits, RateSettings, Rates, Refusal, SaddleRate, Theory, Turn, ZeroKind, ZeroModes,
-    equivalent_saddles, refused, saddle_rates, transitions,
+    equivalent_states, leads_back, refused, saddle_rates, transitions,
 };
 use crate::spins::Spins;
 use crate::stationary::{self, ALIKE, Refined, State};
@@ -57,7 +57,7 @@ pub fn of_path(known: &Known, settings: &RateSettings) -> Rates {
 fn orbits(known: &Known, group: Option<&Group>, rates: &[SaddleRate]) -> Vec<Orbits> {
     let alone = |by: &str| {
         let paths = Equivalents { count: 1, by: by.into() };
-        vec![Orbits { above_k: 0.0, saddles: Vec::new(), minima: Vec::new(), paths }]
+        vec![Orbits { above_k: 0.0, saddles: Vec::new(), minima: Vec::new(), paths, leads_back: false }]
     };
     let Some(group) = group.filter(|_| !known.links.is_empty()) else { return alone("not sought") };
     if known.links.len() == 1 || known.doubt().is_some() {
@@ -106,14 +106,18 @@ impl Slides {
         let ends = [links[0].before.spins.as_slice(), links[last - 1].after.spins.as_slice()];
         let like = |m: &[f64], own: bool| {
             let sliding = [own, self.minima[0], self.minima[last]];
-            equivalent_saddles(h.lattice(), along.as_ref().unwrap_or(group), m, ends, sliding)
+            equivalent_states(h.lattice(), along.as_ref().unwrap_or(group), m, ends, sliding)
         };
         let inner = links[..last - 1].iter().zip(&self.minima[1..]);
         let between: Vec<Equivalents> = inner.map(|(l, own)| like(l.after.spins.as_slice(), *own)).collect();
         let tops = links.iter().zip(&self.saddles);
         let saddles = tops.map(|(l, own)| like(&l.saddle.refined.state.m, *own).count).collect();
         let minima = std::iter::once(1).chain(between.iter().map(|e| e.count)).chain([1]).collect();
-        Orbits { above_k, saddles, minima, paths: between[0].clone() }
+        let inner = [&links[0], &links[last - 2]].map(|l| l.after.spins.as_slice());
+        // of what slides the ends' own volumes hold all places
+        let slides = self.minima.iter().chain(&self.saddles).any(|slides| *slides);
+        let leads_back = !slides && leads_back(along.as_ref().unwrap_or(group), inner, ends);
+        Orbits { above_k, saddles, minima, paths: between[0].clone(), leads_back }
     }
 }
 

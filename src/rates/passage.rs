@@ -30,6 +30,31 @@ pub fn first_passage(onward: &[f64], back: &[f64]) -> f64 {
     passages(onward, back).into_iter().fold(f64::NEG_INFINITY, log_sum)
 }
 
+/// ln of the mean first-passage time (s) where two rows of minima, joined at their ends alone, lead from one end to the other; each with
+/// its rates onward and back as above.
+///
+/// ```text
+/// T = (1 + Σ u/r) / Σ 1/r
+/// ```
+/// over both rows, r + u a row's own first-passage time (see [`passages`]) of which r = Σ r_i, r_0 = 1/f_0, r_i = r_{i−1} b_i/f_i is
+/// one over the rate at which what leaves the first minimum comes through.
+pub fn first_passage_by_either(rows: [[&[f64]; 2]; 2]) -> f64 {
+    let (mut through, mut within) = (f64::NEG_INFINITY, 0.0);
+    for [onward, back] in rows {
+        let (mut r, mut u) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
+        let (mut last_r, mut last_u) = (0.0, f64::NEG_INFINITY);
+        for (i, forward) in onward.iter().enumerate() {
+            let returns = if i == 0 { 0.0 } else { back[i - 1] };
+            last_u = if i == 0 { last_u } else { log_sum(0.0, returns + last_u) - forward };
+            last_r += returns - forward;
+            (r, u) = (log_sum(r, last_r), log_sum(u, last_u));
+        }
+        through = log_sum(through, -r);
+        within = log_sum(within, u - r);
+    }
+    within - through
+}
+
 /// The temperature (K) at which the mean lifetime is `seconds`: the solution between Δ = 5000 and a hair above Δ = 1,
 /// from the logarithm of the
 /// lifetime (s) at a temperature (K). Nothing where the lifetime does not fall through `seconds` in between.
@@ -84,6 +109,35 @@ mod tests {
             let times = solve_dense(&q, &vec![-1.0; n], n).unwrap();
             let found = libm::exp(first_passage(&onward, &back));
             assert!((found - times[0]).abs() < 1e-12 * times[0], "{n}: {found} {}", times[0]);
+        }
+    }
+
+    #[test]
+    fn either_of_two_rows_is_crossed_as_the_equations_of_both_say() {
+        let mut r = rand_chacha::ChaCha8Rng::seed_from_u64(31);
+        for (one, other) in [(1, 1), (2, 2), (3, 3), (1, 4), (4, 2)] {
+            let mut rates = |n: usize| -> Vec<f64> { (0..n).map(|_| r.random_range(-6.0..6.0)).collect() };
+            let rows = [one, other].map(|n| [rates(n), rates(n - 1)]);
+            // the first minimum, then the inner ones of each row: −Σ k t_j + Σ k t_i = 1
+            let n = 1 + one - 1 + other - 1;
+            let (mut matrix, mut first) = (vec![0.0; n * n], 1);
+            for [onward, back] in &rows {
+                let place = |i: usize| if i == 0 { 0 } else { first + i - 1 };
+                for i in 0..onward.len() {
+                    let (here, forward) = (place(i), libm::exp(onward[i]));
+                    matrix[here * n + here] += forward;
+                    if i + 1 < onward.len() {
+                        matrix[here * n + place(i + 1)] -= forward;
+                        let returns = libm::exp(back[i]);
+                        matrix[place(i + 1) * n + place(i + 1)] += returns;
+                        matrix[place(i + 1) * n + here] -= returns;
+                    }
+                }
+                first += onward.len() - 1;
+            }
+            let times = solve_dense(&matrix, &vec![1.0; n], n).unwrap();
+            let found = first_passage_by_either(rows.each_ref().map(|row| row.each_ref().map(|k| &k[..])));
+            assert!((found - libm::log(times[0])).abs() < 1e-10, "{one} {other}: {found} {}", libm::log(times[0]));
         }
     }
 

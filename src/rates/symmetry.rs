@@ -1,13 +1,13 @@
 //! Saddles that symmetry makes of one: each is a way out of its own.
 //!
-//! An operation of the group counts where it keeps both minima and moves the saddle, rotations about a symmetry axis (and shifts of
-//! states that slide) apart: those are in the volume of zero modes.
+//! An operation of the group counts where it keeps both minima, or makes each the other, and moves the saddle, rotations about a symmetry
+//! axis (and shifts of states that slide) apart: those are in the volume of zero modes.
 
 use crate::field::Components;
 use crate::geometry::vector;
 use crate::lattice::Lattice;
 use crate::sphere::SAME;
-use crate::symmetry::Group;
+use crate::symmetry::{Group, Operation};
 
 /// How many saddles are alike, and by what.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -18,17 +18,59 @@ pub struct Equivalents {
     pub by: String,
 }
 
-/// The saddles (or other states) that the group makes of this one, beside the same two minima. `sliding`: whether the saddle and
-/// each of the minima slide over the lattice, so that what free shifts make of them is one.
+/// The saddles that the group makes of this one, between the same two minima. `sliding`: whether the saddle and each of the minima slide
+/// over the lattice, so that what free shifts make of them is one.
 ///
-/// S: the shifts that keep both minima. Every operation that keeps them is one of S after one that is no further shifted than the
-/// shortest of S; so the states alike are those that S makes of the latter's images.
+/// S: the shifts that keep both minima. Every operation that keeps or exchanges them is one of S after one that is no further shifted than
+/// the shortest of S; so the states alike are those that S makes of the latter's images.
 pub fn equivalent_saddles(
     lattice: &Lattice,
     group: &Group,
     saddle: &[f64],
     minima: [&[f64]; 2],
     sliding: [bool; 3],
+) -> Equivalents {
+    states_alike(lattice, group, saddle, minima, sliding, &[[0, 1], [1, 0]])
+}
+
+/// The states that the group makes of one, each of two minima kept.
+pub fn equivalent_states(
+    lattice: &Lattice,
+    group: &Group,
+    state: &[f64],
+    minima: [&[f64]; 2],
+    sliding: [bool; 3],
+) -> Equivalents {
+    states_alike(lattice, group, state, minima, sliding, &[[0, 1]])
+}
+
+/// Whether operations that make each of two minima the other make of this state one that none of those that keep both makes of `last`:
+/// of the first state on a path between the minima, and of the last. Of states that do not slide.
+pub fn leads_back(group: &Group, [first, last]: [&[f64]; 2], minima: [&[f64]; 2]) -> bool {
+    if group.axes().len() > 1 {
+        return false;
+    }
+    let steps = free_shifts(group, minima, [false; 2]);
+    let takes = |operation: &Operation, from: usize, to: usize| group.takes(operation, minima[from], minima[to], SAME);
+    // all others are this one after one that keeps both
+    let Some(back) = group.classes_within(&steps).find(|by| takes(by, 0, 1) && takes(by, 1, 0)) else {
+        return false;
+    };
+    let image = back.apply(first);
+    !group.classes_within(&steps).any(|by| {
+        let keeps = takes(&by, 0, 0) && takes(&by, 1, 1);
+        keeps && slid(group, &steps, &by.apply(last), &image, SAME)
+    })
+}
+
+/// Those that operations make of one by which these become of the minima.
+fn states_alike(
+    lattice: &Lattice,
+    group: &Group,
+    saddle: &[f64],
+    minima: [&[f64]; 2],
+    sliding: [bool; 3],
+    made: &[[usize; 2]],
 ) -> Equivalents {
     if group.axes().len() > 1 {
         return Equivalents { count: 1, by: "not sought: the energy has no axis".into() };
@@ -37,12 +79,14 @@ pub fn equivalent_saddles(
     let off = |m: &[f64], slides: bool| if slides { SAME + 0.6 * largest_steps(lattice, m) } else { SAME };
     let within = [off(saddle, sliding[0]), off(minima[0], sliding[1]), off(minima[1], sliding[2])];
     let (mut by, mut kept) = (Vec::new(), vec![saddle.to_vec()]);
-    for operation in group.classes_within(&steps).skip(1) {
-        let stays = |k: usize| match sliding[k + 1] {
-            true => slid(group, &steps, &operation.apply(minima[k]), minima[k], within[k + 1]),
-            false => group.takes(&operation, minima[k], minima[k], SAME),
+    let operations = || group.classes_within(&steps).skip(1);
+    // those that keep both first: they are told of
+    for ([a, b], operation) in made.iter().flat_map(|made| operations().map(move |operation| (made, operation))) {
+        let takes = |from: usize, to: usize| match sliding[to + 1] {
+            true => slid(group, &steps, &operation.apply(minima[from]), minima[to], within[to + 1]),
+            false => group.takes(&operation, minima[from], minima[to], SAME),
         };
-        if !(stays(0) && stays(1)) {
+        if !(takes(0, *a) && takes(1, *b)) {
             continue;
         }
         let image = operation.apply(saddle);

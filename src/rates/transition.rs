@@ -1,6 +1,6 @@
 //! The rate of the whole path, over all its saddles.
 
-use super::passage::{TEN_YEARS_S, blocking_temperature, first_passage, passages};
+use super::passage::{TEN_YEARS_S, blocking_temperature, first_passage, first_passage_by_either, passages};
 use super::rate::{factor, ruling};
 use super::{Equivalents, RateSettings, Refusal, Row, SaddleRate, Theory, Way};
 use crate::units::K_B;
@@ -18,6 +18,9 @@ pub struct Orbits {
     pub minima: Vec<usize>,
     /// Paths of the same kind, through other minima.
     pub paths: Equivalents,
+    /// Whether what makes each end the other makes another path of this one, over the same saddles the other way round, as time reversal
+    /// does without a field.
+    pub leads_back: bool,
 }
 
 impl Orbits {
@@ -71,6 +74,69 @@ pub fn transitions(
     Way::BOTH.map(|way| transition(saddles, orbits, settings, doubt, way)).into()
 }
 
+/// A path in one direction.
+struct Along<'a> {
+    way: Way,
+    /// The rates over each saddle that it meets.
+    onward: Vec<&'a SaddleRate>,
+    /// Back over each.
+    back: Vec<&'a SaddleRate>,
+    orbits: &'a [Orbits],
+    doubt: Option<&'a str>,
+}
+
+impl<'a> Along<'a> {
+    fn new(saddles: &'a [SaddleRate], orbits: &'a [Orbits], doubt: Option<&'a str>, way: Way) -> Along<'a> {
+        let mut onward: Vec<&SaddleRate> = saddles.iter().filter(|r| r.way == way).collect();
+        let mut back: Vec<&SaddleRate> = saddles.iter().filter(|r| r.way != way).collect();
+        if way == Way::Backward {
+            onward.reverse();
+            back.reverse();
+        }
+        Along { way, onward, back, orbits, doubt }
+    }
+
+    /// The saddles that part states.
+    fn parting(&self, t: f64) -> Vec<usize> {
+        (0..self.onward.len()).filter(|i| !self.onward[*i].is_within_one(self.back[*i], t)).collect()
+    }
+
+    /// Over saddle i, onward or back.
+    fn ln_rate(&self, onward: bool, i: usize, theory: Theory, t: f64) -> Option<f64> {
+        // saddles count along the path: backward, the minimum that a step on leaves is the one after its saddle
+        let side = usize::from(onward != (self.way == Way::Forward));
+        let number = if self.way == Way::Forward { i } else { self.onward.len() - 1 - i };
+        let rate = if onward { self.onward[i] } else { self.back[i] };
+        let more = at(self.orbits, t).ln_more(number, side, rate.at(t).equivalents.count);
+        Some(rate.ln_rate_per_s(theory, t)? + more)
+    }
+
+    /// Of all saddles onward, and back over all but the last: what the passage hangs on.
+    fn both(&self, theory: Theory, t: f64) -> Option<[Vec<f64>; 2]> {
+        let parted = self.parting(t);
+        let (_, but_last) = parted.split_last().filter(|_| self.doubt.is_none())?;
+        let ln_rates = |onward: bool, saddles: &[usize]| -> Option<Vec<f64>> {
+            saddles.iter().map(|i| self.ln_rate(onward, *i, theory, t)).collect()
+        };
+        Some([ln_rates(true, &parted)?, ln_rates(false, but_last)?])
+    }
+
+    fn escape(&self, theory: Theory, t: f64) -> Option<f64> {
+        let first = *self.parting(t).first().filter(|_| self.doubt.is_none())?;
+        self.ln_rate(true, first, theory, t)
+    }
+
+    /// ln of the factor within which a passage is known: each saddle's error counts as far as the time hangs on it.
+    fn ln_known(&self, t: f64) -> f64 {
+        let Some([on, back]) = self.both(Theory::Langer, t).or_else(|| self.both(Theory::Htst, t)) else {
+            return f64::INFINITY;
+        };
+        let total = first_passage(&on, &back);
+        let parts = passages(&on, &back).into_iter().zip(self.parting(t));
+        parts.map(|(time, i)| libm::exp(time - total) * self.onward[i].ln_known_within(t)).sum()
+    }
+}
+
 fn transition(
     saddles: &[SaddleRate],
     orbits: &[Orbits],
@@ -78,79 +144,61 @@ fn transition(
     doubt: Option<&str>,
     way: Way,
 ) -> TransitionRate {
-    let mut onward: Vec<&SaddleRate> = saddles.iter().filter(|r| r.way == way).collect();
-    let mut back: Vec<&SaddleRate> = saddles.iter().filter(|r| r.way != way).collect();
-    if way == Way::Backward {
-        onward.reverse();
-        back.reverse();
-    }
-    let barrier_mev = highest(&onward, &back);
-    // saddles count along the path: backward, the minimum that a step on leaves is the one after its saddle
-    let (leaving, returning) = if way == Way::Forward { (0, 1) } else { (1, 0) };
-    let count = onward.len();
-    let number = |i: usize| if way == Way::Forward { i } else { count - 1 - i };
-    // the saddles that part states
-    let parting = |t: f64| -> Vec<usize> { (0..count).filter(|i| !onward[*i].is_within_one(back[*i], t)).collect() };
-    let ln_rate = |rates: &[&SaddleRate], side: usize, i: usize, theory: Theory, t: f64| -> Option<f64> {
-        let more = at(orbits, t).ln_more(number(i), side, rates[i].at(t).equivalents.count);
-        Some(rates[i].ln_rate_per_s(theory, t)? + more)
-    };
-    // of all saddles onward, and back over all but the last: what the passage hangs on
-    let both = |theory: Theory, t: f64| -> Option<[Vec<f64>; 2]> {
-        let parted = parting(t);
-        let (_, but_last) = parted.split_last().filter(|_| doubt.is_none())?;
-        let ln_rates = |rates: &[&SaddleRate], side: usize, saddles: &[usize]| -> Option<Vec<f64>> {
-            saddles.iter().map(|i| ln_rate(rates, side, *i, theory, t)).collect()
-        };
-        Some([ln_rates(&onward, leaving, &parted)?, ln_rates(&back, returning, but_last)?])
-    };
-    let escape = |theory: Theory, t: f64| -> Option<f64> {
-        let first = *parting(t).first().filter(|_| doubt.is_none())?;
-        ln_rate(&onward, leaving, first, theory, t)
-    };
-    // each saddle's error counts as far as the time hangs on it
-    let ln_known = |rates: Option<[Vec<f64>; 2]>, t: f64| -> f64 {
-        let Some([on, back]) = rates else { return f64::INFINITY };
-        let total = first_passage(&on, &back);
-        let parts = passages(&on, &back).into_iter().zip(parting(t));
-        parts.map(|(time, i)| libm::exp(time - total) * onward[i].ln_known_within(t)).sum()
+    let path = Along::new(saddles, orbits, doubt, way);
+    // over the same saddles the other way round: what leads back along the path, made to lead on
+    let other_way = if way == Way::Forward { Way::Backward } else { Way::Forward };
+    let other = Along::new(saddles, orbits, doubt, other_way);
+    let leads_back = |t: f64| at(orbits, t).leads_back;
+    let barrier_mev = highest(&path.onward, &path.back);
+    let ln_passage = |theory: Theory, t: f64| -> Option<f64> {
+        let [on, back] = path.both(theory, t)?;
+        if !leads_back(t) {
+            return Some(-first_passage(&on, &back));
+        }
+        let [other_on, other_back] = other.both(theory, t)?;
+        Some(-first_passage_by_either([[&on, &back], [&other_on, &other_back]]))
     };
     let row = |t: f64| -> TransitionRow {
-        let [htst, langer] = Theory::ALL.map(|theory| both(theory, t));
-        let passage = |rates: &Option<[Vec<f64>; 2]>| rates.as_ref().map(|[on, back]| -first_passage(on, back));
         let whole = Row {
             temperature_k: t,
             barrier_over_kt: barrier_mev / (K_B * t),
-            ln_htst_per_s: passage(&htst),
-            ln_langer_per_s: passage(&langer),
+            ln_htst_per_s: ln_passage(Theory::Htst, t),
+            ln_langer_per_s: ln_passage(Theory::Langer, t),
             ..Row::default()
         };
-        let out = onward[parting(t).first().copied().unwrap_or(0)];
+        let out = path.onward[path.parting(t).first().copied().unwrap_or(0)];
         let first = Row {
             temperature_k: t,
             barrier_over_kt: out.barrier_mev.unwrap_or(0.0) / (K_B * t),
-            ln_htst_per_s: escape(Theory::Htst, t),
-            ln_langer_per_s: escape(Theory::Langer, t),
+            ln_htst_per_s: path.escape(Theory::Htst, t),
+            ln_langer_per_s: path.escape(Theory::Langer, t),
             ..Row::default()
         };
         let known_within = first.ln_lifetime_s().and_then(|_| factor(out.ln_known_within(t)));
         let first = Row { known_within, ..first };
-        let known_within = factor(ln_known(langer.or(htst), t));
-        TransitionRow { passage: Row { known_within, ..whole }.held(), escape: first.held() }
+        let ln_known = if leads_back(t) { path.ln_known(t).max(other.ln_known(t)) } else { path.ln_known(t) };
+        TransitionRow { passage: Row { known_within: factor(ln_known), ..whole }.held(), escape: first.held() }
     };
     let lifetime = |t: f64| row(t).passage.ln_lifetime_s();
     let blocking_k = [1.0, TEN_YEARS_S].map(|s| blocking_temperature(lifetime, barrier_mev, s));
     let rows: Vec<TransitionRow> = settings.temperatures_k.iter().map(|t| row(*t)).collect();
-    let refusals = || onward.iter().chain(&back).flat_map(|r| &r.at(settings.first_k()).refused);
-    let possible = settings.temperatures_k.iter().any(|t| Theory::ALL.iter().any(|theory| both(*theory, *t).is_some()));
+    let refusals = || path.onward.iter().chain(&path.back).flat_map(|r| &r.at(settings.first_k()).refused);
+    let possible =
+        settings.temperatures_k.iter().any(|t| Theory::ALL.iter().any(|theory| ln_passage(*theory, *t).is_some()));
     let refused = match possible {
         true => None,
         false => doubt
             .map(|doubt| Refusal::Path(doubt.into()))
             .or_else(|| refusals().map(|(_, reason)| reason.clone()).next()),
     };
-    let equivalents = at(orbits, settings.first_k()).paths.clone();
-    TransitionRate { way, saddles: count, equivalents, barrier_mev, rows, blocking_k, refused }
+    let first = at(orbits, settings.first_k());
+    let equivalents = match first.leads_back {
+        false => first.paths.clone(),
+        true => {
+            Equivalents { count: 2 * first.paths.count, by: format!("{}, and the way back along each", first.paths.by) }
+        }
+    };
+    TransitionRate { way, saddles: path.onward.len(), equivalents, barrier_mev, rows, blocking_k, refused }
 }
 
 /// The numbers at a temperature (K).
@@ -182,6 +230,7 @@ mod tests {
 
     fn row(saddles: &[SaddleRate], way: usize, temperature_k: f64) -> TransitionRow {
         let orbits = Orbits {
+            leads_back: false,
             above_k: 0.0,
             saddles: vec![1; saddles.len() / 2],
             minima: vec![1; saddles.len() / 2 + 1],
