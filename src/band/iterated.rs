@@ -4,8 +4,8 @@
 //! ```text
 //! P A P x = P (F⊥ + σ y_u − A d τ),   P = 1 − C Cᵀ,   A = H + (σ + μ)·1,   y = d τ + x
 //! ```
-//! (see [`Complement`]), until 3 % of the residual are left: the next evaluation changes the right-hand
-//! side by more. A direction of negative curvature on the way makes μ grow, as a negative pivot does where there are factors. (T.
+//! (see [`Complement`]), until 3 % of the residual are left, or a tenth where the band is only to be looked at: the next evaluation changes
+//! the right-hand side by more. A direction of negative curvature on the way makes μ grow, as a negative pivot does where there are factors. (T.
 //! Steihaug, SIAM J. Numer. Anal. 20, 626 (1983), doi:10.1137/0720042, for conjugate gradients that end so; R. S. Dembo, S. C.
 //! Eisenstat, T. Steihaug, SIAM J. Numer. Anal. 19, 400 (1982), doi:10.1137/0719025, for how far they are to go.)
 
@@ -17,14 +17,16 @@ use crate::hessian::{Complement, Place, StandIn};
 use crate::linalg::{orthonormal, slab};
 use std::sync::Arc;
 
-/// The residual that is left.
-const TOLERANCE: f64 = 3e-2;
+/// The residual that is left, and where a band is only to be looked at.
+pub(super) const TOLERANCE: f64 = 3e-2;
+pub(super) const ROUGH: f64 = 0.1;
 
 /// An image with room for its linear algebra.
 #[derive(Debug)]
 pub struct Iterated {
     /// M.
     stand_in: Arc<StandIn>,
+    tolerance: f64,
     equations: Complement,
     sigma: f64,
     shift: f64,
@@ -32,9 +34,9 @@ pub struct Iterated {
 }
 
 impl Iterated {
-    /// Nothing yet, but for M.
-    pub fn by(stand_in: Arc<StandIn>) -> Iterated {
-        Iterated { stand_in, equations: Complement::default(), sigma: 0.0, shift: 0.0, image: Vec::new() }
+    /// Nothing yet, but for M, and for the residual that is to be left.
+    pub fn by(stand_in: Arc<StandIn>, tolerance: f64) -> Iterated {
+        Iterated { stand_in, tolerance, equations: Complement::default(), sigma: 0.0, shift: 0.0, image: Vec::new() }
     }
 
     /// M for the images of a band, where factors of their Hessians take long.
@@ -68,7 +70,7 @@ impl Iterated {
         for _ in 1..SHIFT_TRIES {
             let (h, m, g) = (band.hamiltonian(), band.path().image(k), band.gradient(k));
             let place = Place { h, m, g, shift: self.sigma + self.shift };
-            let Err(negative) = self.equations.solve(place, &self.stand_in, TOLERANCE) else { break };
+            let Err(negative) = self.equations.solve(place, &self.stand_in, self.tolerance) else { break };
             // as much as it takes and as the force asks for: a mode that is all but free is left soon where it is not held
             let enough = (2.0 * negative).max(band.force(k).min(self.stand_in.c));
             self.shift = (4.0 * self.shift).max(self.shift + enough);
@@ -153,7 +155,7 @@ mod tests {
         });
         let mut band = Band::new(&h, Path::new(&images));
         band.evaluate();
-        let mut room = Iterated::by(Arc::new(Iterated::stand_in(&band, 0.16).expect("factors are dear")));
+        let mut room = Iterated::by(Arc::new(Iterated::stand_in(&band, 0.16).expect("factors are dear")), TOLERANCE);
         let mut y = vec![0.0; 3 * h.sites()];
         for k in 1..5 {
             room.prepare(&band, k, h.symmetry_axes(), 0.0);
@@ -181,7 +183,8 @@ mod tests {
                 let h = hamiltonian(&lattice, terms);
                 let mut band = Band::new(&h, walls(&lattice, noise));
                 band.evaluate();
-                let mut room = Iterated::by(Arc::new(Iterated::stand_in(&band, 0.16).expect("factors are dear")));
+                let mut room =
+                    Iterated::by(Arc::new(Iterated::stand_in(&band, 0.16).expect("factors are dear")), TOLERANCE);
                 let mut y = vec![0.0; 3 * h.sites()];
                 for k in 1..4 {
                     let uphill = y.clone();

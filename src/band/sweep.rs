@@ -16,7 +16,7 @@
 //! Images that wait for none go first, side by side; the slopes that hang on them after that, each from its top down.
 
 use super::Band;
-use super::iterated::Iterated;
+use super::iterated::{Iterated, ROUGH, TOLERANCE};
 use super::linearised::{Linearised, Move, SHIFT_FLOOR};
 use crate::geometry::Vector;
 use crate::hessian::StandIn;
@@ -30,6 +30,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 #[derive(Debug)]
 pub struct Sweep {
     stiffness: f64,
+    tolerance: f64,
     shifts: Vec<f64>,
     rooms: Rooms,
     /// For the images of the first band, if those are found by iteration.
@@ -77,6 +78,8 @@ struct Task<'a> {
     rooms: &'a Rooms,
     /// Where images are found by iteration.
     stand_in: Option<&'a Arc<StandIn>>,
+    /// What they leave of their residuals.
+    tolerance: f64,
     /// How many threads are worth waking.
     threads: usize,
 }
@@ -84,7 +87,7 @@ struct Task<'a> {
 impl Task<'_> {
     fn prepared(&self, k: usize) -> Room {
         let new = || match self.stand_in {
-            Some(stand_in) => Room::Products(Box::new(Iterated::by(stand_in.clone()))),
+            Some(stand_in) => Room::Products(Box::new(Iterated::by(stand_in.clone(), self.tolerance))),
             None => Room::Factors(Box::default()),
         };
         let mut room = self.rooms.take().unwrap_or_else(new);
@@ -168,7 +171,13 @@ pub struct SweepStep {
 impl Sweep {
     /// With stiffness scale c (meV).
     pub fn new(stiffness: f64) -> Sweep {
-        Sweep { stiffness, shifts: Vec::new(), rooms: Rooms::default(), stand_in: OnceLock::new() }
+        let (shifts, rooms, stand_in) = (Vec::new(), Rooms::default(), OnceLock::new());
+        Sweep { stiffness, tolerance: TOLERANCE, shifts, rooms, stand_in }
+    }
+
+    /// Of a band that is only to be looked at.
+    pub fn roughly(self) -> Sweep {
+        Sweep { tolerance: ROUGH, ..self }
     }
 
     /// The shift μ of every image (meV), all that one evaluation tells the next; empty before the first.
@@ -190,7 +199,8 @@ impl Sweep {
         let threads = if small { 1 } else { rayon::current_num_threads() };
         let (shifts, rooms) = (&self.shifts[..], &self.rooms);
         let stand_in = self.stand_in.get_or_init(|| Iterated::stand_in(band, self.stiffness).map(Arc::new)).as_ref();
-        let task = Task { band, axes, stiffness: self.stiffness, shifts, rooms, stand_in, threads };
+        let (stiffness, tolerance) = (self.stiffness, self.tolerance);
+        let task = Task { band, axes, stiffness, shifts, rooms, stand_in, tolerance, threads };
         let (tops, slopes) = tops_and_slopes(band);
         let mut at_top: Vec<&mut [f64]> = tops.iter().map(|k| take(&mut slabs[k - 1])).collect();
         let (mut done, ahead) = task.relax_tops(&tops, &mut at_top, &slopes);

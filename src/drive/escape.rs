@@ -6,7 +6,7 @@ use crate::landscape::Saddle;
 use crate::linalg::{slab, soft_modes};
 use crate::path::Path;
 use crate::sphere::{move_points, rotation_of};
-use crate::stationary::ALIKE;
+use crate::stationary::{ALIKE, FEW};
 
 /// How far a path is pushed off a saddle of higher index (rad).
 const PUSH: f64 = 0.8;
@@ -18,7 +18,7 @@ pub fn escapes(band: &Band, found: &Saddle, c: f64) -> Vec<Path> {
     if band.hamiltonian().forgoes_factors() {
         return Vec::new();
     }
-    let modes = soft_modes(&state.hessian, 8, &state.zeros, enough);
+    let modes = soft_modes(&state.hessian, FEW, &state.zeros, enough);
     let negative: Vec<_> = modes.into_iter().filter(|m| m.value < enough).collect();
     if negative.len() < 2 {
         return Vec::new();

@@ -5,12 +5,13 @@ use super::explore::natural_guesses;
 use super::first_path::{FirstPath, describe};
 use super::relaxation::{Goal, LOOSELY, image_levels};
 use super::run::{Run, WORTH};
+use super::scales::LEAST_IMAGES;
 use super::{Images, Stop};
 use crate::band::Band;
 use crate::error::Result;
 use crate::landscape::{Effort, Peak, Saddle, ZOOMS, peaks, promising, zoomed};
-use crate::path::Path;
 use crate::path::guess::{GuessSpec, NoiseSpec, add_noise, moving_sites, smooth};
+use crate::path::{COARSE, Path};
 use crate::stationary::ALIKE;
 
 /// Evaluations after which first paths are compared.
@@ -170,7 +171,10 @@ impl<'a> Run<'a, '_> {
         let coarsest = match self.problem.images {
             Images::Auto => {
                 let lattice = context.states.lattice;
-                self.scales.images_between(lattice, moving_sites(a, b, lattice)) + 2
+                let images = self.scales.images_between(lattice, moving_sites(a, b, lattice));
+                // a film's is looked at, and put together anew
+                let is_tried = limit < usize::MAX && !lattice.is_row() && images == LEAST_IMAGES;
+                if is_tried { COARSE + 2 } else { images + 2 }
             }
             Images::Count(n) => image_levels(n, |n| make(n).is_ok_and(|p| p.is_resolved()))[0],
         };

@@ -6,9 +6,9 @@ use crate::landscape::Effort;
 use crate::path::Path;
 use crate::rates::Rates;
 use crate::spins::Spins;
+use crate::stationary::FAR;
 use crate::stationary::Spectrum;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::FRAC_PI_2;
 
 /// A finished run.
 #[derive(Clone, Debug)]
@@ -141,7 +141,7 @@ pub struct SaddlePoint {
 }
 
 /// An end of which a spin turned by more than this while it relaxed may be another state than meant (rad).
-pub const MOVED_FAR_RAD: f64 = FRAC_PI_2;
+pub const MOVED_FAR_RAD: f64 = FAR;
 
 /// An end of the path.
 #[derive(Clone, Debug)]

@@ -15,6 +15,7 @@ use crate::record::Fingerprint;
 use crate::sphere::rotation_of;
 use crate::stationary::LOWER;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// |F⊥|∞/c that is enough to double the images or to read off which path is lowest.
@@ -151,11 +152,11 @@ impl Relaxation<'_> {
         let first = self.history.len();
         let call = h.call("relaxation", |print| fingerprint(print, band, goal, limit));
         if let Some(end) = call.answer(|end: End| end.restored(band)) {
-            self.history.extend(end.rows);
+            self.history.extend(end.rows.into_owned());
             return Ok(end.stop);
         }
         self.observer.relaxing(goal, self.settings.tolerance);
-        let mut now = self.start(h);
+        let mut now = self.start(h, goal);
         if let Some(stand) = call.underway(|stand: Stand| stand.restored(band)) {
             self.history.extend(now.take_over(stand, band));
         }
@@ -168,19 +169,20 @@ impl Relaxation<'_> {
             }
         };
         call.finish(|| End {
-            path: band.path().clone(),
+            path: Cow::Borrowed(band.path()),
             evaluations: band.evaluations(),
             stop,
-            rows: self.history[first..].to_vec(),
+            rows: Cow::Borrowed(&self.history[first..]),
         });
         Ok(stop)
     }
 
-    fn start(&self, h: Evaluator) -> Iterate {
+    fn start(&self, h: Evaluator, goal: Goal) -> Iterate {
         let method = self.settings.optimiser.member();
+        let sweep = Sweep::new(self.scales.stiffness_mev);
         Iterate {
             optimiser: method.start(h.stiffness_mev()),
-            sweep: Sweep::new(self.scales.stiffness_mev),
+            sweep: if goal == Goal::Tight { sweep } else { sweep.roughly() },
             progress: Progress::new(method.follows()),
             peak_mev: None,
         }
@@ -319,11 +321,11 @@ struct Stand {
 
 /// The end of a relaxation.
 #[derive(Serialize, Deserialize)]
-struct End {
-    path: Path,
+struct End<'a> {
+    path: Cow<'a, Path>,
     evaluations: usize,
     stop: Stop,
-    rows: Vec<HistoryRow>,
+    rows: Cow<'a, [HistoryRow]>,
 }
 
 impl Iterate {
@@ -368,13 +370,13 @@ impl Stand {
     }
 }
 
-impl End {
+impl End<'_> {
     /// Puts the band where its relaxation ended; nothing where that was another band.
-    fn restored(self, band: &mut Band) -> Option<End> {
+    fn restored(self, band: &mut Band) -> Option<Self> {
         let is_sound = fits(&self.path, band) && are_counts(&[self.evaluations]) && self.evaluations > 0;
         is_sound.then_some(())?;
         let (h, evaluations) = (band.evaluator(), self.evaluations - 1);
-        let end = End { stop: self.stop.restored(h)?, rows: self.rows.restored(h)?, ..self };
+        let end = End { stop: self.stop.restored(h)?, rows: self.rows.into_owned().restored(h)?.into(), ..self };
         band.restore(end.path.as_slice(), evaluations);
         band.evaluate();
         Some(end)

@@ -69,6 +69,8 @@ pub(super) struct Run<'a, 'o> {
     pub(super) land: Landscape<'a>,
     /// The two ends in it.
     pub(super) minima: [usize; 2],
+    /// Most evaluations of single states, where a path is proven and others are followed beside it.
+    pub(super) most_evaluations: usize,
 }
 
 impl<'a, 'o> Run<'a, 'o> {
@@ -112,6 +114,7 @@ impl<'a, 'o> Run<'a, 'o> {
             warnings,
             land,
             minima,
+            most_evaluations: usize::MAX,
         };
         run.axis = turning_axis(problem, &run.ends[0].spins, &run.ends[1].spins, &run.context());
         Ok(run)
@@ -173,6 +176,10 @@ impl<'a, 'o> Run<'a, 'o> {
             // a proven path is the one, unless what is known of another lies below its highest saddle
             let proven = best.proof.doubts.is_empty();
             let below = if proven { (1.0 - LOWER) * best.seen_mev() } else { f64::INFINITY };
+            // and what may be lower takes no more work than all that led to it
+            if proven && self.most_evaluations == usize::MAX {
+                self.most_evaluations = 2 * self.problem.evaluator().evaluated().evaluations;
+            }
             if next.barrier_mev(scale) > below.min(WORTH * best.seen_mev()) {
                 others.push(next);
                 continue;
@@ -192,6 +199,7 @@ impl<'a, 'o> Run<'a, 'o> {
             left.first.band.rest();
             others.push(left.first);
         }
+        self.most_evaluations = usize::MAX;
         others.extend(firsts);
         Ok((best, others))
     }
@@ -215,10 +223,14 @@ impl<'a, 'o> Run<'a, 'o> {
         Ok(())
     }
 
-    /// How many evaluations of single states are left of what a band may take with all that is done for it.
+    /// How many evaluations of single states a band may take with all that is done for it, all that were made before counted.
+    pub(super) fn allowed(&self, band: &Band) -> usize {
+        self.problem.neb.max_evaluations.saturating_mul(band.images()).min(self.most_evaluations)
+    }
+
+    /// How many are left of them.
     pub(super) fn left(&self, band: &Band) -> usize {
-        let allowed = self.problem.neb.max_evaluations.saturating_mul(band.images());
-        allowed.saturating_sub(self.problem.evaluator().evaluated().evaluations)
+        self.allowed(band).saturating_sub(self.problem.evaluator().evaluated().evaluations)
     }
 
     /// Whether none are.

@@ -9,6 +9,9 @@ use crate::stationary::{ALIKE, INDEPENDENT, State};
 use crate::threads::both;
 use serde::{Deserialize, Serialize};
 
+/// Images between the ends of a path on which nothing narrow moves.
+pub(super) const LEAST_IMAGES: usize = 15;
+
 /// Scales from which tolerances, shifts and image counts follow.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scales {
@@ -52,7 +55,7 @@ impl Scales {
     pub fn images_between(&self, lattice: &Lattice, moving: usize) -> usize {
         let sites = lattice.sites_along();
         let (n, w) = (moving as f64, self.sweep_width(sites));
-        let least = if lattice.is_row() && 2 * moving < sites && n < 3.0 * w { 7 } else { 15 };
+        let least = if lattice.is_row() && 2 * moving < sites && n < 3.0 * w { 7 } else { LEAST_IMAGES };
         ((std::f64::consts::PI * (n + w) / (2.0 * w)).ceil() as usize).max(least)
     }
 

@@ -15,15 +15,12 @@ use crate::hessian::factorisation_flops;
 use crate::landscape::{Aim, Effort, KINDS, Landscape, Minimum, Searched, Settings, search};
 use crate::record::Count;
 use crate::spins::Spins;
-use crate::stationary::{RELAXED, Relaxed, relax_to_minimum};
+use crate::stationary::{RELAXED, Relaxed, STRIDE, relax_to_minimum};
 
 /// Single states are evaluated until so many spins were, or as often as for the first paths; and their Hessians until so many
 /// operations were spent on factorising them, or as often. At `thorough` several times as much of all.
 const SPINS: usize = 10_000_000;
 const FLOPS: f64 = 1e9;
-
-/// Spins that are further apart (rad) are of different domains.
-const DOMAIN: f64 = 0.5;
 
 impl<'a> Run<'a, '_> {
     /// Looks for a route below the top of the best path, and leads the path over it.
@@ -35,7 +32,8 @@ impl<'a> Run<'a, '_> {
             return Ok(report);
         }
         self.observer.stage("looking for lower passes");
-        let most = self.allowance(&best.first.band);
+        let h = self.problem.evaluator();
+        let (most, before) = (self.allowance(&best.first.band), h.evaluated());
         let ends = self.minima;
         if ends[0] == ends[1] {
             return Ok(report);
@@ -45,9 +43,11 @@ impl<'a> Run<'a, '_> {
         // images may miss a saddle by as much as the path is high
         let top_mev = if unproven { first_mev + height(&best.first.band) } else { first_mev };
         self.land.unfold();
-        if most.evaluations > 0 {
-            self.through_third_states(top_mev)?;
-        }
+        // of what may be done half at most goes there
+        self.most_evaluations = before.evaluations.saturating_add(most.evaluations / 2);
+        self.through_third_states(top_mev)?;
+        self.most_evaluations = usize::MAX;
+        let most = h.evaluated().since(before).left_of(most);
         let settings = Settings {
             effort,
             shares: 1,
@@ -101,6 +101,9 @@ impl<'a> Run<'a, '_> {
         let h = self.problem.evaluator();
         let [a, b] = self.minima;
         for domain in third_states(&h, self.ends.each_ref().map(|end| &end.spins)) {
+            if h.evaluated().evaluations >= self.most_evaluations {
+                break;
+            }
             let top = self.land.top_mev(a, b).map_or(top_mev, |lowest| lowest.min(top_mev));
             if self.land.height_mev(domain.as_slice()) >= top {
                 continue;
@@ -146,6 +149,7 @@ impl<'a> Run<'a, '_> {
             warnings: Vec::new(),
             land,
             minima,
+            most_evaluations: self.most_evaluations,
         };
         run.axis = turning_axis(run.problem, &run.ends[0].spins, &run.ends[1].spins, &run.context());
         if let Some(best) = run.natural()?.into_iter().next() {
@@ -183,7 +187,7 @@ pub fn third_states(h: &Hamiltonian, ends: [&Spins; 2]) -> Vec<Spins> {
             let spin = |i: usize| if h.is_frozen(i) { end.get(i) } else { pair[(i + first) % 2] };
             let vectors: Vec<Vector> = (0..sites).map(spin).collect();
             let Ok(state) = Spins::from_vectors(&vectors) else { continue };
-            let new = |other: &Spins| crate::path::largest_angle(other.as_slice(), state.as_slice()) > DOMAIN;
+            let new = |other: &Spins| crate::path::largest_angle(other.as_slice(), state.as_slice()) > STRIDE;
             if ends.iter().all(|end| new(end)) && found.iter().all(new) {
                 found.push(state);
             }

@@ -262,7 +262,7 @@ impl<'a> Run<'a, '_> {
             bands: &tools,
             path: c.band.path(),
             below_mev,
-            evaluations: self.problem.neb.max_evaluations.saturating_mul(c.band.images()),
+            evaluations: self.allowed(&c.band),
             sides: Sides { c: self.scales.stiffness_mev, level_mev: level_mev(&c.band), beside: &[] },
             context: self.context(),
         };

@@ -13,11 +13,9 @@ use crate::network::Parts;
 use crate::path::{Path, is_within, largest_angle};
 use crate::sphere::SAME;
 use crate::spins::Spins;
-use crate::stationary::{ALIKE, LOWER};
+use crate::stationary::{ALIKE, LAST_DIGITS, LOWER};
 use crate::symmetry::{Group, Operation};
 
-/// A climb that comes so near to a saddle (rad, any spin) ends there.
-const BESIDE: f64 = 0.05;
 /// Images by symmetry of every minimum and pass, at most, and of how many spins; and minima, from which on no more images are added:
 /// so many in a search for a route, and so many in a survey.
 const IMAGES: usize = 64;
@@ -196,8 +194,8 @@ impl<'a> Landscape<'a> {
 
     /// Whether a state of this height is so near to a known saddle that a climb from it would end there.
     pub fn is_beside_a_saddle(&self, m: &[f64], height_mev: f64) -> bool {
-        let near = BESIDE * BESIDE * self.h.stiffness_mev() * self.h.sites() as f64;
-        let beside = |e: &Edge| (e.height_mev - height_mev).abs() < near && is_within(&e.saddle, m, BESIDE);
+        let near = LAST_DIGITS * LAST_DIGITS * self.h.stiffness_mev() * self.h.sites() as f64;
+        let beside = |e: &Edge| (e.height_mev - height_mev).abs() < near && is_within(&e.saddle, m, LAST_DIGITS);
         self.edges.iter().any(beside)
     }
 

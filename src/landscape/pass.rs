@@ -13,8 +13,8 @@ use crate::symmetry::{Group, Operation};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// How many eigenvalues of a saddle are reported.
-const REPORTED: usize = 4;
+/// How many of the softest modes are told of and tried.
+pub(super) const SOFTEST: usize = 4;
 
 /// The direction (3N) in which a saddle falls: the valley that its search followed, or, where that is a mixture of soft modes,
 /// the lowest mode, if that is plainly negative.
@@ -118,7 +118,7 @@ impl Pass {
         let Refined { state, valley, spectrum, .. } = &*self.saddle.refined;
         // the direction in which it falls is a mode where a search found it as one
         let lowest = spectrum.as_ref().map(|_| state.basis.coordinates(valley));
-        lowest_eigenvalues_mev(h, state, REPORTED, lowest.as_slice())
+        lowest_eigenvalues_mev(h, state, SOFTEST, lowest.as_slice())
     }
 
     /// As the theories of rates take it. `doubt`: what stands against its certificate.

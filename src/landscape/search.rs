@@ -18,16 +18,12 @@ use crate::energy::{Evaluator, Stored, recorded_each};
 use crate::error::Result;
 use crate::path::guess::GuessContext;
 use crate::record::Count;
-use crate::stationary::{Limits, STEPS, STRIDE};
+use crate::stationary::{FEW, Limits, STEPS, STRIDE};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Most steps of a climb in a row without a descending mode.
-const WITHOUT_MODE: usize = 8;
-/// Searches of a batch.
-const BATCH: usize = 8;
 /// Kinds of minima, at most: of a search for a route, and of a survey for each step of effort.
 pub const KINDS: usize = 1000;
 /// The seed of everything random in a search.
@@ -192,7 +188,7 @@ pub fn search(
             break;
         }
         let cut = Cut::of(land, aim.ends(), aim.below_mev(land, top_mev), settings.context);
-        let count = (BATCH * settings.shares).min(wanted - done.quiet);
+        let count = (FEW * settings.shares).min(wanted - done.quiet);
         let (starts, count_as_quiet): (Vec<Vec<f64>>, Vec<bool>) = (0..count).map_while(|_| turns.next(&cut)).unzip();
         if starts.is_empty() {
             break;
@@ -263,7 +259,7 @@ fn climb(land: &Landscape, start: &[f64], below: f64, c: f64) -> Result<Caught> 
     let h = land.evaluator();
     let limits = Limits {
         steps: STEPS,
-        without_mode: WITHOUT_MODE,
+        without_mode: FEW,
         radius: STRIDE,
         ceiling_mev: land.reference_mev() + below,
         known: &|m, energy_mev| land.is_beside_a_saddle(m, energy_mev - land.reference_mev()),

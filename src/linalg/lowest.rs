@@ -4,11 +4,14 @@
 use super::krylov::{BY_VALUE, Krylov, MOST, Modes, SHARP};
 use super::ritz::{Mode, none_is_missed, rayleigh_ritz};
 use super::slices::sliced;
-use super::together::together;
-use super::{Factors, Matrix, Wanted};
+use super::together::{quotient, together};
+use super::{Factors, Matrix, Wanted, slab};
 
 /// Vectors in a block: as many as modes are often degenerate, and for the rare case in which that was too few.
 const BLOCKS: [usize; 2] = [2, 4];
+/// Most Rayleigh quotients at which a matrix is factorised, and what a step leaves of the residual at least where another is due.
+const QUOTIENTS: usize = 3;
+const SLOW: f64 = 0.2;
 /// Most vectors from the factors of the matrix itself, whose modes may be far from zero.
 const MOST_AS_IT_IS: usize = 60;
 
@@ -84,6 +87,36 @@ pub fn modes_by_factors(
     }
 }
 
+/// The negative mode of a sparse matrix that has no other in the space orthogonal to `known` (orthonormal, invariant), from a vector
+/// that is roughly it, by inverse iteration at its Rayleigh quotient. Nothing where that leads elsewhere, or of other matrices.
+pub fn lone_negative(matrix: &Matrix, known: &[Vec<f64>], roughly: &[f64]) -> Option<Mode> {
+    let Matrix::Sparse(_) = matrix else { return None };
+    let mut memory = Matrix::default();
+    let mut v = roughly.to_vec();
+    let (mut theta, mut rest) = quotient(matrix, &v, known);
+    for _ in 0..QUOTIENTS {
+        memory.copy_from(matrix);
+        memory.shift(-theta);
+        let factors = memory.factor();
+        loop {
+            let before = rest;
+            factors.solve(&mut v, 1);
+            slab::without(&mut v, known);
+            slab::normalise(&mut v);
+            (theta, rest) = quotient(matrix, &v, known);
+            if rest <= SHARP * theta.abs() {
+                return rayleigh_ritz(matrix, &[v]).pop().filter(|mode| mode.value < 0.0);
+            }
+            // a nearer quotient is worth its factors, or it is no number
+            if rest > SLOW * before || rest.is_nan() {
+                break;
+            }
+        }
+        memory = factors.into_memory();
+    }
+    None
+}
+
 /// Some of the `count` lowest modes, at least one, by block Lanczos.
 fn lanczos(matrix: &Matrix, wanted: Modes, known: &[Vec<f64>]) -> Vec<Mode> {
     let scale = matrix.norm1().max(1e-280);
@@ -140,8 +173,8 @@ fn shift_below(matrix: &Matrix, scale: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linalg::Banded;
     use crate::linalg::sparse::samples::Lattice;
-    use crate::linalg::{Banded, slab};
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
@@ -225,6 +258,28 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_lone_negative_mode_is_found_from_what_is_roughly_it() {
+        let mut r = ChaCha8Rng::seed_from_u64(23);
+        let lattice = Lattice::grid([12, 10, 1], [true, false, false], 1.0, &mut r);
+        let mut sparse = lattice.random(&mut r);
+        let modes = lowest_modes(&Matrix::Sparse(sparse.clone()), 3, &[]);
+        sparse.shift(-0.5 * (modes[0].value + modes[1].value));
+        let a = Matrix::Sparse(sparse);
+        let exact = lowest_modes(&a, 2, &[]);
+        assert!(exact[0].value < 0.0 && exact[1].value > 0.0);
+        for part in [0.3, 0.01, 0.0] {
+            let mut roughly = exact[0].vector.clone();
+            slab::add_scaled(&mut roughly, part, &exact[1].vector);
+            slab::normalise(&mut roughly);
+            let found = lone_negative(&a, &[], &roughly).expect("a negative mode");
+            assert!((found.value - exact[0].value).abs() < 1e-12);
+            assert!((slab::dot(&found.vector, &exact[0].vector) - 1.0).abs() < 1e-12);
+        }
+        assert!(lone_negative(&a, &[], &exact[1].vector).is_none());
+        assert!(lone_negative(&a, &[exact[0].vector.clone()], &exact[1].vector).is_none());
     }
 
     #[test]

@@ -115,7 +115,7 @@ fn nearer(matrix: &Matrix, modes: &[Mode], k: usize, known: &[Vec<f64>], low: f6
 }
 
 /// uᵀAu and the size of what else Au has, known vectors apart.
-fn quotient(matrix: &Matrix, u: &[f64], known: &[Vec<f64>]) -> (f64, f64) {
+pub(super) fn quotient(matrix: &Matrix, u: &[f64], known: &[Vec<f64>]) -> (f64, f64) {
     let mut image = vec![0.0; u.len()];
     matrix.multiply(u, &mut image);
     let theta = slab::dot(u, &image);

@@ -188,7 +188,10 @@ impl Ticket {
     /// A record: the fingerprint of the input, the evaluations of the call so far, and its result or where it stands. What
     /// cannot be written is no record of anything.
     pub(crate) fn sealed(self, count: Count, content: &impl Serialize) -> Vec<u8> {
-        postcard::to_allocvec(&(self.0, count, content)).unwrap_or_default()
+        let whole = (self.0, count, content);
+        // of bands these are many: no memory is had twice
+        let size = postcard::serialize_with_flavor(&whole, postcard::ser_flavors::Size::default()).unwrap_or_default();
+        postcard::to_extend(&whole, Vec::with_capacity(size)).unwrap_or_default()
     }
 
     /// What a record holds, with its evaluations; nothing if it is of another input, or not understood to its last byte.

@@ -17,7 +17,7 @@ use super::quench::quench;
 use super::spectrum::Spectrum;
 use super::state::State;
 use super::stroll::SOFT;
-use super::tolerances::{FLAT, LARGER, LAST_SHIFT, SHARP, STATIONARY, STEP};
+use super::tolerances::{FEW, FLAT, LARGER, LAST_DIGITS, LAST_SHIFT, SHARP, STATIONARY, STEP};
 use super::trail::Trail;
 use super::unfactored::Unfactored;
 use crate::energy::Evaluator;
@@ -28,13 +28,10 @@ use crate::sphere::rotation_of;
 use crate::spins::Spins;
 use std::mem::swap;
 
-/// The first step (rad, any spin).
-pub(super) const FIRST: f64 = 0.05;
 /// The flow's error a step, at most (rad, any spin).
 const ERROR: f64 = 0.01;
-/// So many of the flow's steps shorter than the first are a crawl, where the slope is below this part of the stiffness (a radian): what
+/// A few of the flow's steps shorter than the first are a crawl, where the slope is below this part of the stiffness (a radian): what
 /// lies across the valley relaxes long before it bends.
-const CRAWL: usize = 8;
 const GENTLE: f64 = 1e-5;
 /// Where the valley itself was followed, the flow takes over at this slope.
 pub(super) const STEEP: f64 = LARGER * GENTLE;
@@ -184,7 +181,7 @@ impl Walk<'_> {
         let gentle = STATIONARY * scale..GENTLE * scale;
         let mut short = 0;
         // a step of the first's length, if the slope stays as it is
-        let mut rate = self.here.max_torque_mev() / (D * FIRST);
+        let mut rate = self.here.max_torque_mev() / (D * LAST_DIGITS);
         for _ in 0..STEPS {
             if self.here.max_torque_mev() <= SHARP * scale || self.h.is_stopped() {
                 return Fall::Arrived;
@@ -208,11 +205,11 @@ impl Walk<'_> {
             swap(&mut self.here, &mut self.next);
             self.trail.pass(&self.here.m);
             let [slope, there] = step.slopes_mev;
-            if step.rotation < FIRST && there < slope && self.rest() {
+            if step.rotation < LAST_DIGITS && there < slope && self.rest() {
                 return Fall::Arrived;
             }
-            short = if step.rotation < FIRST && gentle.contains(&slope) { short + 1 } else { 0 };
-            if short >= CRAWL {
+            short = if step.rotation < LAST_DIGITS && gentle.contains(&slope) { short + 1 } else { 0 };
+            if short >= FEW {
                 self.tau = step.v;
                 project(&self.here.m, &mut self.tau);
                 return Fall::Crawling;
@@ -237,7 +234,7 @@ impl Walk<'_> {
     fn roll(&mut self) -> bool {
         let (from, tau, points) = (self.here.clone(), self.tau.clone(), self.trail.len());
         self.room.v.clone_from(&self.tau);
-        slab::scale(&mut self.room.v, FIRST / rotation_of(&self.tau));
+        slab::scale(&mut self.room.v, LAST_DIGITS / rotation_of(&self.tau));
         self.here.go(self.h, &from, &self.room.v);
         let arrived = self.quench()
             && from.above_mev(&self.here) > self.h.rounding_mev()
@@ -251,7 +248,7 @@ impl Walk<'_> {
 
     /// Down by gradients alone; whether to where the slope ends.
     fn quench(&mut self) -> bool {
-        quench(self.h, &mut self.here, &mut self.next, &mut self.trail, [FIRST, STEP])
+        quench(self.h, &mut self.here, &mut self.next, &mut self.trail, [LAST_DIGITS, STEP])
     }
 
     /// To a state beside the descent that is all but reached; whether there is one.

@@ -3,7 +3,8 @@
 
 use super::point::Point;
 use super::state::State;
-use super::step::{MODES, Region};
+use super::step::Region;
+use super::tolerances::FEW;
 use super::tolerances::{FIRST_SHIFT, LARGER, LAST_SHIFT};
 use super::unfactored::Unfactored;
 use crate::linalg::slab;
@@ -11,7 +12,7 @@ use std::mem::take;
 
 impl Region<'_> {
     /// Writes the step (see [`Region::step`]) to `x`: up along the lowest mode, down along the other negative ones and all that is left;
-    /// how many are negative. Where more than [`MODES`] are, down, by the least shift that leads there.
+    /// how many are negative. Where more than [`FEW`] are, down, by the least shift that leads there.
     pub(super) fn iterate(&mut self, here: &Point) -> usize {
         let h = self.h;
         let state = State { point: here.clone(), hessian: take(&mut self.hessian) };
@@ -36,10 +37,10 @@ impl Region<'_> {
             }
             // a direction beside these is negative
             count += 1;
-            if count > MODES || modes.is_empty() || h.is_stopped() {
+            if count > FEW || modes.is_empty() || h.is_stopped() {
                 self.modes.clear();
                 self.downhill(here, &mut rest, &force);
-                break MODES + 1;
+                break FEW + 1;
             }
         };
         self.hessian = state.hessian;

@@ -3,7 +3,7 @@
 //! no step has.
 
 use super::point::Point;
-use super::tolerances::LARGER;
+use super::tolerances::{FEW, LARGER};
 use super::trail::Trail;
 use crate::energy::Evaluator;
 use crate::field::project;
@@ -11,8 +11,6 @@ use crate::linalg::{Secants, slab};
 use crate::sphere::rotation_of;
 use std::mem::swap;
 
-/// Pairs of steps and changes of the gradient that are remembered.
-const MEMORY: usize = 8;
 /// Most steps: on a plateau gradients lead nowhere.
 const STEPS: usize = 100;
 /// How much longer than the last a step may be that nothing remembered tells the length of.
@@ -25,7 +23,7 @@ const NONE: f64 = 1e-6;
 /// Goes down from `here` until the torque is less than a part of the largest on the way, in steps that turn no spin by more than
 /// `cap` (rad), the first one by `first`; `next` is memory. Whether it came so far.
 pub fn quench(h: Evaluator, here: &mut Point, next: &mut Point, trail: &mut Trail, [first, cap]: [f64; 2]) -> bool {
-    let mut secants = Secants::of(MEMORY);
+    let mut secants = Secants::of(FEW);
     let (mut force, mut step, mut length) = (here.field(&here.downhill()), Vec::new(), first);
     let mut largest = 0.0f64;
     for _ in 0..STEPS {
@@ -47,7 +45,7 @@ pub fn quench(h: Evaluator, here: &mut Point, next: &mut Point, trail: &mut Trai
         let risen = next.above_mev(here) > 0.0;
         if risen {
             // a shorter one, straight down
-            secants = Secants::of(MEMORY);
+            secants = Secants::of(FEW);
             length /= LARGER;
             if length < NONE * cap {
                 return false;

@@ -51,7 +51,7 @@ impl Spectrum {
     pub fn of_saddle(h: Evaluator, state: &State) -> (Spectrum, Option<Vec<f64>>) {
         Spectrum::counted(h, state, |factors| {
             let roughly = modes_by_factors(factors, &state.zeros, Vec::new(), ROUGHLY).unwrap_or_default();
-            state.lowest_modes_beside(h, 1, &roughly).into_iter().next().map(|mode| mode.vector)
+            state.lone_mode(h, &roughly)
         })
     }
 

@@ -3,7 +3,7 @@
 use super::point::{Point, move_free};
 use crate::energy::{Evaluator, Hamiltonian};
 use crate::hessian::Resolvent;
-use crate::linalg::{Asked, Matrix, Mode, Wanted, lowest_modes_beside, slab, softest};
+use crate::linalg::{Asked, Matrix, Mode, Wanted, lone_negative, lowest_modes_beside, slab, softest};
 use crate::threads::both;
 use serde::{Deserialize, Serialize};
 use std::ops::Deref;
@@ -72,6 +72,13 @@ impl State {
     /// The same where the vectors of the lowest are known roughly.
     pub fn lowest_modes_beside(&self, h: Evaluator, count: usize, roughly: &[Vec<f64>]) -> Vec<Mode> {
         self.modes(h, count, Wanted::Vectors, roughly)
+    }
+
+    /// The vector of its negative mode, of which it has one alone, where that is known roughly.
+    pub fn lone_mode(&self, h: Evaluator, roughly: &[Vec<f64>]) -> Option<Vec<f64>> {
+        let sharply = |v: &Vec<f64>| lone_negative(&self.hessian, &self.zeros, v);
+        let sharp = roughly.first().filter(|_| !is_very_dear(&h)).and_then(sharply);
+        sharp.or_else(|| self.lowest_modes_beside(h, 1, roughly).into_iter().next()).map(|mode| mode.vector)
     }
 
     /// Their eigenvalues (meV) alone; `known` are the vectors of the lowest, as far as these are known.

@@ -13,15 +13,12 @@
 use super::border::pin;
 use super::point::Point;
 use super::spectrum::floor_mev;
-use super::tolerances::{ALIKE, FIRST_SHIFT, LARGER, LAST_DIGITS, LAST_SHIFT, ROUGHLY};
+use super::tolerances::{ALIKE, FEW, FIRST_SHIFT, LARGER, LAST_DIGITS, LAST_SHIFT, ROUGHLY};
 use crate::energy::Evaluator;
 use crate::linalg::{Factors, Matrix, lowest_modes, modes_by_factors, remove, slab};
 use crate::sphere::rotation_of;
 use std::mem::take;
 use std::ops::Range;
-
-/// More modes than this are not reversed one by one: the step goes down.
-pub(super) const MODES: usize = 8;
 
 /// A trust region, with the memory for steps inside it.
 #[derive(Debug)]
@@ -120,11 +117,12 @@ impl<'a> Region<'a> {
         };
         match negative {
             0 => self.reverse(here, &factors, 0..1),
-            2..=MODES => self.reverse(here, &factors, 1..negative),
+            // more are not reversed one by one: the step goes down
+            2..=FEW => self.reverse(here, &factors, 1..negative),
             _ => {}
         }
         self.room = factors.into_memory();
-        if negative > MODES {
+        if negative > FEW {
             self.shifted(here);
         }
         (negative, leads_on)

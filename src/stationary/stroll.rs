@@ -2,10 +2,10 @@
 //! than any digit that is told, but a well at every site, and a descent that ended in the first would need a saddle for each to go on.
 //! It goes on over them as long as the energy stays level: to where it falls, or to a minimum that it was to reach.
 
-use super::descent::{FIRST, STEEP, STEPS, Walk};
+use super::descent::{STEEP, STEPS, Walk};
 use super::point::Point;
 use super::state::State;
-use super::tolerances::{LARGER, STEP};
+use super::tolerances::{LARGER, LAST_DIGITS, STEP};
 use super::valley::{GROWTH, LONGEST, SHORTEST};
 use crate::linalg::slab;
 use crate::path::{largest_angle, turned, turns};
@@ -60,7 +60,7 @@ impl Walk<'_> {
     /// Along the valley while it rises by no more than what is level above the lowest place so far.
     fn stay_level(&mut self) -> End {
         let (start, steep) = (self.here.clone(), STEEP * self.h.stiffness_mev());
-        let (mut step, mut deepest_mev, mut is_away) = (FIRST, 0.0_f64, false);
+        let (mut step, mut deepest_mev, mut is_away) = (LAST_DIGITS, 0.0_f64, false);
         for _ in 0..STEPS {
             if self.h.is_stopped() {
                 break;

@@ -3,17 +3,23 @@
 //! An energy is a sum of densities of the size of the stiffness c of the stiffest spin, so that a torque has a rounding error of some eps c,
 //! and what a search leaves of it shifts energies by its square. All are parts of c, but where something else is said.
 
+use std::f64::consts::FRAC_PI_2;
+
 /// Steps that turn no spin by more (rad) stay in their valley.
 pub const STEP: f64 = 0.3;
 
 /// Steps that may lead into another valley turn no spin by more (rad).
 pub const STRIDE: f64 = 0.5;
 
+/// Spins that turn by more (rad) are those of another state.
+pub const FAR: f64 = FRAC_PI_2;
+
 /// What a quadratic model tells of an energy or a mode is right to this part of it; and so is what a valley tells of the mode of its
 /// saddle, and what a path's maximum tells of the height of that.
 pub const ROUGHLY: f64 = 0.3;
 
-/// A longer step (rad, any spin) is none of the last digits of a stationary state.
+/// States that differ by less (rad, any spin) are beside each other: no step at the last digits of a stationary state is longer, and a
+/// descent begins with one that long.
 pub const LAST_DIGITS: f64 = 0.05;
 
 /// Fields of which less than this part is left beside others depend on them.
@@ -25,6 +31,9 @@ pub const LAST_SHIFT: f64 = 1e6;
 
 /// What is too small or too large, a shift or a step, becomes so many times as large or as small.
 pub const LARGER: f64 = 4.0;
+
+/// So many modes, vectors or steps are few, where each costs little and none of them need be the one.
+pub const FEW: usize = 8;
 
 /// An energy that changes by less than this part of its size is rounding.
 pub const ROUNDING: f64 = 1e-13;

@@ -3,7 +3,7 @@
 //! film may tilt to either side, and what tells the sides apart grows on the way.
 
 use super::point::Point;
-use super::tolerances::INDEPENDENT;
+use super::tolerances::{INDEPENDENT, STATIONARY};
 use crate::energy::Hamiltonian;
 use crate::hessian::{Complement, Place, StandIn};
 use crate::linalg::{orthonormal, slab};
@@ -12,10 +12,9 @@ use crate::linalg::{orthonormal, slab};
 /// 16³. In smaller films a skyrmion that slides to rest between two places of its lattice is held there by factors, and often not without:
 /// its descent then takes more steps than are saved.
 const DEAR: f64 = 60.0;
-/// The part of the residual that is left across a valley, and down the gradient, where it grows along a direction that is negative: so a
+/// The part of the residual that is left across a valley; down the gradient that of a stationary state, as it grows along a direction that is negative: so a
 /// skyrmion stays between two places of its lattice, to which its slope leads, as it does with factors.
 const ACROSS: f64 = 1e-8;
-const DOWN: f64 = 1e-12;
 
 /// The equations at one point after the other.
 pub struct Unfactored {
@@ -43,7 +42,7 @@ impl Unfactored {
         self.equations.right.clear();
         self.equations.right.extend_from_slice(b);
         let place = Place { h, m: &at.m, g: &at.gradient, shift };
-        self.equations.solve(place, &self.stand_in, if along.is_empty() { DOWN } else { ACROSS }).ok()?;
+        self.equations.solve(place, &self.stand_in, if along.is_empty() { STATIONARY } else { ACROSS }).ok()?;
         Some(&self.equations.x)
     }
 

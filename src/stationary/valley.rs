@@ -1,8 +1,8 @@
 //! Along a valley's floor, where the gradient is rounding error and no guide: steps along it, and Newton's method across.
 
-use super::descent::{FIRST, NOISE, Room, Walk};
+use super::descent::{NOISE, Room, Walk};
 use super::pinned::Pinned;
-use super::tolerances::{LARGER, STEP};
+use super::tolerances::{LARGER, LAST_DIGITS, STEP};
 use crate::field::project;
 use crate::linalg::slab;
 use crate::sphere::rotation_of;
@@ -33,7 +33,7 @@ impl Walk<'_> {
     pub(super) fn march(&mut self, enough: f64) -> bool {
         let noise = NOISE * self.h.stiffness_mev();
         let flat = FLAT * self.h.stiffness_mev();
-        let mut step = FIRST;
+        let mut step = LAST_DIGITS;
         let mut moved = false;
         self.last = None;
         for _ in 0..STEPS {
@@ -48,7 +48,7 @@ impl Walk<'_> {
             if fallen < -noise || self.h.is_stopped() {
                 break;
             }
-            if step > FIRST && !kept {
+            if step > LAST_DIGITS && !kept {
                 self.turn_back();
                 step /= 2.0;
                 continue;

@@ -2,17 +2,14 @@
 
 use super::{Cut, Rival};
 use crate::energy::Evaluator;
+use crate::landscape::pass::SOFTEST;
 use crate::linalg::slab;
 use crate::sphere::rotation_of;
-use crate::stationary::State;
+use crate::stationary::{FAR, State};
 use rand_chacha::ChaCha8Rng;
 use std::collections::{BTreeSet, VecDeque};
-use std::f64::consts::FRAC_PI_2;
 
-/// How many modes.
-const MODES: usize = 4;
-/// How far the energy is looked at (rad, the spin that turns most), and in how many steps.
-const FARTHEST: f64 = FRAC_PI_2;
+/// In how many steps.
 const STEPS: usize = 10;
 
 /// Which orbits were left, and the starts that wait.
@@ -30,7 +27,7 @@ impl Rival for Modes {
             self.left.insert(cut.land.orbit(minimum));
             let h = cut.land.evaluator();
             let state = State::at(h, cut.land.minima()[minimum].spins.as_slice().to_vec());
-            for mode in state.lowest_modes(h, MODES) {
+            for mode in state.lowest_modes(h, SOFTEST) {
                 let along = state.field(&mode.vector);
                 self.next.extend([1.0, -1.0].map(|sense| top(h, &state, &along, sense)));
             }
@@ -45,7 +42,7 @@ fn top(h: Evaluator, state: &State, along: &[f64], sense: f64) -> Vec<f64> {
     let (mut highest, mut there) = (f64::NEG_INFINITY, state.m.clone());
     for k in 1..=STEPS {
         let mut turn = along.to_vec();
-        slab::scale(&mut turn, sense * FARTHEST * k as f64 / (STEPS as f64 * size));
+        slab::scale(&mut turn, sense * FAR * k as f64 / (STEPS as f64 * size));
         let next = state.moved(&h, &turn);
         let height = h.difference_mev(&next, &state.m);
         if height < highest {

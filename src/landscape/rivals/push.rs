@@ -5,6 +5,7 @@ use crate::field::Components;
 use crate::geometry::{Direction, Vector, vector};
 use crate::lattice::Lattice;
 use crate::sphere::{SAME, rotate_sites};
+use crate::stationary::STRIDE;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
@@ -13,8 +14,7 @@ use std::f64::consts::TAU;
 /// How often one site is turned, and how often a minimum that is joined with an end.
 const ONE_SITE: f64 = 0.4;
 const NEAR_AN_END: f64 = 0.7;
-/// By how much (rad).
-const LEAST: f64 = 0.5;
+/// By how much at most (rad); at least by a stride.
 const MOST: f64 = 2.5;
 /// How often a block is drawn anew where all its sites are frozen.
 const DRAWS: usize = 100;
@@ -36,7 +36,7 @@ impl Rival for Push {
         let spins = Components::new(&m);
         let mean = sites.iter().fold([0.0; 3], |sum, i| vector::add(sum, spins.get(*i)));
         let axis = across(mean, random)?;
-        let angle = random.random_range(LEAST..MOST);
+        let angle = random.random_range(STRIDE..MOST);
         rotate_sites(&mut m, sites.into_iter(), axis, angle);
         Some(m)
     }

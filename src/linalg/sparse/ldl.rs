@@ -1,7 +1,6 @@
 //! A = L D Lᵀ of a sparse matrix, without pivoting: front by front, with the inertia (Sylvester: the signs of D are those of the
 //! eigenvalues) and ln|det|.
 
-use super::memory::Memory;
 use super::{SparseMatrix, solve};
 use crate::linalg::slab;
 use std::mem::take;
@@ -9,8 +8,8 @@ use std::mem::take;
 /// The factors L and D of a [`SparseMatrix`], and the matrix.
 #[derive(Clone, Debug, Default)]
 pub struct SparseLdl {
+    /// With the factors in its memory.
     matrix: SparseMatrix,
-    memory: Memory,
     negatives: usize,
 }
 
@@ -19,11 +18,11 @@ impl SparseLdl {
     /// by that error's size, sign kept.
     pub fn of(mut matrix: SparseMatrix) -> SparseLdl {
         let floor = 4.0 * f64::EPSILON * matrix.size().max(1e-280);
-        let mut memory = take(&mut matrix.memory);
-        memory.fit(&matrix.plan);
+        let mut memory = take(&mut matrix.memory).fitting(&matrix.plan);
         memory.eliminate(&matrix, floor);
         let negatives = memory.d.iter().filter(|d| **d < 0.0).count();
-        SparseLdl { matrix, memory, negatives }
+        matrix.memory = memory;
+        SparseLdl { matrix, negatives }
     }
 
     /// The factors of A, and on the way the solution of A X = B as by [`solve`](Self::solve).
@@ -34,8 +33,7 @@ impl SparseLdl {
     }
 
     /// The matrix, with the memory of the factors for the next ones.
-    pub fn into_memory(mut self) -> SparseMatrix {
-        self.matrix.memory = self.memory;
+    pub fn into_memory(self) -> SparseMatrix {
         self.matrix
     }
 
@@ -56,12 +54,12 @@ impl SparseLdl {
 
     /// ln|det A|.
     pub fn log_abs_determinant(&self) -> f64 {
-        slab::sum(&self.memory.d.iter().map(|d| libm::log(d.abs())).collect::<Vec<f64>>())
+        slab::sum(&self.matrix.memory.d.iter().map(|d| libm::log(d.abs())).collect::<Vec<f64>>())
     }
 
     /// Solves A X = B in place for `columns` right-hand sides, interleaved: x[j columns + c].
     pub fn solve(&self, x: &mut [f64], columns: usize) {
-        solve::solve(&self.matrix.plan, &self.memory, x, columns);
+        solve::solve(&self.matrix.plan, &self.matrix.memory, x, columns);
     }
 }
 
@@ -222,7 +220,7 @@ mod tests {
         let mut r = ChaCha8Rng::seed_from_u64(18);
         for lattice in samples::all(&mut r) {
             let factors = SparseLdl::of(lattice.random(&mut r));
-            let m = &factors.memory;
+            let m = &factors.matrix.memory;
             let numbers =
                 m.l.len() + m.d.len() + m.waiting[0].len() + m.waiting[1].len() + 4 * factors.matrix.blocks.len();
             assert_eq!(size_of::<f64>() * numbers, factors.matrix.plan.bytes(1), "{}", lattice.name);
@@ -240,7 +238,11 @@ mod tests {
             let mut b = SparseMatrix::zeros(whole);
             b.blocks.clone_from(&a.blocks);
             let (x, y) = (SparseLdl::of(a), SparseLdl::of(b));
-            assert!(x.memory.l == y.memory.l && x.memory.d == y.memory.d && x.negatives == y.negatives);
+            assert!(
+                x.matrix.memory.l == y.matrix.memory.l
+                    && x.matrix.memory.d == y.matrix.memory.d
+                    && x.negatives == y.negatives
+            );
         }
     }
 

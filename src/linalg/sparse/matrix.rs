@@ -3,6 +3,7 @@
 use super::Symbolic;
 use super::memory::Memory;
 use crate::linalg::slab;
+use std::mem::take;
 use std::sync::Arc;
 
 /// A symmetric matrix with two unknowns a site, 2i and 2i + 1, coupled along the bonds of a graph.
@@ -18,6 +19,12 @@ pub struct SparseMatrix {
 impl Clone for SparseMatrix {
     fn clone(&self) -> SparseMatrix {
         SparseMatrix { plan: self.plan.clone(), blocks: self.blocks.clone(), memory: Memory::default() }
+    }
+}
+
+impl Drop for SparseMatrix {
+    fn drop(&mut self) {
+        self.plan.spare.keep(take(&mut self.memory));
     }
 }
 

@@ -1,5 +1,6 @@
 //! What of a factorisation follows from the pattern alone: the fronts, where everything stands in them, memory and arithmetic.
 
+use super::memory::Spare;
 use super::panels::{self, SITES, WIDTH};
 use super::supernodes::{self, Group, NONE};
 use super::{Graph, nested_dissection};
@@ -36,6 +37,8 @@ pub struct Symbolic {
     /// Most entries of the trunk that wait in either stack.
     pub(super) waiting: [usize; 2],
     flops: f64,
+    /// For the next factors.
+    pub(super) spare: Spare,
 }
 
 /// A front and all that are below it.
