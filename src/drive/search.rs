@@ -33,7 +33,7 @@ impl<'a> Run<'a, '_> {
         }
         self.observer.stage("looking for lower passes");
         let h = self.problem.evaluator();
-        let (most, before) = (self.allowance(&best.first.band), h.evaluated());
+        let most = self.allowance(&best.first.band);
         let ends = self.minima;
         if ends[0] == ends[1] {
             return Ok(report);
@@ -43,11 +43,10 @@ impl<'a> Run<'a, '_> {
         // images may miss a saddle by as much as the path is high
         let top_mev = if unproven { first_mev + height(&best.first.band) } else { first_mev };
         self.land.unfold();
-        // of what may be done half at most goes there
-        self.most_evaluations = before.evaluations.saturating_add(most.evaluations / 2);
+        // as much goes there at most as into the search
+        self.most_evaluations = h.evaluated().evaluations.saturating_add(most.evaluations);
         self.through_third_states(top_mev)?;
         self.most_evaluations = usize::MAX;
-        let most = h.evaluated().since(before).left_of(most);
         let settings = Settings {
             effort,
             shares: 1,
