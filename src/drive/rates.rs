@@ -9,8 +9,8 @@ use crate::landscape::Saddle;
 use crate::landscape::{Minimum, Pass};
 use crate::linalg::slab;
 use crate::rates::{
-    Equivalents, Orbits, RateSettings, Rates, Refusal, SaddleRate, Theory, Turn, ZeroKind, ZeroModes,
-    equivalent_states, leads_back, refused, saddle_rates, transitions,
+    Equivalents, KEPT, Orbits, RateSettings, Rates, Refusal, SaddleRate, Theory, Turn, ZeroKind, ZeroModes,
+    equivalent_saddles, leads_back, refused, saddle_rates, transitions,
 };
 use crate::spins::Spins;
 use crate::stationary::{self, ALIKE, Refined, State};
@@ -103,10 +103,11 @@ impl Slides {
     fn orbits(&self, known: &Known, group: &Group, above_k: f64) -> Orbits {
         let (links, h, last) = (known.links, known.h, known.links.len());
         let along = self.turn.map(|turn| group.with_axis(turn.axis));
+        let along = along.as_ref().unwrap_or(group);
         let ends = [links[0].before.spins.as_slice(), links[last - 1].after.spins.as_slice()];
         let like = |m: &[f64], own: bool| {
             let sliding = [own, self.minima[0], self.minima[last]];
-            equivalent_states(h.lattice(), along.as_ref().unwrap_or(group), m, ends, sliding)
+            equivalent_saddles(h.lattice(), along, m, ends, sliding, KEPT)
         };
         let inner = links[..last - 1].iter().zip(&self.minima[1..]);
         let between: Vec<Equivalents> = inner.map(|(l, own)| like(l.after.spins.as_slice(), *own)).collect();
@@ -116,7 +117,7 @@ impl Slides {
         let inner = [&links[0], &links[last - 2]].map(|l| l.after.spins.as_slice());
         // of what slides the ends' own volumes hold all places
         let slides = self.minima.iter().chain(&self.saddles).any(|slides| *slides);
-        let leads_back = !slides && leads_back(along.as_ref().unwrap_or(group), inner, ends);
+        let leads_back = !slides && leads_back(along, inner, ends);
         Orbits { above_k, saddles, minima, paths: between[0].clone(), leads_back }
     }
 }

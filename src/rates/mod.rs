@@ -52,7 +52,7 @@ pub use rate::{Crossing, LEAST_BARRIER, Prefactor, Regime, Row, SaddleRate, Way,
 pub use refusal::{Refusal, UnknownModes};
 pub use settings::{RateSettings, Theory};
 pub use sliding::{Pinning, Turn};
-pub use symmetry::{Equivalents, equivalent_saddles, equivalent_states, leads_back};
+pub use symmetry::{Equivalents, KEPT, KEPT_OR_EXCHANGED, equivalent_saddles, leads_back};
 pub use transition::{Orbits, TransitionRate, TransitionRow, transitions};
 pub use unstable::{Unstable, unstable_mode};
 pub use validity::{LOW_BARRIER, ORDER, Validity, digits};

@@ -18,8 +18,14 @@ pub struct Equivalents {
     pub by: String,
 }
 
-/// The saddles that the group makes of this one, between the same two minima. `sliding`: whether the saddle and each of the minima slide
-/// over the lattice, so that what free shifts make of them is one.
+/// What two minima become by the operations that count: themselves.
+pub const KEPT: &[[usize; 2]] = &[[0, 1]];
+
+/// Themselves, or each the other.
+pub const KEPT_OR_EXCHANGED: &[[usize; 2]] = &[[0, 1], [1, 0]];
+
+/// The saddles (or other states) that operations of the group make of this one by which the minima become these of them. `sliding`:
+/// whether the saddle and each of the minima slide over the lattice, so that what free shifts make of them is one.
 ///
 /// S: the shifts that keep both minima. Every operation that keeps or exchanges them is one of S after one that is no further shifted than
 /// the shortest of S; so the states alike are those that S makes of the latter's images.
@@ -29,48 +35,7 @@ pub fn equivalent_saddles(
     saddle: &[f64],
     minima: [&[f64]; 2],
     sliding: [bool; 3],
-) -> Equivalents {
-    states_alike(lattice, group, saddle, minima, sliding, &[[0, 1], [1, 0]])
-}
-
-/// The states that the group makes of one, each of two minima kept.
-pub fn equivalent_states(
-    lattice: &Lattice,
-    group: &Group,
-    state: &[f64],
-    minima: [&[f64]; 2],
-    sliding: [bool; 3],
-) -> Equivalents {
-    states_alike(lattice, group, state, minima, sliding, &[[0, 1]])
-}
-
-/// Whether operations that make each of two minima the other make of this state one that none of those that keep both makes of `last`:
-/// of the first state on a path between the minima, and of the last. Of states that do not slide.
-pub fn leads_back(group: &Group, [first, last]: [&[f64]; 2], minima: [&[f64]; 2]) -> bool {
-    if group.axes().len() > 1 {
-        return false;
-    }
-    let steps = free_shifts(group, minima, [false; 2]);
-    let takes = |operation: &Operation, from: usize, to: usize| group.takes(operation, minima[from], minima[to], SAME);
-    // all others are this one after one that keeps both
-    let Some(back) = group.classes_within(&steps).find(|by| takes(by, 0, 1) && takes(by, 1, 0)) else {
-        return false;
-    };
-    let image = back.apply(first);
-    !group.classes_within(&steps).any(|by| {
-        let keeps = takes(&by, 0, 0) && takes(&by, 1, 1);
-        keeps && slid(group, &steps, &by.apply(last), &image, SAME)
-    })
-}
-
-/// Those that operations make of one by which these become of the minima.
-fn states_alike(
-    lattice: &Lattice,
-    group: &Group,
-    saddle: &[f64],
-    minima: [&[f64]; 2],
-    sliding: [bool; 3],
-    made: &[[usize; 2]],
+    minima_become: &[[usize; 2]],
 ) -> Equivalents {
     if group.axes().len() > 1 {
         return Equivalents { count: 1, by: "not sought: the energy has no axis".into() };
@@ -81,7 +46,9 @@ fn states_alike(
     let (mut by, mut kept) = (Vec::new(), vec![saddle.to_vec()]);
     let operations = || group.classes_within(&steps).skip(1);
     // those that keep both first: they are told of
-    for ([a, b], operation) in made.iter().flat_map(|made| operations().map(move |operation| (made, operation))) {
+    for ([a, b], operation) in
+        minima_become.iter().flat_map(|ends| operations().map(move |operation| (ends, operation)))
+    {
         let takes = |from: usize, to: usize| match sliding[to + 1] {
             true => slid(group, &steps, &operation.apply(minima[from]), minima[to], within[to + 1]),
             false => group.takes(&operation, minima[from], minima[to], SAME),
@@ -103,6 +70,25 @@ fn states_alike(
     let count = kept.iter().map(|m| each(m)).sum();
     let by = if by.is_empty() { "none found".into() } else { by.join(", ") };
     Equivalents { count, by }
+}
+
+/// Whether operations that make each of two minima the other make of this state one that none of those that keep both makes of `last`:
+/// of the first state on a path between the minima, and of the last. Of states that do not slide.
+pub fn leads_back(group: &Group, [first, last]: [&[f64]; 2], minima: [&[f64]; 2]) -> bool {
+    if group.axes().len() > 1 {
+        return false;
+    }
+    let steps = free_shifts(group, minima, [false; 2]);
+    let takes = |operation: &Operation, from: usize, to: usize| group.takes(operation, minima[from], minima[to], SAME);
+    // all others are this one after one that keeps both
+    let Some(back) = group.classes_within(&steps).find(|by| takes(by, 0, 1) && takes(by, 1, 0)) else {
+        return false;
+    };
+    let image = back.apply(first);
+    !group.classes_within(&steps).any(|by| {
+        let keeps = takes(&by, 0, 0) && takes(&by, 1, 1);
+        keeps && slid(group, &steps, &by.apply(last), &image, SAME)
+    })
 }
 
 /// Of each shift the first multiple that keeps those of the minima that do not slide.

@@ -5,7 +5,10 @@ use super::determinant::PinnedHessian;
 use super::refusal::no_minimum;
 use super::sliding::{Generator, Pinning, Slide, Sliding, Turn};
 use super::symmetry::{free_shifts, places, states_along_turn, states_on_the_way};
-use super::{Crossing, Equivalents, Refusal, UnknownModes, Unstable, ZeroModes, equivalent_saddles, zero_modes};
+use super::{
+    Crossing, Equivalents, KEPT_OR_EXCHANGED, Refusal, UnknownModes, Unstable, ZeroModes, equivalent_saddles,
+    zero_modes,
+};
 use crate::energy::Evaluator;
 use crate::stationary::{Spectrum, State};
 use crate::symmetry::Group;
@@ -161,7 +164,8 @@ impl<'a> Beside<'a> {
         let along = along.as_ref().unwrap_or(self.group);
         let shifts = sliding.each_ref().map(Sliding::shifts);
         let [saddle, before, after] = self.states.each_ref().map(|state| &state.m[..]);
-        let equivalents = equivalent_saddles(self.h.lattice(), along, saddle, [before, after], shifts);
+        let equivalents =
+            equivalent_saddles(self.h.lattice(), along, saddle, [before, after], shifts, KEPT_OR_EXCHANGED);
         let free = Some(&steps[..]).filter(|_| shifts.contains(&true));
         let well = |k: usize| {
             let well = unknown[k].map_or_else(|| self.well(k, &sliding[k], free, along), Err);

@@ -12,8 +12,9 @@ use crate::linalg::{orthonormal, slab};
 /// 16³. In smaller films a skyrmion that slides to rest between two places of its lattice is held there by factors, and often not without:
 /// its descent then takes more steps than are saved.
 const DEAR: f64 = 60.0;
-/// The part of the residual that is left across a valley; down the gradient that of a stationary state, as it grows along a direction that is negative: so a
-/// skyrmion stays between two places of its lattice, to which its slope leads, as it does with factors.
+/// The part of the residual that is left across a valley. Down the gradient it is that of a stationary state, for what is left grows
+/// along a direction that is negative: so a skyrmion stays between two places of its lattice, to which its slope leads, as it does with
+/// factors.
 const ACROSS: f64 = 1e-8;
 
 /// The equations at one point after the other.

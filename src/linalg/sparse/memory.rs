@@ -42,8 +42,12 @@ impl Spare {
 
     /// Keeps it, unless that is so much that others may need it.
     pub fn keep(&self, memory: Memory) {
-        let (size, mut all) = (memory.l.len(), self.all());
-        if size > 0 && size * (all.len() + 1) <= KEPT {
+        let size = memory.l.len();
+        if size == 0 {
+            return;
+        }
+        let mut all = self.all();
+        if size * (all.len() + 1) <= KEPT {
             all.push(memory);
         }
     }
