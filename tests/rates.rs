@@ -369,7 +369,7 @@ const UP: &str = r#"{"uniform": {"direction": [0, 0, 1]}}"#;
 const DOWN: &str = r#"{"uniform": {"direction": [0, 0, -1]}}"#;
 
 #[test]
-fn islands_pinned_walls_and_discs_with_an_axis_in_the_plane_agree_with_dense_eigenvalues() {
+fn islands_pinned_walls_discs_with_an_axis_in_the_plane_and_rows_of_dipoles_agree_with_dense_eigenvalues() {
     let axes = |easy: &str, hard: &str| {
         format!(
             r#"{{"exchange": {{"J": ["1 meV"]}}}}, {{"anisotropy": {{"K": "0.3 meV", "axis": {easy}}}}},
@@ -386,8 +386,10 @@ fn islands_pinned_walls_and_discs_with_an_axis_in_the_plane_agree_with_dense_eig
     let disc = r#"{"triangular": {"cells": [7, 7], "shape": {"disc": {"radius": 2.6}}}}"#;
     let along = [1, -1].map(|x| format!(r#"{{"uniform": {{"direction": [{x}, 0, 0]}}}}"#));
     let disc = film(disc, &axes("[1, 0, 0]", "[0, 0, 1]"), [&along[0], &along[1]], 1.0);
+    let dipoles = format!(r#"{normal}, {{"dipolar": {{}}}}"#);
+    let row = film(r#"{"chain": {"sites": 14, "spacing": "0.2 nm"}}"#, &dipoles, [UP, DOWN], 1.0);
     // by either end of the island, and in either sense; the disc's spins turn as one
-    for (problem, alike) in [(island, Some(4)), (pinned, None), (disc, Some(2))] {
+    for (problem, alike) in [(island, Some(4)), (pinned, None), (disc, Some(2)), (row, None)] {
         let outcome = solve(&problem);
         assert!(outcome.certified, "{:?}", outcome.warnings);
         check_against_dense(&problem.hamiltonian, &outcome, problem.rates.as_ref().unwrap(), false);

@@ -206,27 +206,37 @@ fn accumulate(s: &mut [f64], u: &[f64], a: f64, v: &[f64], b: f64) {
     }
 }
 
-/// P ← ΦPΦ + V Wᵀ, and PCᵀ with the next site's C in the same pass.
+/// P ← ΦPΦ + V Wᵀ, and PCᵀ with the next site's C in the same pass; rows two by two, which share what they read.
 #[multiversion(targets("x86_64+avx2"))]
 fn advance(p: &mut [f64], phi: &[f64], v: &[f64], w: &[f64], c: &[f64], pc: &mut [f64]) {
     let n = phi.len();
     let (w0, w1) = w.split_at(n);
     let (c0, c1) = c.split_at(n);
-    for (row, p) in p.chunks_exact_mut(n).enumerate() {
-        let (decay, a, b) = (phi[row], v[row], v[n + row]);
-        let (mut first, mut second) = ([0.0; LANES], [0.0; LANES]);
-        let columns = p.chunks_exact_mut(LANES).zip(phi.chunks_exact(LANES));
-        let columns = columns.zip(w0.chunks_exact(LANES)).zip(w1.chunks_exact(LANES));
-        let columns = columns.zip(c0.chunks_exact(LANES)).zip(c1.chunks_exact(LANES));
-        for (((((p, phi), w0), w1), c0), c1) in columns {
+    let [phis, w0, w1, c0, c1] = [phi, w0, w1, c0, c1].map(|a| a.as_chunks::<LANES>().0);
+    let columns = phis.len();
+    assert!([w0, w1, c0, c1].iter().all(|a| a.len() == columns));
+    for (pair, rows) in p.chunks_exact_mut(2 * n).enumerate() {
+        let (upper, lower) = rows.split_at_mut(n);
+        let [upper, lower] = [upper, lower].map(|row| row.as_chunks_mut::<LANES>().0);
+        assert!(upper.len() == columns && lower.len() == columns);
+        let of = |row: usize| [phi[row], v[row], v[n + row]];
+        let ([d, a, b], [e, f, g]) = (of(2 * pair), of(2 * pair + 1));
+        let mut sums = [[0.0; LANES]; 4];
+        for k in 0..columns {
             for l in 0..LANES {
-                p[l] = decay * phi[l] * p[l] + (a * w0[l] + b * w1[l]);
-                first[l] += p[l] * c0[l];
-                second[l] += p[l] * c1[l];
+                let (phi, w0, w1) = (phis[k][l], w0[k][l], w1[k][l]);
+                let x = d * phi * upper[k][l] + (a * w0 + b * w1);
+                let y = e * phi * lower[k][l] + (f * w0 + g * w1);
+                (upper[k][l], lower[k][l]) = (x, y);
+                sums[0][l] += x * c0[k][l];
+                sums[1][l] += x * c1[k][l];
+                sums[2][l] += y * c0[k][l];
+                sums[3][l] += y * c1[k][l];
             }
         }
-        pc[row] = (first[0] + first[2]) + (first[1] + first[3]);
-        pc[n + row] = (second[0] + second[2]) + (second[1] + second[3]);
+        let [first, second, third, fourth] = sums.map(|s| (s[0] + s[2]) + (s[1] + s[3]));
+        (pc[2 * pair], pc[n + 2 * pair]) = (first, second);
+        (pc[2 * pair + 1], pc[n + 2 * pair + 1]) = (third, fourth);
     }
 }
 

@@ -7,7 +7,7 @@
 //! σ = λ₊ alone (σ > 0). Inverse iteration x ← M(σ)⁻¹ B x gives λ ≈ σ − 1/μ, μ the growth of x, and the next shift; the sign of the
 //! determinant, free with each factorisation, keeps it in a bracket. In a row the matrix is a band.
 //!
-//! Where sites are coupled every way, M(σ) y = b is solved by iteration, with the factors of one symmetric matrix that is positive:
+//! Where sites are coupled every way or all with all, M(σ) y = b is solved by iteration, with the factors of one symmetric matrix that is positive:
 //!
 //! ```text
 //! S = H + t Γ⁻¹,  t ≥ 2|λ₁|:      (1 + S⁻¹(σB − tΓ⁻¹)) y = S⁻¹ b
@@ -55,9 +55,9 @@ fn is_settled(aligned: f64, [before, change]: [f64; 2], rounding: f64, eigenvalu
     aligned < 1e-9 && is_sharp
 }
 
-/// Whether the sites around a saddle are coupled every way, so that no band is narrow.
+/// Whether the sites around a saddle are coupled every way or all with all, so that no band is narrow.
 fn by_iteration(saddle: &State) -> bool {
-    matches!(saddle.hessian, Matrix::Sparse(_))
+    !matches!(saddle.hessian, Matrix::Band(..))
 }
 
 impl Linearised<'_> {
@@ -184,9 +184,6 @@ impl Linearised<'_> {
 
     /// All pairs of sites that are coupled, each once, however many bonds join them.
     fn pairs(&self) -> Vec<[usize; 2]> {
-        if self.h.coupling().pairs().is_some() {
-            return (0..self.sites()).flat_map(|i| (0..i).map(move |j| [j, i])).collect();
-        }
         let bonds = self.h.constant_blocks().bond.iter().flat_map(|bonds| bonds.family.bonds());
         let mut pairs: Vec<[usize; 2]> = bonds.map(|[i, j]| [i.min(j), i.max(j)]).collect();
         pairs.sort_unstable();

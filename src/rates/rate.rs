@@ -19,9 +19,6 @@ use std::f64::consts::PI;
 /// Below so many k_BT a barrier holds nothing back, and there is no rate over it.
 pub const LEAST_BARRIER: f64 = 1.0;
 
-/// Most sites of a chain with a long-ranged term for Langer's theory, whose matrix is then dense.
-const MOST_DENSE: usize = 1000;
-
 /// Three translations and a turn.
 const MOST_VALLEYS: usize = 4;
 
@@ -330,21 +327,13 @@ fn frequencies(h: Evaluator, crossing: &Crossing, unstable: &Unstable, settings:
     let gyration = settings.gyration_per_s_mev();
     let mut refused = Vec::new();
     let conserved = conserved_moment(&h, &top.m, crossing.minima, settings);
-    let dense = h.coupling().pairs().is_some() && h.sites() > MOST_DENSE;
-    let growth = match dense {
-        true => None,
-        false => growth_rate(h, top, unstable, &gyration, settings.damping),
-    };
+    let growth = growth_rate(h, top, unstable, &gyration, settings.damping);
     let frequency = |theory: Theory| -> Option<f64> {
         if !settings.wants(theory) {
             return None;
         }
         if let Some(reason) = conserved.as_ref().filter(|_| theory == Theory::Htst || settings.damping == 0.0) {
             refused.push((theory, reason.clone()));
-            return None;
-        }
-        if theory == Theory::Langer && dense {
-            refused.push((theory, Refusal::Dense(MOST_DENSE)));
             return None;
         }
         let found = match theory {
@@ -371,6 +360,9 @@ fn computed(
     settings: &RateSettings,
     barriers: [f64; 2],
 ) -> Result<[SaddleRate; 2], Refusal> {
+    if h.is_stopped() {
+        return Err(Refusal::Stopped);
+    }
     if let Some(reason) = unfit(crossing) {
         return Err(reason);
     }

@@ -71,9 +71,9 @@ pub enum Refusal {
          above 0, or a second anisotropy that breaks the symmetry", .0[0], .0[1], .0[2]
     )]
     Conserved(Vector),
-    /// Langer's theory takes a dense matrix, of this many sites at most.
-    #[error("where every spin acts on every other it takes a dense matrix, of {0} sites at most")]
-    Dense(usize),
+    /// The run was stopped before.
+    #[error("the run was stopped before its rates were computed")]
+    Stopped,
     /// The frequency of the crossing cannot be told from zero.
     #[error("the crossing has no frequency that can be told from zero: the spins do not precess across the saddle")]
     NoFrequency,

@@ -157,8 +157,7 @@ impl<'a> Beside<'a> {
     fn found(&self, choice: &Choice) -> Result<Found, Refusal> {
         let Choice { sliding, steps, turn, unknown } = choice;
         if self.h.is_stopped() {
-            // what is computed from here on nobody will see
-            return Err(Refusal::LostMode);
+            return Err(Refusal::Stopped);
         }
         let along = turn.map(|turn| self.group.with_axis(turn.axis));
         let along = along.as_ref().unwrap_or(self.group);
