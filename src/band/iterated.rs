@@ -11,6 +11,7 @@
 
 use super::Band;
 use super::linearised::{LEAST, Move, SHIFT_TRIES, first_shift, upwind_rate};
+use crate::energy::magnetostatics::DENSE;
 use crate::field::Components;
 use crate::geometry::{Vector, vector};
 use crate::hessian::{Complement, Place, StandIn};
@@ -39,11 +40,14 @@ impl Iterated {
         Iterated { stand_in, tolerance, equations: Complement::default(), sigma: 0.0, shift: 0.0, image: Vec::new() }
     }
 
-    /// M for the images of a band, where factors of their Hessians take long.
+    /// M for the images of a band, where factors of their Hessians take long: of blocks whose fronts are large, and of all pairs of more
+    /// than a few sites. (Of fewer sites too they take half as long; but conjugate gradients do not see that a symmetric path is a ridge,
+    /// and of 102 random chains and rings two lost their lowest barriers so.)
     pub fn stand_in(band: &Band, c: f64) -> Option<StandIn> {
         let h = band.hamiltonian();
         let end = |k: usize| (band.path().image(k), band.gradient(k));
-        h.has_dear_factors().then(|| StandIn::between(h, &[end(0), end(band.images() - 1)], c))
+        let is_far = h.coupling().pairs().is_some() && h.sites() > DENSE;
+        (h.has_dear_factors() || is_far).then(|| StandIn::between(h, &[end(0), end(band.images() - 1)], c))
     }
 
     /// For image k, with symmetry axes `axes` and the shift μ of its last visit (meV).

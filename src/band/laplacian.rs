@@ -29,7 +29,7 @@ impl Laplacian {
         let (mut m, each) = match h.layout() {
             Layout::Band { span, places } => (Matrix::Band(Banded::zeros(sites, *span), places.clone()), 1),
             Layout::Sparse(plan) => (Matrix::Sparse(SparseMatrix::zeros(plan.clone())), 2),
-            Layout::Dense => (Matrix::Dense(Dense::zeros(sites)), 1),
+            Layout::Dense => (Matrix::Dense(Dense::zeros(2 * sites)), 2),
         };
         let mut add = |i: usize, j: usize, v: f64| (0..each).for_each(|a| m.add(each * i + a, each * j + a, v));
         let spread = blocks.sites().map(spread).fold(0.0, f64::max);

@@ -78,7 +78,7 @@ impl Linearised {
 
     fn assembly<'a>(&self, band: &'a Band, k: usize, matrix: &mut Matrix) -> Assembly<'a> {
         let shift = self.sigma + self.shift;
-        Assembly::begin(band.hamiltonian(), band.path().image(k), band.gradient(k), shift, false, matrix)
+        Assembly::begin(band.hamiltonian(), band.path().image(k), band.gradient(k), shift, matrix)
     }
 
     /// The basis, the border and the factors, row by row of sites.
@@ -267,7 +267,7 @@ mod tests {
     use super::*;
     use crate::energy::{Anisotropy, EnergyTerm, Exchange, Hamiltonian};
     use crate::geometry::Direction;
-    use crate::hessian::assemble_shifted;
+    use crate::hessian::assemble_into;
     use crate::lattice::Chain;
     use crate::path::Path;
     use crate::spins::Spins;
@@ -315,7 +315,7 @@ mod tests {
                     let (m, g) = (band.path().image(k), band.gradient(k));
                     let basis = TangentBasis::at(m);
                     let (mut a, mut image) = (Matrix::default(), vec![0.0; 2 * sites]);
-                    assemble_shifted(&h, m, g, &basis, room.sigma + done.shift, &mut a);
+                    assemble_into(&h, m, g, &basis, room.sigma + done.shift, &mut a);
                     let t = basis.coordinates(&y);
                     a.multiply(&t, &mut image);
                     slab::add_scaled(&mut image, -1.0, &basis.coordinates(band.perpendicular(k)));

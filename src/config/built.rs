@@ -277,7 +277,7 @@ pub fn expected_images(problem: &Problem, scales: &Scales) -> usize {
 pub fn needed_bytes(problem: &Problem, scales: &Scales) -> f64 {
     let h = &problem.hamiltonian;
     let far = h.coupling().pairs().map_or(0.0, |_| {
-        let state = h.coupling().tail(true).map(|e| e.cost());
+        let state = h.coupling().tail().map(|e| e.cost());
         memory::far_bytes(h.sites(), state, rayon::current_num_threads())
     });
     let bonds = h.constant_blocks().bond.len();

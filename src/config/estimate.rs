@@ -15,7 +15,7 @@
 
 use super::{Loaded, expected_images};
 use crate::drive::{Images, Problem, Scales, third_states};
-use crate::hessian::{TangentBasis, assemble_shifted};
+use crate::hessian::{TangentBasis, assemble_into};
 use crate::landscape::Effort;
 use crate::linalg::Matrix;
 use crate::path::guess::moving_sites;
@@ -112,7 +112,7 @@ fn gradient_seconds(problem: &Problem, scales: &Scales) -> f64 {
     for _ in 0..MOST {
         let start = Instant::now();
         let _ = h.energy_gradient(m, &mut g);
-        assemble_shifted(h, m, &g, &basis, scales.stiffness_mev, &mut matrix);
+        assemble_into(h, m, &g, &basis, scales.stiffness_mev, &mut matrix);
         if !h.forgoes_factors() {
             matrix = std::mem::take(&mut matrix).factor().into_memory();
         }

@@ -29,9 +29,8 @@ pub trait AllPairs: Debug + Sync {
 pub enum Coupling<'a> {
     /// Those within its reach.
     Local,
-    /// All pairs, by their distance alone; in a row also as a precise and a rough sum of exponentials, from the shells on that have
-    /// blocks, where there are such sums.
-    Translational(&'a dyn AllPairs, Option<[&'a Exponentials; 2]>),
+    /// All pairs, by their distance alone; in a row also as a sum of exponentials, from the shells on that have blocks, where there is one.
+    Translational(&'a dyn AllPairs, Option<&'a Exponentials>),
     /// All pairs, each in its own way.
     Dense(&'a dyn AllPairs),
 }
@@ -46,14 +45,13 @@ impl<'a> Coupling<'a> {
     }
 
     /// The sum of exponentials, if there is one.
-    pub fn tail(self, precise: bool) -> Option<&'a Exponentials> {
-        let Coupling::Translational(_, Some([fine, rough])) = self else { return None };
-        Some(if precise { fine } else { rough })
+    pub fn tail(self) -> Option<&'a Exponentials> {
+        if let Coupling::Translational(_, tail) = self { tail } else { None }
     }
 
     /// A bound of the Hessian's error (meV, any norm) for what the exponentials leave out.
-    pub fn error_mev(self, precise: bool) -> f64 {
-        self.tail(precise).map_or(0.0, |tail| 2.0 * tail.error * self.largest_moment() * self.largest_moment())
+    pub fn error_mev(self) -> f64 {
+        self.tail().map_or(0.0, |tail| 2.0 * tail.error * self.largest_moment() * self.largest_moment())
     }
 
     /// About the norm of what acts beyond the nearest `shells` of a row (meV); 0 where the Hessian is dense.

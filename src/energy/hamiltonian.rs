@@ -169,7 +169,7 @@ impl Hamiltonian {
 
     /// What the Hessian is uncertain by (meV), rounding apart: what long-ranged and custom terms leave out.
     pub fn hessian_error_mev(&self) -> f64 {
-        self.coupling().error_mev(true) + self.terms.iter().map(|t| t.hessian_error_mev()).sum::<f64>()
+        self.coupling().error_mev() + self.terms.iter().map(|t| t.hessian_error_mev()).sum::<f64>()
     }
 
     /// What the energy of a configuration is uncertain by (meV): a site's share of it by some ulp of the largest stiffness.

@@ -19,17 +19,7 @@ pub fn assemble(h: &Hamiltonian, m: &[f64], g: &[f64], basis: &TangentBasis) -> 
 
 /// [`assemble`] of H + shift·1 into the memory of `matrix`.
 pub fn assemble_into(h: &Hamiltonian, m: &[f64], g: &[f64], basis: &TangentBasis, shift: f64, matrix: &mut Matrix) {
-    fill(h, m, g, basis, shift, true, matrix);
-}
-
-/// [`assemble_into`], quicker: what a long-ranged term does to distant sites is there to six digits only, enough
-/// to steer.
-pub fn assemble_shifted(h: &Hamiltonian, m: &[f64], g: &[f64], basis: &TangentBasis, shift: f64, matrix: &mut Matrix) {
-    fill(h, m, g, basis, shift, false, matrix);
-}
-
-fn fill(h: &Hamiltonian, m: &[f64], g: &[f64], basis: &TangentBasis, shift: f64, precise: bool, matrix: &mut Matrix) {
-    let assembly = Assembly::begin(h, m, g, shift, precise, matrix);
+    let assembly = Assembly::begin(h, m, g, shift, matrix);
     assembly.write_all(basis, matrix);
     assembly.finish(basis, matrix);
 }
@@ -43,22 +33,14 @@ pub struct Assembly<'a> {
     /// The blocks, where they are not the constant ones.
     own: Option<Blocks>,
     shift: f64,
-    precise: bool,
     /// So many sites have the partners of their own bonds so many sites on as the shell tells, in a row.
     plain: usize,
 }
 
 impl<'a> Assembly<'a> {
     /// Gives `matrix` its shape; all rows are to be written then, and at the end [`finish`](Self::finish)ed.
-    pub fn begin(
-        h: &'a Hamiltonian,
-        m: &'a [f64],
-        g: &'a [f64],
-        shift: f64,
-        precise: bool,
-        matrix: &mut Matrix,
-    ) -> Assembly<'a> {
-        let dense = h.coupling().pairs().is_some() && h.coupling().tail(precise).is_none();
+    pub fn begin(h: &'a Hamiltonian, m: &'a [f64], g: &'a [f64], shift: f64, matrix: &mut Matrix) -> Assembly<'a> {
+        let dense = h.coupling().pairs().is_some() && h.coupling().tail().is_none();
         let layout = if dense { &Layout::Dense } else { h.layout() };
         let plain = match layout {
             Layout::Band { .. } if !h.has_frozen() => h.sites().saturating_sub(h.reach()),
@@ -66,7 +48,7 @@ impl<'a> Assembly<'a> {
         };
         matrix.reset(layout, h.sites(), plain);
         let own = h.varying_blocks(Components::new(m));
-        Assembly { h, m: Components::new(m), g: Components::new(g), own, shift, precise, plain }
+        Assembly { h, m: Components::new(m), g: Components::new(g), own, shift, plain }
     }
 
     /// Writes a row of sites, with the basis there and as many sites on as the bonds reach.
@@ -99,7 +81,7 @@ impl<'a> Assembly<'a> {
     /// Adds all that [`write_rows`](Self::write_rows) has not written, whatever rows it was given.
     pub fn finish(&self, basis: &TangentBasis, matrix: &mut Matrix) {
         self.parts(basis).add_rest(self.plain, matrix);
-        far::add(self.h, basis, self.precise, matrix);
+        far::add(self.h, basis, matrix);
     }
 
     fn parts<'b>(&'b self, basis: &'b TangentBasis) -> Parts<'b> {

@@ -16,10 +16,10 @@ use std::sync::Arc;
 type Rows = Vec<[Vector; 2]>;
 
 /// Adds what reaches further than the blocks.
-pub(super) fn add(h: &Hamiltonian, basis: &TangentBasis, precise: bool, matrix: &mut Matrix) {
+pub(super) fn add(h: &Hamiltonian, basis: &TangentBasis, matrix: &mut Matrix) {
     let Some(pairs) = h.coupling().pairs() else { return };
     let rows = rows(h, pairs, basis);
-    let Some(sum) = h.coupling().tail(precise) else {
+    let Some(sum) = h.coupling().tail() else {
         return add_pairs(pairs, &rows, matrix);
     };
     for n in 1..=sum.shells {

@@ -20,7 +20,7 @@ mod free;
 mod resolvent;
 mod stand_in;
 
-pub use assembly::{Assembly, assemble, assemble_into, assemble_shifted};
+pub use assembly::{Assembly, assemble, assemble_into};
 pub use basis::{BasisTile, TangentBasis};
 pub use bound::{Bound, bound};
 pub use complement::{Complement, Place};
@@ -37,7 +37,7 @@ pub fn factorisation_flops(h: &Hamiltonian) -> f64 {
         return plan.flops();
     }
     let order = 2.0 * h.sites() as f64;
-    let width = match (h.coupling().pairs().is_some(), h.coupling().tail(true)) {
+    let width = match (h.coupling().pairs().is_some(), h.coupling().tail()) {
         (true, None) => return order * order * order / 3.0,
         (_, Some(tail)) => 4.0 * h.reach() as f64 + 2.0 + tail.cost() as f64,
         (false, None) => 4.0 * h.reach() as f64 + 2.0,

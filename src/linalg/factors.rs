@@ -1,6 +1,6 @@
 //! The factors L and D of a [`Matrix`], with the inertia (Sylvester: the signs of D are those of the eigenvalues) and ln|det|.
 
-use super::{Dense, Ldl, Matrix, Places, SparseLdl, TailLdl, TailedBand, slab};
+use super::{DenseLdl, Ldl, Matrix, Places, SparseLdl, TailLdl, TailedBand, slab};
 
 /// The factors of a symmetric matrix.
 #[derive(Clone, Debug)]
@@ -12,7 +12,7 @@ pub enum Factors {
     /// Of blocks of coupled sites.
     Sparse(SparseLdl),
     /// Of all entries.
-    Dense(Dense),
+    Dense(DenseLdl),
 }
 
 impl Default for Factors {
@@ -46,10 +46,7 @@ impl Factors {
             }
             Matrix::Tail(tailed) => Factors::Tail(TailLdl::of(&tailed, floor), tailed),
             Matrix::Sparse(sparse) => Factors::Sparse(SparseLdl::of(sparse)),
-            Matrix::Dense(mut dense) => {
-                dense.eliminate(floor);
-                Factors::Dense(dense)
-            }
+            Matrix::Dense(dense) => Factors::Dense(DenseLdl::of(dense, floor)),
         };
         if columns > 0 {
             factors.solve(x, columns);
@@ -63,7 +60,7 @@ impl Factors {
             Factors::Band(ldl, places) => Matrix::Band(ldl.into_memory(), places),
             Factors::Tail(_, tailed) => Matrix::Tail(tailed),
             Factors::Sparse(ldl) => Matrix::Sparse(ldl.into_memory()),
-            Factors::Dense(dense) => Matrix::Dense(dense),
+            Factors::Dense(ldl) => Matrix::Dense(ldl.into_memory()),
         }
     }
 
@@ -73,7 +70,7 @@ impl Factors {
             Factors::Band(ldl, _) => ldl.order(),
             Factors::Tail(_, tailed) => tailed.band.order(),
             Factors::Sparse(ldl) => ldl.order(),
-            Factors::Dense(dense) => dense.order(),
+            Factors::Dense(ldl) => ldl.pivots().len(),
         }
     }
 
@@ -83,7 +80,7 @@ impl Factors {
             Factors::Band(ldl, _) => ldl.negatives(),
             Factors::Tail(ldl, _) => ldl.pivots().iter().filter(|d| **d < 0.0).count(),
             Factors::Sparse(ldl) => ldl.negatives(),
-            Factors::Dense(dense) => dense.diagonal().filter(|d| *d < 0.0).count(),
+            Factors::Dense(ldl) => ldl.pivots().iter().filter(|d| **d < 0.0).count(),
         }
     }
 
@@ -96,7 +93,7 @@ impl Factors {
             Factors::Band(ldl, _) => ldl.log_abs_determinant(),
             Factors::Tail(ldl, _) => sum(&mut ldl.pivots().iter().copied()),
             Factors::Sparse(ldl) => ldl.log_abs_determinant(),
-            Factors::Dense(dense) => sum(&mut dense.diagonal()),
+            Factors::Dense(ldl) => sum(&mut ldl.pivots().iter().copied()),
         }
     }
 
@@ -106,7 +103,7 @@ impl Factors {
             Factors::Band(ldl, places) => places.within(x, |x| ldl.solve(x, columns)),
             Factors::Tail(ldl, _) => slab::one_by_one(x, columns, |x| ldl.solve(x)),
             Factors::Sparse(ldl) => ldl.solve(x, columns),
-            Factors::Dense(dense) => dense.substitute(x, columns),
+            Factors::Dense(ldl) => ldl.solve(x, columns),
         }
     }
 }

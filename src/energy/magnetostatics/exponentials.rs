@@ -36,14 +36,13 @@ pub struct Exponentials {
 }
 
 impl Exponentials {
-    /// The cheapest sum with an error of at most `tolerance` times Σ_n |K(n)|, or else the most accurate one; with the given
-    /// number of shells if there is one.
-    pub fn new(kernel: &Kernel, tolerance: f64, shells: Option<usize>) -> Exponentials {
+    /// The cheapest sum with an error of at most `tolerance` times Σ_n |K(n)|, or else the most accurate one.
+    pub fn new(kernel: &Kernel, tolerance: f64) -> Exponentials {
         let sites = kernel.table[0].len();
         let goal = tolerance * (0..3).map(|c| kernel.table[c].iter().map(|k| k.abs()).sum()).fold(0.0, f64::max);
         let mut sums: Vec<Exponentials> = Vec::new();
         let nodes = STEPS.map(|h| nodes(kernel.shape, h));
-        for shells in SHELLS.into_iter().filter(|r| shells.is_none_or(|s| s == *r) && *r < sites) {
+        for shells in SHELLS.into_iter().filter(|r| *r < sites) {
             let sum = Exponentials::beyond(kernel, &nodes, shells, goal);
             if sums.last().is_some_and(|last| last.error > goal) {
                 sums.clear();
@@ -299,8 +298,8 @@ mod tests {
                 let kernel = Kernel::new(shape, sites, false);
                 let sum = |c: usize| kernel.table[c].iter().map(|k| k.abs()).sum::<f64>();
                 let scale = sum(0).max(sum(1)).max(sum(2));
-                for (tolerance, shells) in [(1e-15, None), (1e-6, Some(4))] {
-                    let e = Exponentials::new(&kernel, tolerance, shells);
+                for tolerance in [1e-15, 1e-6] {
+                    let e = Exponentials::new(&kernel, tolerance);
                     assert!(e.error <= tolerance * scale, "{shape:?} {sites} {tolerance:e}: {:e}", e.error / scale);
                     assert!(e.cost() <= most, "{shape:?} {sites}: {}", e.cost());
                     for n in [e.shells + 1, e.shells + 5, sites - 1] {

@@ -23,4 +23,4 @@ pub use newell::{cell_tensor, pair_tensor};
 pub use pairs::Pairs;
 pub use section::Section;
 pub use series::{Multipoles, Series, hurwitz_zeta};
-pub use term::{MU_0_MU_B_SQUARED, Magnetostatics, Row};
+pub use term::{DENSE, MU_0_MU_B_SQUARED, Magnetostatics, Row};

@@ -9,12 +9,10 @@ use crate::units::{E_CHARGE, MU_0, MU_B_MEV_PER_T};
 use std::ops::Range;
 
 /// Open chains of at most this many sites have a dense Hessian; longer ones a sum of exponentials. Rings are dense, and so are
-/// cells tens of times wider than their spacing.
-const DENSE: usize = 128;
-/// Accuracy of the exponentials of a Hessian that proves something, of Σ|K|: below its rounding error.
+/// cells tens of times wider than their spacing. Of more sites the images of a band are found without factors.
+pub const DENSE: usize = 128;
+/// Accuracy of the exponentials, of Σ|K|: below the rounding error of a Hessian.
 const PRECISE: f64 = 4.0 * f64::EPSILON;
-/// Accuracy of the exponentials of a Hessian that steers a band.
-const COARSE: f64 = 1e-6;
 
 /// μ₀μ_B² (meV nm³).
 pub const MU_0_MU_B_SQUARED: f64 = MU_0 * MU_B_MEV_PER_T * (1e-3 * MU_B_MEV_PER_T * E_CHARGE) * 1e27;
@@ -47,7 +45,7 @@ enum Interaction {
 struct ByDistance {
     kernel: Kernel,
     convolution: Convolution,
-    tails: Option<[Exponentials; 2]>,
+    tail: Option<Exponentials>,
 }
 
 /// What the sites are, and how they stand.
@@ -68,7 +66,7 @@ impl Magnetostatics {
     pub fn new(name: &'static str, row: &Row, moments: Vec<f64>) -> Magnetostatics {
         let sites = moments.len();
         let mut kernel = Kernel::new(row.shape, sites, row.periodic);
-        let tails = if !row.periodic && sites > DENSE { tails(&kernel) } else { None };
+        let tail = if !row.periodic && sites > DENSE { tail(&kernel) } else { None };
         let strength = MU_0_MU_B_SQUARED / row.volume_nm3;
         kernel.table.iter_mut().flatten().for_each(|k| *k *= strength);
         let scaled = |mut e: Exponentials| {
@@ -77,12 +75,12 @@ impl Magnetostatics {
             e
         };
         let convolution = Convolution::new(&kernel);
-        let tails = tails.map(|t| t.map(scaled));
+        let tail = tail.map(scaled);
         Magnetostatics::coupled(
             name,
             row.direction,
             moments,
-            Interaction::Distance(Box::new(ByDistance { kernel, convolution, tails })),
+            Interaction::Distance(Box::new(ByDistance { kernel, convolution, tail })),
         )
     }
 
@@ -159,13 +157,12 @@ impl Magnetostatics {
     }
 }
 
-/// The precise and the coarse sum of exponentials; nothing where cells are so wide beside their spacing that none is precise.
-fn tails(kernel: &Kernel) -> Option<[Exponentials; 2]> {
+/// The sum of exponentials; nothing where cells are so wide beside their spacing that none is precise.
+fn tail(kernel: &Kernel) -> Option<Exponentials> {
     let sum = |c: usize| kernel.table[c].iter().map(|k| k.abs()).sum::<f64>();
     let scale = sum(0).max(sum(1)).max(sum(2));
-    let precise = Exponentials::new(kernel, PRECISE, None);
-    let coarse = Exponentials::new(kernel, COARSE, Some(precise.shells));
-    (precise.error <= 4.0 * PRECISE * scale && coarse.error <= 10.0 * COARSE * scale).then_some([precise, coarse])
+    let tail = Exponentials::new(kernel, PRECISE);
+    (tail.error <= 4.0 * PRECISE * scale).then_some(tail)
 }
 
 /// The axes of a chain that points along `direction`: x, y and z turned by the smallest rotation that takes x there.
@@ -259,7 +256,7 @@ impl EnergyTerm for Magnetostatics {
     }
 
     fn reach(&self) -> usize {
-        self.coupling().tail(true).map_or(0, |e| e.shells)
+        self.coupling().tail().map_or(0, |e| e.shells)
     }
 
     fn is_quadratic(&self) -> bool {
@@ -272,7 +269,7 @@ impl EnergyTerm for Magnetostatics {
 
     fn coupling(&self) -> Coupling<'_> {
         match &self.interaction {
-            Interaction::Distance(by) => Coupling::Translational(self, by.tails.as_ref().map(|tails| tails.each_ref())),
+            Interaction::Distance(by) => Coupling::Translational(self, by.tail.as_ref()),
             Interaction::Pairs(_) => Coupling::Dense(self),
         }
     }

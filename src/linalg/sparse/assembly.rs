@@ -1,7 +1,7 @@
 //! What a front begins with: entries of the matrix, and what the fronts below it have left.
 
-use super::panels::{self, SITES, WIDTH};
 use super::symbolic::{Front, Target};
+use crate::linalg::panels::{self, SITES, WIDTH};
 use multiversion::multiversion;
 
 /// Numbers of the two rows of a site in a panel.

@@ -1,8 +1,8 @@
 //! Factors of a sparse matrix, and their computation, front by front.
 
 use super::assembly::{add_entries, add_left};
-use super::front::eliminate;
 use super::{SparseMatrix, Symbolic};
+use crate::linalg::front::eliminate;
 use rayon::prelude::*;
 use std::mem::take;
 use std::ops::Range;

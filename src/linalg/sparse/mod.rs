@@ -11,12 +11,10 @@
 
 mod assembly;
 mod dissection;
-mod front;
 mod graph;
 mod ldl;
 mod matrix;
 mod memory;
-mod panels;
 #[cfg(test)]
 pub(super) mod samples;
 mod solve;

@@ -2,7 +2,7 @@
 
 use super::Symbolic;
 use super::memory::Memory;
-use super::panels::{self, WIDTH};
+use crate::linalg::front::{backward, forward};
 use multiversion::multiversion;
 use std::ops::Range;
 
@@ -11,30 +11,15 @@ pub(super) fn solve(plan: &Symbolic, factors: &Memory, x: &mut [f64], columns: u
     for first in (0..columns).step_by(4) {
         let those = first..columns.min(first + 4);
         match those.len() {
-            1 => of_one(plan, factors, x, columns, those),
-            2 => of_two(plan, factors, x, columns, those),
-            _ => of_four(plan, factors, x, columns, those),
+            1 => pass::<1>(plan, factors, x, columns, those),
+            2 => pass::<2>(plan, factors, x, columns, those),
+            _ => pass::<4>(plan, factors, x, columns, those),
         }
     }
 }
 
-#[multiversion(targets("x86_64+avx2"))]
-fn of_one(plan: &Symbolic, factors: &Memory, x: &mut [f64], columns: usize, those: Range<usize>) {
-    pass::<1>(plan, factors, x, columns, those);
-}
-
-#[multiversion(targets("x86_64+avx2"))]
-fn of_two(plan: &Symbolic, factors: &Memory, x: &mut [f64], columns: usize, those: Range<usize>) {
-    pass::<2>(plan, factors, x, columns, those);
-}
-
-#[multiversion(targets("x86_64+avx2"))]
-fn of_four(plan: &Symbolic, factors: &Memory, x: &mut [f64], columns: usize, those: Range<usize>) {
-    pass::<4>(plan, factors, x, columns, those);
-}
-
 /// At most C columns.
-#[inline(always)]
+#[multiversion(targets("x86_64+avx2"))]
 fn pass<const C: usize>(plan: &Symbolic, factors: &Memory, x: &mut [f64], columns: usize, those: Range<usize>) {
     let there = those.len();
     let mut y = vec![[[0.0; C]; 2]; plan.place.len()];
@@ -83,46 +68,4 @@ fn copy(to: &mut [f64], from: &[f64]) {
 #[inline(always)]
 fn pairs<const C: usize>(w: &mut [[f64; C]], first: usize) -> &mut [[[f64; C]; 2]] {
     w[first..].as_chunks_mut().0
-}
-
-/// w ← L⁻¹ w, where the unknowns that are not the front's own take −L w.
-#[inline(always)]
-fn forward<const C: usize>(l: &[f64], panels: usize, w: &mut [[f64; C]]) {
-    let rows = w.len();
-    for p in 0..panels {
-        let (square, below) = l[panels::first(rows, p)..panels::first(rows, p + 1)].split_at(WIDTH * WIDTH);
-        let (own, rest) = w[WIDTH * p..].split_at_mut(WIDTH);
-        for r in 1..WIDTH {
-            for k in 0..r {
-                (0..C).for_each(|c| own[r][c] -= square[WIDTH * r + k] * own[k][c]);
-            }
-        }
-        for (l, w) in below.as_chunks::<WIDTH>().0.iter().zip(rest) {
-            for c in 0..C {
-                w[c] -= (l[0] * own[0][c] + l[1] * own[1][c]) + (l[2] * own[2][c] + l[3] * own[3][c]);
-            }
-        }
-    }
-}
-
-/// w ← L⁻ᵀ w of the front's own unknowns, where the others are known.
-#[inline(always)]
-fn backward<const C: usize>(l: &[f64], panels: usize, w: &mut [[f64; C]]) {
-    let rows = w.len();
-    for p in (0..panels).rev() {
-        let (square, below) = l[panels::first(rows, p)..panels::first(rows, p + 1)].split_at(WIDTH * WIDTH);
-        let (own, rest) = w[WIDTH * p..].split_at_mut(WIDTH);
-        let mut sums = [[0.0; C]; WIDTH];
-        for (l, w) in below.as_chunks::<WIDTH>().0.iter().zip(rest) {
-            for k in 0..WIDTH {
-                (0..C).for_each(|c| sums[k][c] += l[k] * w[c]);
-            }
-        }
-        for k in (0..WIDTH).rev() {
-            for r in k + 1..WIDTH {
-                (0..C).for_each(|c| sums[k][c] += square[WIDTH * r + k] * own[r][c]);
-            }
-            (0..C).for_each(|c| own[k][c] -= sums[k][c]);
-        }
-    }
 }

@@ -1,9 +1,9 @@
 //! What of a factorisation follows from the pattern alone: the fronts, where everything stands in them, memory and arithmetic.
 
 use super::memory::Spare;
-use super::panels::{self, SITES, WIDTH};
 use super::supernodes::{self, Group, NONE};
 use super::{Graph, nested_dissection};
+use crate::linalg::panels::{self, SITES, WIDTH};
 use std::ops::Range;
 
 /// Factors of less arithmetic than this are computed by one thread: some 10 ms.

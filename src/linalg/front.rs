@@ -1,7 +1,7 @@
-//! The elimination of the own columns of a front, dense: LDLᵀ by panels, and A ← A − L D Lᵀ on all that is left.
+//! The elimination of the own columns of a front, dense: LDLᵀ by panels, and A ← A − L D Lᵀ on all that is left; and substitution.
 
 use super::panels::{self, WIDTH};
-use crate::linalg::pivot::guarded;
+use super::pivot::guarded;
 use crate::threads::{READ, apiece};
 use multiversion::multiversion;
 use rayon::prelude::*;
@@ -168,6 +168,48 @@ fn subtract_tile<const R: usize>(tile: &mut [f64], l: &[f64], [rows, first, row]
     for r in 0..R {
         for c in 0..WIDTH {
             tile[WIDTH * r + c] -= sums[r][c];
+        }
+    }
+}
+
+/// w ← L⁻¹ w, where the unknowns that are not the front's own take −L w.
+#[inline(always)]
+pub(super) fn forward<const C: usize>(l: &[f64], panels: usize, w: &mut [[f64; C]]) {
+    let rows = w.len();
+    for p in 0..panels {
+        let (square, below) = l[panels::first(rows, p)..panels::first(rows, p + 1)].split_at(WIDTH * WIDTH);
+        let (own, rest) = w[WIDTH * p..].split_at_mut(WIDTH);
+        for r in 1..WIDTH {
+            for k in 0..r {
+                (0..C).for_each(|c| own[r][c] -= square[WIDTH * r + k] * own[k][c]);
+            }
+        }
+        for (l, w) in below.as_chunks::<WIDTH>().0.iter().zip(rest) {
+            for c in 0..C {
+                w[c] -= (l[0] * own[0][c] + l[1] * own[1][c]) + (l[2] * own[2][c] + l[3] * own[3][c]);
+            }
+        }
+    }
+}
+
+/// w ← L⁻ᵀ w of the front's own unknowns, where the others are known.
+#[inline(always)]
+pub(super) fn backward<const C: usize>(l: &[f64], panels: usize, w: &mut [[f64; C]]) {
+    let rows = w.len();
+    for p in (0..panels).rev() {
+        let (square, below) = l[panels::first(rows, p)..panels::first(rows, p + 1)].split_at(WIDTH * WIDTH);
+        let (own, rest) = w[WIDTH * p..].split_at_mut(WIDTH);
+        let mut sums = [[0.0; C]; WIDTH];
+        for (l, w) in below.as_chunks::<WIDTH>().0.iter().zip(rest) {
+            for k in 0..WIDTH {
+                (0..C).for_each(|c| sums[k][c] += l[k] * w[c]);
+            }
+        }
+        for k in (0..WIDTH).rev() {
+            for r in k + 1..WIDTH {
+                (0..C).for_each(|c| sums[k][c] += square[WIDTH * r + k] * own[r][c]);
+            }
+            (0..C).for_each(|c| own[k][c] -= sums[k][c]);
         }
     }
 }
