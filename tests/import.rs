@@ -508,6 +508,11 @@ fn the_command_writes_a_config_prints_the_convention_and_keeps_what_is_there() {
     let (code, _, said) = run(&["uppasd", "inpsd.dat", "--convention", "-D"]);
     assert!(code == Some(2) && said.contains("exists already"), "{said}");
     assert_eq!(run(&["uppasd", ".", "--convention", "-D", "--out", "inpsd.json", "--force"]).0, Some(0));
+    // what is read is not replaced by what is made of it
+    let input = fs::read(folder.path().join("inpsd.dat")).unwrap();
+    let (code, _, said) = run(&["uppasd", ".", "--convention", "-D", "--out", "inpsd.dat", "--force"]);
+    assert!(code == Some(2) && said.contains("is no config"), "{said}");
+    assert_eq!(fs::read(folder.path().join("inpsd.dat")).unwrap(), input);
     let (code, _, said) = run(&["uppasd", ".", "--convention=-D", "--cells", "1,1,1", "--out", "small.json"]);
     assert!(code == Some(2) && said.contains("--cells 3,1,1") && !folder.path().join("small.json").exists(), "{said}");
     for wrong in [&["uppasd", "nothing"][..], &["uppasd", ".", "--convention", "twice"], &["vampire", "posfile"]] {

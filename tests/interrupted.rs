@@ -188,10 +188,21 @@ fn a_short_interrupted_run_writes_its_first_checkpoint_then() {
 fn a_second_signal_ends_the_program_at_once() {
     let folder = folder();
     let child = at_work(folder.path(), &[]);
-    let line = format!("kill -INT {0}; kill -INT {0}; kill -INT {0} || true", child.id());
+    let line = format!("kill -INT {0}; sleep 0.4; kill -INT {0} || true", child.id());
     assert!(Command::new("sh").args(["-c", &line]).stderr(Stdio::null()).status().unwrap().success());
     let (code, _, said) = ended(child);
     assert_eq!(code, Some(130), "{said}");
+    goes_on(folder.path(), &[]);
+}
+
+#[test]
+fn signals_that_come_together_are_one() {
+    let folder = folder();
+    let child = at_work(folder.path(), &[]);
+    let line = format!("kill -INT {0}; kill -INT {0}; kill -TERM {0} || true", child.id());
+    assert!(Command::new("sh").args(["-c", &line]).stderr(Stdio::null()).status().unwrap().success());
+    let (_, _, said) = ended(child);
+    assert!(folder.path().join("out/partial.json").is_file(), "{said}");
     goes_on(folder.path(), &[]);
 }
 

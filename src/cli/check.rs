@@ -212,7 +212,7 @@ fn wall_width(physics: &Physics, lattice: &Lattice) -> String {
 fn wall_energy(physics: &Physics) -> String {
     let area = physics.wall_energy_mj_per_m2.map_or(String::new(), |e| format!(", {e:.4} mJ/m²"));
     match physics.wall_energy_mev {
-        Some(energy) => format!("{energy:.4} meV{area} (2 √(exchange × stiffness))"),
+        Some(energy) => format!("{energy:.4} meV{area} (2 √(exchange × stiffness), of a row of spins)"),
         None => "none".into(),
     }
 }

@@ -8,6 +8,8 @@ use crate::import::{FORMATS, Format, Model, Told};
 use anyhow::Result;
 use clap::Args;
 use clap::builder::PossibleValue;
+use serde_json::{Map, Value};
+use std::fs;
 use std::io::{self, Write};
 use std::path::PathBuf;
 
@@ -68,6 +70,11 @@ pub fn import(arguments: &Arguments) -> Result<u8> {
     let shown = file.display();
     if let Some(words) = in_the_way(disk::kind(&file)?, arguments.force, "name") {
         note(&format!("error: {shown} {words}"));
+        return Ok(USAGE);
+    }
+    if fs::read_to_string(&file).is_ok_and(|text| serde_json::from_str::<Map<String, Value>>(&text).is_err()) {
+        let words = "exists and is no config, perhaps an input of what is imported; it stays, even with --force: take it away, or give another";
+        note(&format!("error: {shown} {words} name with --out"));
         return Ok(USAGE);
     }
     // a wrong file is no failure of the machine, so that all that is wrong with it exits alike

@@ -15,6 +15,8 @@ const KNOWN: [(i32, u8, &str); 3] =
     [(SIGINT, 130, "interrupted"), (SIGTERM, 143, "terminated"), (SIGHUP, 129, "hung up")];
 /// How long a signal may go unnoticed by a thread that waits for one.
 const NOTICED_AFTER: Duration = Duration::from_millis(20);
+/// Signals that come so soon after the first are that one: programs such as `timeout` send it to a process and once more to its group.
+const ONE_SIGNAL: Duration = Duration::from_millis(300);
 /// Which signals a process ignores, on systems that tell.
 const STATUS: &str = "/proc/self/status";
 
@@ -28,9 +30,9 @@ impl Signals {
     /// From now on a signal is noticed; a second one ends the program at once, with the same code.
     pub fn watch() -> Result<Signals> {
         let (stop, caught) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicUsize::new(0)));
+        let armed = Arc::new(AtomicBool::new(false));
         let register = |(signal, code, _): (i32, u8, &str)| -> std::io::Result<()> {
-            // in this order: the first signal only arms what the second one triggers
-            flag::register_conditional_shutdown(signal, i32::from(code), Arc::clone(&stop))?;
+            flag::register_conditional_shutdown(signal, i32::from(code), Arc::clone(&armed))?;
             flag::register_usize(signal, Arc::clone(&caught), usize::from(code))?;
             flag::register(signal, Arc::clone(&stop)).map(|_| ())
         };
@@ -38,6 +40,7 @@ impl Signals {
         let mut watched = KNOWN.into_iter().filter(|(signal, ..)| *signal != SIGHUP || !is_ignored(SIGHUP));
         let registered = watched.try_for_each(register).and_then(|()| fail_where_files_grow_too_large());
         registered.context("signals cannot be watched for")?;
+        arm_after(&stop, armed);
         Ok(Signals { stop, caught })
     }
 
@@ -74,6 +77,18 @@ impl Signals {
         let code = self.caught.load(Ordering::SeqCst);
         KNOWN.into_iter().find(|known| usize::from(known.1) == code).map(|(_, code, word)| (code, word))
     }
+}
+
+/// Lets a signal end the program at once, when another one has come before.
+fn arm_after(stop: &Arc<AtomicBool>, armed: Arc<AtomicBool>) {
+    let stop = Arc::clone(stop);
+    std::thread::spawn(move || {
+        while !stop.load(Ordering::SeqCst) {
+            std::thread::sleep(NOTICED_AFTER);
+        }
+        std::thread::sleep(ONE_SIGNAL);
+        armed.store(true, Ordering::SeqCst);
+    });
 }
 
 /// A file that a limit (`ulimit -f`) does not let grow is an error of its writing; the signal that comes with it would end the program without a

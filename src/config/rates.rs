@@ -14,7 +14,8 @@ use std::fmt;
 
 /// Most temperatures of a range.
 const MOST: usize = 100_000;
-/// Highest temperature that is taken for meant (K).
+/// Lowest and highest temperature that are taken for meant (K).
+const COLDEST_K: f64 = 1e-9;
 const HOTTEST_K: f64 = 1e9;
 
 /// `"rates": {"temperatures": ["300 K"], "damping": 0.1, "g_factor": 2.0, "theory": ["htst", "langer"]}`.
@@ -100,9 +101,11 @@ pub fn theory(name: &str) -> Result<Theory, String> {
 
 /// A temperature that a rate can have.
 pub fn checked_temperature(t: Temperature) -> Result<Temperature, String> {
-    match t.0 > 0.0 && t.0 <= HOTTEST_K {
+    match (COLDEST_K..=HOTTEST_K).contains(&t.0) {
         true => Ok(t),
-        false => Err(format!("found {t}, but a temperature here is above 0 K and at most {HOTTEST_K:e} K")),
+        false => {
+            Err(format!("found {t}, but a temperature here is {COLDEST_K:e} K at least and {HOTTEST_K:e} K at most"))
+        }
     }
 }
 

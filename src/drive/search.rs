@@ -19,8 +19,10 @@ use crate::stationary::{RELAXED, Relaxed, STRIDE, relax_to_minimum};
 
 /// Single states are evaluated until so many spins were, or as often as for the first paths; and their Hessians until so many
 /// operations were spent on factorising them, or as often. At `thorough` several times as much of all.
-const SPINS: usize = 10_000_000;
+const SPINS: f64 = 1e7;
 const FLOPS: f64 = 1e9;
+/// Climbs are made side by side as long as they take no more than so many times that, a second or so.
+const TOGETHER: f64 = 10.0;
 
 impl<'a> Run<'a, '_> {
     /// Looks for a route below the top of the best path, and leads the path over it.
@@ -51,6 +53,7 @@ impl<'a> Run<'a, '_> {
             effort,
             shares: 1,
             most,
+            together: self.worth(TOGETHER),
             most_kinds: KINDS,
             c: self.scales.stiffness_mev,
             context: self.context(),
@@ -87,12 +90,21 @@ impl<'a> Run<'a, '_> {
 
     /// What the search may evaluate after all that was evaluated for a band.
     fn allowance(&self, band: &Band) -> Count {
+        let times = self.problem.search.works();
+        let Count { evaluations, hessians } = self.worth(1.0);
+        let evaluations = evaluations.saturating_mul(times).min(self.left(band));
+        Count { evaluations, hessians: hessians.saturating_mul(times) }
+    }
+
+    /// So many times the work that is little, or as much as there was.
+    fn worth(&self, times: f64) -> Count {
         let h = self.problem.evaluator();
         let own = h.evaluated();
-        let times = self.problem.search.works();
-        let evaluations = (SPINS / h.sites()).max(own.evaluations).saturating_mul(times);
-        let hessians = ((FLOPS / factorisation_flops(&h)) as usize).max(own.hessians).saturating_mul(times);
-        Count { evaluations: evaluations.min(self.left(band)), hessians }
+        let little = |of: f64, one: f64| (times * of / one) as usize;
+        Count {
+            evaluations: little(SPINS, h.sites() as f64).max(own.evaluations),
+            hessians: little(FLOPS, factorisation_flops(&h)).max(own.hessians),
+        }
     }
 
     /// Ways through the domains that the ends consist of: out of the lattice and in again.

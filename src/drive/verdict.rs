@@ -92,7 +92,7 @@ impl fmt::Display for Verdict {
                 write!(f, "{stop}; only a saddle of higher index was found, which is no barrier")
             }
             Verdict::KeptEnd(stop, end) => write!(f, "{stop}; {}", Doubt::KeptEnd(*end)),
-            Verdict::SameMinimum => f.write_str("the initial and the final state relaxed to the same minimum"),
+            Verdict::SameMinimum => f.write_str("the initial and the final state are the same minimum"),
             Verdict::Interrupted(why) => f.write_str(why),
         }
     }

@@ -26,6 +26,8 @@ use serde::{Deserialize, Serialize};
 
 /// Kinds of minima, at most: of a search for a route, and of a survey for each step of effort.
 pub const KINDS: usize = 1000;
+/// Gradients and Hessians that a climb takes at least.
+const A_CLIMB: usize = 15;
 /// The seed of everything random in a search.
 const SEED: u64 = 0x5ea2c4;
 
@@ -124,6 +126,8 @@ pub struct Settings<'a> {
     pub shares: usize,
     /// Most gradients and Hessians of single states.
     pub most: Count,
+    /// And of the climbs that are made before their work is looked at.
+    pub together: Count,
     /// Most kinds of minima: with their number grows what each further climb costs beside what it evaluates.
     pub most_kinds: usize,
     /// Stiffness scale c (meV).
@@ -179,8 +183,8 @@ pub fn search(
             (lowest, done.quiet) = (top_mev, 0);
         }
         let wanted = aim.quiet(settings.effort, land.edges().len() > passes, land);
-        let spent =
-            h.evaluated().since(before).part_of(settings.most).max(land.kinds() as f64 / settings.most_kinds as f64);
+        let worked = h.evaluated().since(before);
+        let spent = worked.part_of(settings.most).max(land.kinds() as f64 / settings.most_kinds as f64);
         // what comes to its own stop has not missed the work that it has used up
         done.spent = spent >= 1.0 && done.quiet < wanted;
         tell(&Standing { done, wanted, spent, known: [land.minima().len(), land.edges().len()] });
@@ -188,7 +192,12 @@ pub fn search(
             break;
         }
         let cut = Cut::of(land, aim.ends(), aim.below_mev(land, top_mev), settings.context);
-        let count = (FEW * settings.shares).min(wanted - done.quiet);
+        let a_climb = match done.searches {
+            0 => Count { evaluations: A_CLIMB, hessians: A_CLIMB }.part_of(settings.together),
+            climbs => worked.part_of(settings.together) / climbs as f64,
+        };
+        let count = FEW.min((1.0 / a_climb) as usize).max(1) * settings.shares;
+        let count = count.min(wanted - done.quiet);
         let (starts, count_as_quiet): (Vec<Vec<f64>>, Vec<bool>) = (0..count).map_while(|_| turns.next(&cut)).unzip();
         if starts.is_empty() {
             break;

@@ -192,6 +192,7 @@ impl Run<'_, '_> {
                 effort: asked.effort,
                 shares: asked.shares,
                 most,
+                together: Count { evaluations: usize::MAX, hessians: usize::MAX },
                 most_kinds: KINDS * share(asked.effort)[1],
                 c,
                 context,
