@@ -153,8 +153,8 @@ impl SweepIndex {
         match first.filter(|_| numbers.is_some()) {
             Some(first) => Parameter {
                 column: format!("{label}_{}", first.unit_name()),
-                title: format!("{drawn} ({})", first.unit),
-                unit: format!(" {}", first.unit),
+                title: format!("{drawn} ({})", powers_drawn(&first.unit)),
+                unit: format!(" {}", powers_drawn(&first.unit)),
                 numbers,
             },
             None => Parameter { column: label.clone(), title: drawn, unit: String::new(), numbers: None },
@@ -172,6 +172,11 @@ impl IndexedKey {
     }
 }
 
+/// A unit as figures show it: `mJ/m²` of `mJ/m^2`.
+fn powers_drawn(unit: &str) -> String {
+    unit.replace("^2", "²").replace("^3", "³")
+}
+
 /// A swept key as tables and figures show it.
 struct Parameter {
     /// The head of its column: `K_meV`.
@@ -187,4 +192,14 @@ struct Parameter {
 /// The value as a word: a text without its quotes.
 fn word(value: &Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), String::from)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_of_figures_have_their_powers_raised() {
+        assert_eq!(["mJ/m^2", "kJ/m^3", "meV"].map(powers_drawn), ["mJ/m²", "kJ/m³", "meV"]);
+    }
 }
