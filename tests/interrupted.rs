@@ -184,13 +184,19 @@ fn a_short_interrupted_run_writes_its_first_checkpoint_then() {
     assert!(folder.path().join("out/checkpoint/journal").is_file(), "{said}");
 }
 
+/// How a run ends after commands of the shell, in which $0 is its number.
+fn ended_by(child: Child, commands: &str) -> (Option<i32>, String, String) {
+    let mut shell = Command::new("sh");
+    shell.args(["-c", commands, &child.id().to_string()]).stderr(Stdio::null());
+    assert!(shell.status().unwrap().success());
+    ended(child)
+}
+
 #[test]
 fn a_second_signal_ends_the_program_at_once() {
     let folder = folder();
     let child = at_work(folder.path(), &[]);
-    let line = format!("kill -INT {0}; sleep 0.4; kill -INT {0} || true", child.id());
-    assert!(Command::new("sh").args(["-c", &line]).stderr(Stdio::null()).status().unwrap().success());
-    let (code, _, said) = ended(child);
+    let (code, _, said) = ended_by(child, "kill -INT $0; sleep 0.4; kill -INT $0 || true");
     assert_eq!(code, Some(130), "{said}");
     goes_on(folder.path(), &[]);
 }
@@ -199,9 +205,7 @@ fn a_second_signal_ends_the_program_at_once() {
 fn signals_that_come_together_are_one() {
     let folder = folder();
     let child = at_work(folder.path(), &[]);
-    let line = format!("kill -INT {0}; kill -INT {0}; kill -TERM {0} || true", child.id());
-    assert!(Command::new("sh").args(["-c", &line]).stderr(Stdio::null()).status().unwrap().success());
-    let (_, _, said) = ended(child);
+    let (_, _, said) = ended_by(child, "kill -INT $0; kill -INT $0; kill -TERM $0 || true");
     assert!(folder.path().join("out/partial.json").is_file(), "{said}");
     goes_on(folder.path(), &[]);
 }

@@ -10,8 +10,8 @@
 //!   [Cᵀ 0 ] [·] = [0                  ],    x₀ = d τ,    y_a = x₀ + x
 //! ```
 //! H is the Riemannian Hessian of the image. μ starts at a small part of the stiffness scale c and grows while A has a negative
-//! direction in the complement of C. In chains and small lattices of short reach, where factors are cheap, the count of those is exact (inertia of
-//! the bordered matrix, see `linearised`); in others x is found by iteration, with those that it meets (see `iterated`).
+//! direction in the complement of C. In chains and small lattices of short reach, where factors are cheap, the count of those is exact
+//! (inertia of the bordered matrix, see `linearised`); in others x is found by iteration, with those that it meets (see `iterated`).
 //!
 //! Images that wait for none go first, side by side; the slopes that hang on them after that, each from its top down.
 

@@ -1,4 +1,4 @@
-//! Ctrl-C, the request to terminate and a terminal that is gone: the first ends the run in good order, the second at once.
+//! Ctrl-C, the request to terminate and a terminal that is gone: the first ends the run in good order, a second one at once.
 
 use anyhow::{Context, Result};
 use signal_hook::consts::{SIGINT, SIGTERM};
@@ -27,7 +27,7 @@ pub struct Signals {
 }
 
 impl Signals {
-    /// From now on a signal is noticed; a second one ends the program at once, with the same code.
+    /// From now on a signal is noticed; one that comes later than with it ends the program at once, with the same code.
     pub fn watch() -> Result<Signals> {
         let (stop, caught) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicUsize::new(0)));
         let armed = Arc::new(AtomicBool::new(false));
@@ -40,8 +40,12 @@ impl Signals {
         let mut watched = KNOWN.into_iter().filter(|(signal, ..)| *signal != SIGHUP || !is_ignored(SIGHUP));
         let registered = watched.try_for_each(register).and_then(|()| fail_where_files_grow_too_large());
         registered.context("signals cannot be watched for")?;
-        arm_after(&stop, armed);
-        Ok(Signals { stop, caught })
+        let signals = Signals { stop, caught };
+        signals.once_there(move |_| {
+            std::thread::sleep(ONE_SIGNAL);
+            armed.store(true, Ordering::SeqCst);
+        });
+        Ok(signals)
     }
 
     /// From now on the end of standard input is a request to terminate: whoever held its other end is gone.
@@ -56,14 +60,22 @@ impl Signals {
 
     /// From now on the first signal ends the program, once something was said of what it did, in a word.
     pub fn end_saying(self, say: impl Fn(&str) + Send + 'static) {
+        self.once_there(move |signals| {
+            if let Some((code, word)) = signals.caught() {
+                say(word);
+                std::process::exit(i32::from(code));
+            }
+        });
+    }
+
+    /// Acts once a signal has come, in a thread that waits for one.
+    fn once_there(&self, act: impl FnOnce(&Signals) + Send + 'static) {
+        let signals = Signals { stop: Arc::clone(&self.stop), caught: Arc::clone(&self.caught) };
         std::thread::spawn(move || {
-            loop {
-                if let Some((code, word)) = self.caught() {
-                    say(word);
-                    std::process::exit(i32::from(code));
-                }
+            while !signals.stop.load(Ordering::SeqCst) {
                 std::thread::sleep(NOTICED_AFTER);
             }
+            act(&signals);
         });
     }
 
@@ -77,18 +89,6 @@ impl Signals {
         let code = self.caught.load(Ordering::SeqCst);
         KNOWN.into_iter().find(|known| usize::from(known.1) == code).map(|(_, code, word)| (code, word))
     }
-}
-
-/// Lets a signal end the program at once, when another one has come before.
-fn arm_after(stop: &Arc<AtomicBool>, armed: Arc<AtomicBool>) {
-    let stop = Arc::clone(stop);
-    std::thread::spawn(move || {
-        while !stop.load(Ordering::SeqCst) {
-            std::thread::sleep(NOTICED_AFTER);
-        }
-        std::thread::sleep(ONE_SIGNAL);
-        armed.store(true, Ordering::SeqCst);
-    });
 }
 
 /// A file that a limit (`ulimit -f`) does not let grow is an error of its writing; the signal that comes with it would end the program without a

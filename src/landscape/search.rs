@@ -196,8 +196,8 @@ pub fn search(
             0 => Count { evaluations: A_CLIMB, hessians: A_CLIMB }.part_of(settings.together),
             climbs => worked.part_of(settings.together) / climbs as f64,
         };
-        let count = FEW.min((1.0 / a_climb) as usize).max(1) * settings.shares;
-        let count = count.min(wanted - done.quiet);
+        let side_by_side = FEW.min((1.0 / a_climb) as usize).max(1);
+        let count = (side_by_side * settings.shares).min(wanted - done.quiet);
         let (starts, count_as_quiet): (Vec<Vec<f64>>, Vec<bool>) = (0..count).map_while(|_| turns.next(&cut)).unzip();
         if starts.is_empty() {
             break;

@@ -76,24 +76,23 @@ impl Factors {
 
     /// Number of negative eigenvalues of A.
     pub fn negatives(&self) -> usize {
+        let count = |pivots: &[f64]| pivots.iter().filter(|d| **d < 0.0).count();
         match self {
             Factors::Band(ldl, _) => ldl.negatives(),
-            Factors::Tail(ldl, _) => ldl.pivots().iter().filter(|d| **d < 0.0).count(),
+            Factors::Tail(ldl, _) => count(ldl.pivots()),
             Factors::Sparse(ldl) => ldl.negatives(),
-            Factors::Dense(ldl) => ldl.pivots().iter().filter(|d| **d < 0.0).count(),
+            Factors::Dense(ldl) => count(ldl.pivots()),
         }
     }
 
     /// ln|det A|.
     pub fn log_abs_determinant(&self) -> f64 {
-        let sum = |pivots: &mut dyn Iterator<Item = f64>| {
-            slab::sum(&pivots.map(|d| libm::log(d.abs())).collect::<Vec<f64>>())
-        };
+        let sum = |pivots: &[f64]| slab::sum(&pivots.iter().map(|d| libm::log(d.abs())).collect::<Vec<f64>>());
         match self {
             Factors::Band(ldl, _) => ldl.log_abs_determinant(),
-            Factors::Tail(ldl, _) => sum(&mut ldl.pivots().iter().copied()),
+            Factors::Tail(ldl, _) => sum(ldl.pivots()),
             Factors::Sparse(ldl) => ldl.log_abs_determinant(),
-            Factors::Dense(ldl) => sum(&mut ldl.pivots().iter().copied()),
+            Factors::Dense(ldl) => sum(ldl.pivots()),
         }
     }
 

@@ -7,7 +7,8 @@
 //! σ = λ₊ alone (σ > 0). Inverse iteration x ← M(σ)⁻¹ B x gives λ ≈ σ − 1/μ, μ the growth of x, and the next shift; the sign of the
 //! determinant, free with each factorisation, keeps it in a bracket. In a row the matrix is a band.
 //!
-//! Where sites are coupled every way or all with all, M(σ) y = b is solved by iteration, with the factors of one symmetric matrix that is positive:
+//! Where sites are coupled every way or all with all, M(σ) y = b is solved by iteration, with the factors of one symmetric matrix that
+//! is positive:
 //!
 //! ```text
 //! S = H + t Γ⁻¹,  t ≥ 2|λ₁|:      (1 + S⁻¹(σB − tΓ⁻¹)) y = S⁻¹ b

@@ -4,8 +4,7 @@
 use super::point::Point;
 use super::state::State;
 use super::step::Region;
-use super::tolerances::FEW;
-use super::tolerances::{FIRST_SHIFT, LARGER, LAST_SHIFT};
+use super::tolerances::{FEW, FIRST_SHIFT, LARGER, LAST_SHIFT};
 use super::unfactored::Unfactored;
 use crate::linalg::slab;
 use std::mem::take;
