@@ -347,15 +347,15 @@ fn interval(text: &str) -> Result<Interval, String> {
 
 fn temperature(text: &str) -> Result<Temperature, String> {
     let t: Temperature = text.parse().map_err(|e: Error| e.to_string())?;
-    rates::checked_temperature(t)
+    crate::rates::checked_temperature(t)
 }
 
 fn damping(text: &str) -> Result<f64, String> {
-    rates::checked_damping(plain_number(text)?)
+    crate::rates::checked_damping(plain_number(text)?)
 }
 
 fn g_factor(text: &str) -> Result<f64, String> {
-    rates::checked_g_factor(plain_number(text)?)
+    crate::rates::checked_g_factor(plain_number(text)?)
 }
 
 fn plain_number(text: &str) -> Result<f64, String> {
@@ -431,7 +431,7 @@ pub(crate) enum Looking {
     None,
     /// Until 8 searches in a row brought no news
     Quick,
-    /// Until 24 searches in a row brought no news, 40 once something was found
+    /// Until 24 searches in a row brought no news, 40 once something was found (100 on films and crystals)
     Normal,
     /// Until 400 searches in a row brought no news
     Thorough,

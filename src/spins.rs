@@ -55,6 +55,9 @@ impl Spins {
     /// From component-major numbers x₀…, y₀…, z₀…; each vector is normalised.
     pub fn from_components(xyz: &[f64]) -> Result<Spins> {
         let n = xyz.len() / 3;
+        if xyz.len() != 3 * n {
+            return Err(Error::invalid("", format!("found {} numbers, but a spin has three components", xyz.len())));
+        }
         let vectors: Vec<Vector> = (0..n).map(|i| [xyz[i], xyz[n + i], xyz[2 * n + i]]).collect();
         Spins::from_vectors(&vectors)
     }

@@ -32,6 +32,7 @@ mod kills;
 mod landscape_command;
 mod landscape_shares;
 mod lattices;
+mod library;
 mod longrange;
 mod lowest;
 mod media;

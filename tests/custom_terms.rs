@@ -245,6 +245,9 @@ fn a_config_with_a_program_s_term_is_run_by_that_program_alone() {
     let loaded = chain(9, false, json!([]), vec![easy_axis()]).with_terms(Vec::new());
     let said = loaded.problem().unwrap_err().to_string();
     assert!(said.contains("custom_terms[0]: \"easy\" is a term of the program that wrote this config"), "{said}");
+    let unnamed = loaded.with_terms(vec![Arc::new(easy_axis()), Arc::new(Own { name: "other", ..easy_axis() })]);
+    let said = unnamed.problem().unwrap_err().to_string();
+    assert!(said.contains("custom_terms: it does not name \"other\", which the program gives"), "{said}");
     let taken = chain(9, false, json!([]), vec![Own { name: "exchange", ..easy_axis() }]);
     assert!(taken.problem().unwrap_err().to_string().contains("the name of something else"));
 }

@@ -14,7 +14,9 @@ use spinneb::config::{Loaded, Source, VERSION};
 use spinneb::drive::survey::SurveyProblem;
 use spinneb::drive::{Problem, relaxed_state};
 use spinneb::energy::{CustomEnergy, Evaluator};
+use spinneb::files::disk::File;
 use spinneb::output::RelaxReport;
+use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -183,5 +185,12 @@ impl Config {
             SurveyProblem::files(&loaded, &found)
         })?;
         Ok(Landscape { loaded: self.loaded.clone(), files })
+    }
+
+    /// One that was found before, from its files by name.
+    fn landscape_of(&self, mut files: HashMap<String, Vec<u8>>) -> Landscape {
+        let names = self.loaded.survey_file_names().into_iter();
+        let files = names.filter_map(|name| files.remove(&name).map(|bytes| File { name, bytes })).collect();
+        Landscape { loaded: self.loaded.clone(), files }
     }
 }

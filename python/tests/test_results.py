@@ -63,6 +63,36 @@ def test_a_run_with_temperatures_has_the_rates_that_are_made_of_it_later(chain, 
     assert result.rates.lifetimes_s() == pytest.approx(sn.rates(reversal, 4.0).lifetimes_s(), rel=1e-12)
 
 
+def test_temperatures_are_numbers_quantities_or_a_range(chain, reversal):
+    several = [4.0, [2.0, "3 K"], (t for t in (2.0, 3.0)), np.array(4.0), {"from": "2 K", "to": "4 K", "points": 3}]
+    found = [sn.rates(reversal, asked).temperatures_K.tolist() for asked in several]
+    assert found == [[4.0], [2.0, 3.0], [2.0, 3.0], [4.0], [2.0, 3.0, 4.0]]
+    with pytest.raises(TypeError, match="temperatures are numbers in K"):
+        sn.rates(reversal, [[2.0, 3.0]])
+
+
+def test_words_that_name_nothing_are_refused(chain, reversal):
+    rates = sn.rates(reversal, 4.0)
+    for wrong in (lambda: rates.lifetimes_s("backwards"), lambda: rates.prefactors_Hz("back")):
+        with pytest.raises(ValueError, match="way is one of 'forward', 'backward', found 'back"):
+            wrong()
+    with pytest.raises(ValueError, match="theory is one of 'htst', 'langer'"):
+        rates.prefactors_Hz(theory="Langer")
+    pytest.importorskip("pandas")
+    with pytest.raises(ValueError, match="no temperatures were given"):
+        sn.landscape(chain, effort="none", energy_window="7 meV").to_dataframe("lifetimes")
+
+
+def test_a_landscape_is_saved_wherever_it_comes_from(chain, tmp_path):
+    found = sn.landscape(chain, effort="quick", energy_window="9 meV")
+    found.save(tmp_path / "own")
+    pickle.loads(pickle.dumps(found)).save(tmp_path / "pickled")
+    sn.load(tmp_path / "own").save(tmp_path / "loaded")
+    for other in ("pickled", "loaded"):
+        for file in (tmp_path / "own").iterdir():
+            assert file.name == "manifest.json" or (tmp_path / other / file.name).read_bytes() == file.read_bytes()
+
+
 def test_rates_made_later_keep_what_the_config_says_of_them(chain):
     ends = [sn.uniform("z"), sn.uniform("-z")]
     result = sn.barrier(chain, *ends, rates={"temperatures": ["4 K"], "damping": 0.5, "theory": ["langer"]})

@@ -77,6 +77,19 @@ def test_a_term_in_which_all_sites_meet_runs():
         assert result.certified
 
 
+def test_a_system_keeps_its_own_terms_when_others_are_added():
+    one = system(sn.Term(easy, easy_gradient, name="one"))
+    two = one.replaced(energy=[*one.energy, sn.Term(easy, easy_gradient, name="two")])
+    assert [term.name for term in two.terms] == ["one", "two"]
+    assert list(sn.barrier(two, UP, DOWN, effort="none").terms_meV) == ["exchange", "one", "two"]
+
+
+def test_a_term_of_single_precision_is_refused_as_that():
+    rough = sn.Term(lambda m: easy(m.astype(np.float32)), easy_gradient)
+    with pytest.raises(ValueError, match="float32, but energies need float64"):
+        sn.barrier(system(rough), UP, DOWN)
+
+
 def test_wrong_terms_are_refused_with_what_is_wrong():
     def refused(term, words, sites=20):
         with pytest.raises(ValueError, match=words):

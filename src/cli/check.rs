@@ -101,7 +101,8 @@ pub fn report_of(loaded: &Loaded, problem: &Problem) -> Vec<(&'static str, Strin
     if let Some(rates) = &problem.rates {
         row("rates", asked_for(rates));
     }
-    row("memory", format!("about {}", memory::shown(needed_bytes(problem, &scales))));
+    let grows = if problem.images == Images::Auto { " to begin with" } else { "" };
+    row("memory", format!("about {}{grows}", memory::shown(needed_bytes(problem, &scales))));
     let estimate = Estimate::of(problem, &scales);
     let seconds = estimate.processor_seconds(loaded, problem, &scales);
     row("time", format!("about {} of one processor, by a measured step", duration(seconds)));

@@ -210,6 +210,12 @@ impl Loaded {
                 Err(e) => wrong.push(self.text.locate(e.within(&format!("custom_terms[{k}]")))),
             }
         }
+        let named =
+            |term: &Arc<dyn CustomEnergy>| self.config.custom_terms.iter().any(|name| name.as_str() == term.name());
+        if let Some(unnamed) = self.custom.iter().find(|term| !named(term)) {
+            let message = format!("it does not name {}, which the program gives", quoted(unnamed.name()));
+            wrong.push(self.text.locate(Error::invalid("custom_terms", message)));
+        }
         if !wrong.is_empty() {
             return Err(Error::several(wrong));
         }

@@ -1,9 +1,9 @@
 //! What rates are asked for.
 
 use super::schema::names_schema;
-use crate::rates::{RateSettings, Theory};
+use crate::rates::{RateSettings, Theory, checked_damping, checked_g_factor, checked_temperature};
 use crate::units::Temperature;
-use crate::words::{nearest, number, quoted};
+use crate::words::{nearest, quoted};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Error, MapAccess, SeqAccess, Visitor};
@@ -14,9 +14,6 @@ use std::fmt;
 
 /// Most temperatures of a range.
 const MOST: usize = 100_000;
-/// Lowest and highest temperature that are taken for meant (K).
-const COLDEST_K: f64 = 1e-9;
-const HOTTEST_K: f64 = 1e9;
 
 /// `"rates": {"temperatures": ["300 K"], "damping": 0.1, "g_factor": 2.0, "theory": ["htst", "langer"]}`.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
@@ -73,22 +70,6 @@ fn all_theories() -> Vec<Theory> {
     Theory::ALL.to_vec()
 }
 
-/// The damping, if it can be one.
-pub fn checked_damping(x: f64) -> Result<f64, String> {
-    match x.is_finite() && x >= 0.0 {
-        true => Ok(x),
-        false => Err(format!("found {}, but a damping is 0 or greater, such as 0.1", number(x))),
-    }
-}
-
-/// The g factor, if it can be one.
-pub fn checked_g_factor(x: f64) -> Result<f64, String> {
-    match x.is_finite() && x > 0.0 {
-        true => Ok(x),
-        false => Err(format!("found {}, but a g factor is greater than 0, such as 2.0", number(x))),
-    }
-}
-
 /// The theory of this name.
 pub fn theory(name: &str) -> Result<Theory, String> {
     let names = || Theory::ALL.iter().map(|t| t.name());
@@ -97,16 +78,6 @@ pub fn theory(name: &str) -> Result<Theory, String> {
         let known: Vec<&str> = names().collect();
         format!("unknown theory {}{hint} (known theories: {})", quoted(name), known.join(", "))
     })
-}
-
-/// A temperature that a rate can have.
-pub fn checked_temperature(t: Temperature) -> Result<Temperature, String> {
-    match (COLDEST_K..=HOTTEST_K).contains(&t.0) {
-        true => Ok(t),
-        false => {
-            Err(format!("found {t}, but a temperature here is {COLDEST_K:e} K at least and {HOTTEST_K:e} K at most"))
-        }
-    }
 }
 
 fn damping<'de, D: Deserializer<'de>>(d: D) -> Result<f64, D::Error> {

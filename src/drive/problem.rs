@@ -3,6 +3,7 @@
 use super::Scales;
 use crate::control::Control;
 use crate::energy::{Evaluator, Hamiltonian};
+use crate::error::{Error, Result};
 use crate::landscape::Effort;
 use crate::optimise::{Implicit, OptimiserSpec};
 use crate::path::guess::{GuessSpec, NoiseSpec};
@@ -103,6 +104,22 @@ impl Problem {
         StateContext { sense: self.sense, ..scales.states(&self.hamiltonian) }
     }
 
+    /// An error where an end, the number of images or what is asked of rates is none that a run can have.
+    pub(super) fn check(&self) -> Result<()> {
+        let sites = self.hamiltonian.sites();
+        of_so_many_sites(sites, "initial", &self.initial)?;
+        of_so_many_sites(sites, "final_state", &self.final_state)?;
+        if let Images::Count(n) = self.images {
+            let fits = n.checked_mul(24 * sites).is_some_and(|bytes| isize::try_from(bytes).is_ok());
+            if n < 3 || !fits {
+                let message =
+                    format!("found {n}, but a path has 3 images or more, both ends counted, that memory holds");
+                return Err(Error::invalid("images", message));
+            }
+        }
+        self.rates.as_ref().map_or(Ok(()), |rates| rates.check(sites).map_err(|e| e.within("rates")))
+    }
+
     /// What tells it from other problems: its energies, states and settings.
     pub(super) fn fingerprint(&self) -> Fingerprint {
         let h = &self.hamiltonian;
@@ -122,6 +139,14 @@ impl Problem {
     /// Whether the maxima are followed to their saddles.
     pub fn seeks_saddles(&self) -> bool {
         self.refine || self.neb.climb
+    }
+}
+
+/// An error where a state is of another lattice.
+pub(super) fn of_so_many_sites(sites: usize, place: &str, spins: &Spins) -> Result<()> {
+    match spins.sites() {
+        n if n == sites => Ok(()),
+        n => Err(Error::invalid(place, format!("found {n} spins, but the lattice has {sites} sites"))),
     }
 }
 

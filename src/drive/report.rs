@@ -12,6 +12,7 @@ use crate::energy::Evaluator;
 use crate::landscape::{Doubt, Effort, Minimum, Pass, Saddle};
 use crate::linalg::slab;
 use crate::path::{Path, RESOLVED, is_within};
+use crate::record::Count;
 use crate::spins::Spins;
 use crate::stationary::{LOWER, RELAXED, Relaxed, Spectrum, relax_to_minimum};
 use crate::threads::{MADE, apiece};
@@ -26,6 +27,8 @@ const PROFILE: usize = 16;
 pub struct Prepared<'a> {
     pub problem: &'a Problem,
     pub started: Instant,
+    /// In it.
+    pub evaluated: Count,
     pub ends: &'a [Relaxed; 2],
     pub warnings: &'a [String],
 }
@@ -44,7 +47,7 @@ impl Prepared<'_> {
     fn work(&self, iterations: usize) -> Work {
         Work {
             iterations,
-            force_evaluations: self.problem.control.evaluations(),
+            force_evaluations: self.evaluated.evaluations,
             seconds: self.problem.made_in_s + self.started.elapsed().as_secs_f64(),
             threads: rayon::current_num_threads(),
         }

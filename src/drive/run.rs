@@ -16,6 +16,7 @@ use crate::landscape::{Doubt, Landscape, Minimum, Pass};
 use crate::path::guess::{FirstGuess, GuessContext, Rotation};
 use crate::path::is_within;
 use crate::rates::LEAST_BARRIER;
+use crate::record::Count;
 use crate::sphere::SAME;
 use crate::spins::Spins;
 use crate::stationary::{ALIKE, LOWER, RELAXED, Relaxed, both_by_factors, relax_to_minimum};
@@ -50,6 +51,7 @@ pub(super) const WORTH: f64 = 1.2;
 /// # Ok::<(), spinneb::error::Error>(())
 /// ```
 pub fn run(problem: &Problem, observer: &mut dyn Observer) -> Result<Outcome> {
+    problem.check()?;
     problem.control.recorder().begin(|| problem.fingerprint());
     // on a thread of the pool, so that it is not left and entered again for every band
     problem.control.relied_on(rayon::scope(|_| Run::prepare(problem, observer)?.finish()))
@@ -59,6 +61,8 @@ pub(super) struct Run<'a, 'o> {
     pub(super) problem: &'a Problem,
     pub(super) observer: &'o mut dyn Observer,
     pub(super) started: Instant,
+    /// What was evaluated before it.
+    pub(super) before: Count,
     pub(super) ends: [Relaxed; 2],
     pub(super) scales: Scales,
     pub(super) axes: Vec<Vector>,
@@ -77,6 +81,7 @@ impl<'a, 'o> Run<'a, 'o> {
     pub(super) fn prepare(problem: &'a Problem, observer: &'o mut dyn Observer) -> Result<Run<'a, 'o>> {
         let started = Instant::now();
         let h = problem.evaluator();
+        let before = h.evaluated();
         observer.stage("relaxing the ends");
         let mut warnings = Vec::new();
         let given = [&problem.initial, &problem.final_state];
@@ -106,6 +111,7 @@ impl<'a, 'o> Run<'a, 'o> {
             problem,
             observer,
             started,
+            before,
             ends,
             scales,
             axes,
@@ -178,7 +184,8 @@ impl<'a, 'o> Run<'a, 'o> {
             let below = if proven { (1.0 - LOWER) * best.seen_mev() } else { f64::INFINITY };
             // and what may be lower takes no more work than all that led to it
             if proven && self.most_evaluations == usize::MAX {
-                self.most_evaluations = 2 * self.problem.evaluator().evaluated().evaluations;
+                let now = self.problem.evaluator().evaluated();
+                self.most_evaluations = (now + self.evaluated()).evaluations;
             }
             if next.barrier_mev(scale) > below.min(WORTH * best.seen_mev()) {
                 others.push(next);
@@ -225,7 +232,13 @@ impl<'a, 'o> Run<'a, 'o> {
 
     /// How many evaluations of single states a band may take with all that is done for it, all that were made before counted.
     pub(super) fn allowed(&self, band: &Band) -> usize {
-        self.problem.neb.max_evaluations.saturating_mul(band.images()).min(self.most_evaluations)
+        let own = self.problem.neb.max_evaluations.saturating_mul(band.images());
+        self.before.evaluations.saturating_add(own).min(self.most_evaluations)
+    }
+
+    /// What it has evaluated so far.
+    pub(super) fn evaluated(&self) -> Count {
+        self.problem.evaluator().evaluated().since(self.before)
     }
 
     /// How many are left of them.
@@ -239,7 +252,13 @@ impl<'a, 'o> Run<'a, 'o> {
     }
 
     fn prepared(&self) -> Prepared<'_> {
-        Prepared { problem: self.problem, started: self.started, ends: &self.ends, warnings: &self.warnings }
+        Prepared {
+            problem: self.problem,
+            started: self.started,
+            evaluated: self.evaluated(),
+            ends: &self.ends,
+            warnings: &self.warnings,
+        }
     }
 
     /// Ends that are one minimum turned about a symmetry axis: the rigid turn between them costs nothing.

@@ -99,7 +99,7 @@ impl<'a> Run<'a, '_> {
     /// So many times the work that is little, or as much as there was.
     fn worth(&self, times: f64) -> Count {
         let h = self.problem.evaluator();
-        let own = h.evaluated();
+        let own = self.evaluated();
         let little = |of: f64, one: f64| (times * of / one) as usize;
         Count {
             evaluations: little(SPINS, h.sites() as f64).max(own.evaluations),
@@ -160,6 +160,7 @@ impl<'a> Run<'a, '_> {
             warnings: Vec::new(),
             land,
             minima,
+            before: self.before,
             most_evaluations: self.most_evaluations,
         };
         run.axis = turning_axis(run.problem, &run.ends[0].spins, &run.ends[1].spins, &run.context());

@@ -117,6 +117,10 @@ impl EnergyTerm for Anisotropy {
         AnisotropySpec::NAME
     }
 
+    fn sites(&self) -> Option<usize> {
+        Some(self.k.len())
+    }
+
     fn reference_mev(&self) -> f64 {
         -self.k.iter().chain(&self.k2).map(|k| k.max(0.0)).sum::<f64>()
     }

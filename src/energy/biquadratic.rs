@@ -91,6 +91,10 @@ impl EnergyTerm for Biquadratic {
         BiquadraticSpec::NAME
     }
 
+    fn sites(&self) -> Option<usize> {
+        Couplings::sites(&self.families)
+    }
+
     fn reference_mev(&self) -> f64 {
         self.bonds().map(|(_, b)| -b.max(0.0)).sum()
     }

@@ -12,6 +12,11 @@ pub struct Couplings {
 }
 
 impl Couplings {
+    /// Of how many sites these are, if of any.
+    pub fn sites(all: &[Couplings]) -> Option<usize> {
+        all.first().map(|couplings| couplings.mev.len())
+    }
+
     /// None yet, on these families of a lattice of so many sites.
     pub fn none(families: Vec<BondFamily>, sites: usize) -> Vec<Couplings> {
         families.into_iter().map(|family| Couplings { family, mev: vec![0.0; sites] }).collect()

@@ -118,6 +118,10 @@ impl EnergyTerm for CubicAnisotropy {
         CubicAnisotropySpec::NAME
     }
 
+    fn sites(&self) -> Option<usize> {
+        Some(self.k.len())
+    }
+
     fn reference_mev(&self) -> f64 {
         self.k.iter().map(|k| k.min(0.0) / 3.0).sum()
     }

@@ -227,6 +227,10 @@ impl EnergyTerm for Dmi {
         DmiSpec::NAME
     }
 
+    fn sites(&self) -> Option<usize> {
+        Couplings::sites(&self.families)
+    }
+
     fn reference_mev(&self) -> f64 {
         0.0
     }

@@ -177,6 +177,10 @@ impl EnergyTerm for Exchange {
         ExchangeSpec::NAME
     }
 
+    fn sites(&self) -> Option<usize> {
+        Couplings::sites(&self.families)
+    }
+
     fn reference_mev(&self) -> f64 {
         -self.families.iter().flat_map(|c| &c.mev).map(|j| j.abs()).sum::<f64>()
     }

@@ -206,6 +206,10 @@ impl EnergyTerm for FourSpin {
         FourSpinSpec::NAME
     }
 
+    fn sites(&self) -> Option<usize> {
+        Some(self.starts.len() - 1)
+    }
+
     fn reference_mev(&self) -> f64 {
         -self.products.iter().map(|p| p.mev).sum::<f64>()
     }

@@ -47,8 +47,14 @@ pub struct Hamiltonian {
 const PARALLEL: f64 = 1e-6;
 
 impl Hamiltonian {
-    /// The sum of `terms` on `lattice`.
+    /// The sum of `terms` on `lattice`; an error where one is of another number of sites, or two reach from all sites to all.
     pub fn new(lattice: &Lattice, terms: Vec<Box<dyn EnergyTerm>>) -> Result<Hamiltonian> {
+        for term in &terms {
+            if let Some(found) = term.sites().filter(|n| *n != lattice.sites) {
+                let message = format!("a term of {found} sites on a lattice of {}", lattice.sites);
+                return Err(Error::invalid(term.name(), message));
+            }
+        }
         let mut long = terms.iter().enumerate().filter(|(_, t)| t.coupling().pairs().is_some());
         let (long, second) = (long.next().map(|(k, _)| k), long.next());
         if let (Some(first), Some((_, second))) = (long, second) {

@@ -110,6 +110,9 @@ pub trait EnergyTerm: Debug + Send + Sync {
     /// The name it has in configs and results.
     fn name(&self) -> &str;
 
+    /// Of how many sites it is; nothing where it fits any lattice.
+    fn sites(&self) -> Option<usize>;
+
     /// Energy of the reference state (meV), a constant.
     fn reference_mev(&self) -> f64;
 

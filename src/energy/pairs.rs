@@ -310,6 +310,11 @@ impl EnergyTerm for Pairs {
         PairsSpec::NAME
     }
 
+    fn sites(&self) -> Option<usize> {
+        let rest = || self.rest.first().map(|(_, couplings)| couplings.mev.len());
+        self.exchange.sites().or(self.dmi.sites()).or_else(rest)
+    }
+
     fn reference_mev(&self) -> f64 {
         self.exchange.reference_mev()
     }

@@ -85,6 +85,10 @@ impl EnergyTerm for Zeeman {
         ZeemanSpec::NAME
     }
 
+    fn sites(&self) -> Option<usize> {
+        Some(self.b.len())
+    }
+
     fn reference_mev(&self) -> f64 {
         -self.b.iter().sum::<f64>()
     }

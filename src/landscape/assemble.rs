@@ -28,8 +28,9 @@ pub struct Assembled {
 
 impl Assembled {
     /// A relaxed path over the same stops, where neighbouring images of a stretch are farther apart than that (rad, any spin) with
-    /// another between each two of it; None where none are. Over a flat valley the geodesic is shorter than the way: a wall is somewhere
-    /// else at once, and has to go there.
+    /// another between each two of it that are more than half as far apart; None where none are. Over a flat valley the geodesic is
+    /// shorter than the way: a wall is somewhere else at once, and has to go there. Images beside a wide gap slide off it, so that to
+    /// fill the gap alone does not do.
     pub fn finer(&self, path: &Path, apart: f64) -> Option<Assembled> {
         let ends: Vec<usize> =
             std::iter::once(0).chain(self.stops.iter().copied()).chain([path.images() - 1]).collect();
@@ -37,7 +38,7 @@ impl Assembled {
         for stretch in ends.windows(2) {
             let own: Vec<Spins> = (stretch[0]..=stretch[1]).map(|k| path.spins(k)).collect();
             let own = Path::new(&own);
-            let own = if own.largest_rotation() > apart { own.doubled() } else { own };
+            let own = if own.largest_rotation() > apart { own.halved(0.5 * apart) } else { own };
             row.extend((1..own.images()).map(|k| own.spins(k)));
             stops.push(row.len() - 1);
         }

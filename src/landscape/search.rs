@@ -39,7 +39,7 @@ pub enum Effort {
     None,
     /// Until 8 searches in a row brought no news.
     Quick,
-    /// Until 24 searches in a row brought no news, 40 once a saddle was found.
+    /// Until 24 searches in a row brought no news, 40 once a saddle was found; on films and crystals 100.
     #[default]
     Normal,
     /// Until 400 searches in a row brought no news: on soft films one in sixty leads lower.
@@ -47,20 +47,21 @@ pub enum Effort {
 }
 
 impl Effort {
-    /// So many searches in a row without news end a search.
-    fn quiet(self, found: bool) -> usize {
-        match (self, found) {
-            (Effort::None, _) => 0,
-            (Effort::Quick, _) => 8,
-            (Effort::Normal, false) => 24,
-            (Effort::Normal, true) => 40,
-            (Effort::Thorough, _) => 400,
+    /// So many searches in a row without news end a search; a lattice that is no row has more ways out of a minimum than a row has.
+    fn quiet(self, found: bool, is_row: bool) -> usize {
+        match (self, found, is_row) {
+            (Effort::None, ..) => 0,
+            (Effort::Quick, ..) => 8,
+            (Effort::Normal, _, false) => 100,
+            (Effort::Normal, false, true) => 24,
+            (Effort::Normal, true, true) => 40,
+            (Effort::Thorough, ..) => 400,
         }
     }
 
     /// As many times as much work may it do as `normal` as it waits longer for news, or as much.
     pub fn works(self) -> usize {
-        (self.quiet(true) / Effort::Normal.quiet(true)).max(1)
+        (self.quiet(true, true) / Effort::Normal.quiet(true, true)).max(1)
     }
 
     /// And so many for each pass that is known, where all are looked for.
@@ -111,8 +112,8 @@ impl Aim {
     /// So many searches in a row without news end the search.
     fn quiet(self, effort: Effort, found: bool, land: &Landscape) -> usize {
         match self {
-            Aim::Route(..) => effort.quiet(found),
-            Aim::All(_) => effort.quiet(true).max(effort.a_pass() * land.passes_below(self.top_mev(land))),
+            Aim::Route(..) => effort.quiet(found, land.evaluator().lattice().is_row()),
+            Aim::All(_) => effort.quiet(true, true).max(effort.a_pass() * land.passes_below(self.top_mev(land))),
         }
     }
 }

@@ -52,6 +52,9 @@ impl Selection {
     /// The chosen indices, each below `count`; `what` names them in the error.
     pub fn indices(&self, count: usize, what: &str) -> Result<Vec<usize>> {
         match self {
+            Selection::List(list) if list.is_empty() => {
+                Err(Error::invalid("", format!("found an empty list, which chooses no {what}")))
+            }
             Selection::List(list) => {
                 let mut seen = vec![false; count];
                 for (k, &i) in list.iter().enumerate() {

@@ -1,6 +1,6 @@
 //! More, fewer or other images on the same curve: neighbours are joined by each spin's great circle.
 
-use super::Path;
+use super::{Path, largest_angle};
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Direction, slerp};
 use crate::threads::{MADE, apiece};
@@ -18,10 +18,26 @@ impl Path {
 
     /// A new image in the middle of every interval.
     pub fn doubled(&self) -> Path {
-        let count = 2 * self.images() - 1;
-        Path::build(count, self.sites(), |k, out| match k % 2 {
-            0 => out.copy_from_slice(self.image(k / 2)),
-            _ => blend(self.image(k / 2), self.image(k / 2 + 1), 0.5, out),
+        self.with_middles(|_| true)
+    }
+
+    /// A new image in the middle of every interval in which any spin turns by more than that (rad).
+    pub fn halved(&self, turns: f64) -> Path {
+        self.with_middles(|k| largest_angle(self.image(k), self.image(k + 1)) > turns)
+    }
+
+    /// A new image in the middle of such intervals.
+    fn with_middles(&self, of: impl Fn(usize) -> bool) -> Path {
+        let mut halves = Vec::new();
+        for k in 0..self.images() {
+            halves.push(2 * k);
+            if k + 1 < self.images() && of(k) {
+                halves.push(2 * k + 1);
+            }
+        }
+        Path::build(halves.len(), self.sites(), |k, out| match (halves[k] / 2, halves[k] % 2) {
+            (k, 0) => out.copy_from_slice(self.image(k)),
+            (k, _) => blend(self.image(k), self.image(k + 1), 0.5, out),
         })
     }
 
@@ -55,5 +71,34 @@ pub fn blend(a: &[f64], b: &[f64], t: f64, out: &mut [f64]) {
     let mut out = ComponentsMut::new(out);
     for i in 0..a.sites() {
         out.set(i, slerp(a.get(i), b.get(i), t, Direction::X));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::path::Path;
+    use crate::spins::Spins;
+
+    /// One spin at such angles in the xz plane.
+    fn path(angles: &[f64]) -> Path {
+        let at = |a: &f64| Spins::from_vectors(&[[libm::sin(*a), 0.0, libm::cos(*a)]]).unwrap();
+        Path::new(&angles.iter().map(at).collect::<Vec<_>>())
+    }
+
+    fn angles(path: &Path) -> Vec<f64> {
+        (0..path.images()).map(|k| libm::atan2(path.image(k)[0], path.image(k)[2])).collect()
+    }
+
+    #[test]
+    fn images_are_added_in_the_middle_of_all_intervals_or_of_the_wide_ones() {
+        let close = |path: &Path, wanted: &[f64]| {
+            let found = angles(path);
+            found.len() == wanted.len() && found.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-14)
+        };
+        let uneven = path(&[0.0, 0.2, 1.2, 2.0]);
+        assert!(close(&uneven.doubled(), &[0.0, 0.1, 0.2, 0.7, 1.2, 1.6, 2.0]));
+        assert!(close(&uneven.halved(0.5), &[0.0, 0.2, 0.7, 1.2, 1.6, 2.0]));
+        assert!(close(&uneven.halved(0.9), &[0.0, 0.2, 0.7, 1.2, 2.0]));
+        assert_eq!(uneven.halved(1.1), uneven);
     }
 }

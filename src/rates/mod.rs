@@ -50,7 +50,7 @@ pub use growth::growth_rate;
 pub use passage::{TEN_YEARS_S, blocking_temperature, first_passage, passages};
 pub use rate::{Crossing, LEAST_BARRIER, Prefactor, Regime, Row, SaddleRate, Way, refused, saddle_rates};
 pub use refusal::{Refusal, UnknownModes};
-pub use settings::{RateSettings, Theory};
+pub use settings::{RateSettings, Theory, checked_damping, checked_g_factor, checked_temperature};
 pub use sliding::{Pinning, Turn};
 pub use symmetry::{Equivalents, KEPT, KEPT_OR_EXCHANGED, equivalent_saddles, leads_back};
 pub use transition::{Orbits, TransitionRate, TransitionRow, transitions};

@@ -1,7 +1,13 @@
 //! What rates are asked for.
 
-use crate::units::HBAR;
+use crate::error::{Error, Result};
+use crate::units::{HBAR, Temperature};
+use crate::words::number;
 use serde::{Deserialize, Serialize};
+
+/// Lowest and highest temperature that are taken for meant (K).
+const COLDEST_K: f64 = 1e-9;
+const HOTTEST_K: f64 = 1e9;
 
 /// A theory of rates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -42,6 +48,27 @@ pub struct RateSettings {
 }
 
 impl RateSettings {
+    /// An error where there are no rates of such settings for so many sites.
+    pub fn check(&self, sites: usize) -> Result<()> {
+        let at = |place: &str, found: std::result::Result<(), String>| found.map_err(|m| Error::invalid(place, m));
+        for (k, t) in self.temperatures_k.iter().enumerate() {
+            at(&format!("temperatures_k[{k}]"), checked_temperature(Temperature(*t)).map(drop))?;
+        }
+        at("damping", checked_damping(self.damping).map(drop))?;
+        at("g_factor", checked_g_factor(self.g_factor).map(drop))?;
+        let moments = &self.moments_mub;
+        if moments.len() != sites {
+            return at("moments_mub", Err(format!("found {} of {sites} sites", moments.len())));
+        }
+        let none = moments.iter().position(|n| !(n.is_finite() && *n > 0.0));
+        none.map_or(Ok(()), |i| {
+            at(
+                &format!("moments_mub[{i}]"),
+                Err(format!("found {}, but a moment is greater than 0", number(moments[i]))),
+            )
+        })
+    }
+
     /// γ/μ of each site in rad/s per meV: g/(ħ n) for n Bohr magnetons.
     pub fn gyration_per_s_mev(&self) -> Vec<f64> {
         self.moments_mub.iter().map(|n| 1e12 * self.g_factor / (HBAR * n)).collect()
@@ -60,6 +87,32 @@ impl RateSettings {
     /// Whether a theory is asked for.
     pub fn wants(&self, theory: Theory) -> bool {
         self.theories.contains(&theory)
+    }
+}
+
+/// The damping, if it can be one.
+pub fn checked_damping(x: f64) -> std::result::Result<f64, String> {
+    match x.is_finite() && x >= 0.0 {
+        true => Ok(x),
+        false => Err(format!("found {}, but a damping is 0 or greater, such as 0.1", number(x))),
+    }
+}
+
+/// The g factor, if it can be one.
+pub fn checked_g_factor(x: f64) -> std::result::Result<f64, String> {
+    match x.is_finite() && x > 0.0 {
+        true => Ok(x),
+        false => Err(format!("found {}, but a g factor is greater than 0, such as 2.0", number(x))),
+    }
+}
+
+/// A temperature that a rate can have.
+pub fn checked_temperature(t: Temperature) -> std::result::Result<Temperature, String> {
+    match (COLDEST_K..=HOTTEST_K).contains(&t.0) {
+        true => Ok(t),
+        false => {
+            Err(format!("found {t}, but a temperature here is {COLDEST_K:e} K at least and {HOTTEST_K:e} K at most"))
+        }
     }
 }
 

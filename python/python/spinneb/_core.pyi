@@ -47,6 +47,7 @@ class Config:
         progress: Callable[[dict[str, Any]], object] | None,
         recorded: tuple[str | None, bool, bool],
     ) -> Landscape: ...
+    def landscape_of(self, files: Mapping[str, bytes]) -> Landscape: ...
 
 @final
 class Outcome:

@@ -26,6 +26,8 @@ Config = Union[str, "os.PathLike[str]", Mapping[str, Any], System]
 #: True for a line that tells how far it is, or a function of what is known: stage, iteration, …
 Progress = Union[bool, Callable[[dict[str, Any]], object], None]
 Effort = Literal["none", "quick", "normal", "thorough"]
+#: in K, or quantities; one or several, or a range ``{"from": "2 K", "to": "4 K", "points": 3}``
+Temperatures = Union[float, str, Iterable[Union[float, str]], Mapping[str, Any]]
 #: the file of a first path of vectors
 _GUESS = "guess.npy"
 
@@ -69,7 +71,7 @@ def run(
     SpinnebError
         The computation cannot go on; an energy that is not a finite number, for example.
     KeyboardInterrupt
-        Ctrl-C, within a second.
+        Ctrl-C: within a second, but for lattices whose Hessian takes longer to factorise (50 × 50 × 50 sites: some 10 s).
     """
     core = _config(config, "run", set)
     place = _place(out, resume)
@@ -88,7 +90,7 @@ def barrier(
     images: int | None = None,
     relax_ends: bool | None = None,
     effort: Effort | None = None,
-    temperatures: float | str | Iterable[float | str] | None = None,
+    temperatures: Temperatures | None = None,
     out: str | os.PathLike[str] | None = None,
     threads: int | None = None,
     progress: Progress = None,
@@ -114,7 +116,7 @@ def barrier(
     effort
         How long lower passes are looked for.
     temperatures
-        For rates and lifetimes, ``result.rates``: numbers in K, or quantities; one or several.
+        For rates and lifetimes, ``result.rates``: numbers in K, or quantities; one or several, or a range (see :func:`rates`).
     out, threads, progress, force, resume
         As in :func:`run`.
     options
@@ -194,7 +196,7 @@ def landscape(
     effort: Effort | None = None,
     states: Sequence[AnyState] = (),
     groups: Mapping[str, Any] | None = None,
-    temperatures: float | str | Iterable[float | str] | None = None,
+    temperatures: Temperatures | None = None,
     out: str | os.PathLike[str] | None = None,
     threads: int | None = None,
     progress: Progress = None,
@@ -217,7 +219,7 @@ def landscape(
     groups
         Groups of minima for lifetimes, by name: ``{"up": {"axis": [0, 0, 1], "from": 0.5}}``.
     temperatures
-        For lifetimes: numbers in K, or quantities; one or several.
+        For lifetimes: numbers in K, or quantities; one or several, or a range (see :func:`rates`).
     out, threads, progress, set, force, resume
         As in :func:`run`.
     """
@@ -241,7 +243,7 @@ def landscape(
 
 def rates(
     result: Result,
-    temperatures: float | str | Iterable[float | str],
+    temperatures: Temperatures,
     *,
     damping: float | None = None,
     g_factor: float | None = None,
@@ -254,7 +256,7 @@ def rates(
     result
         A run; its moments say how fast spins precess.
     temperatures
-        Numbers in K, or quantities; one or several.
+        Numbers in K, or quantities; one or several, or a range ``{"from": "2 K", "to": "4 K", "points": 3}``.
     damping
         Gilbert damping; if left out, that of the result's config, else 0.1.
     g_factor
@@ -336,9 +338,18 @@ def _recording(place: str | None) -> Iterator[None]:
         raise
 
 
-def _kelvin(temperatures: float | str | Iterable[float | str]) -> list[str]:
-    several = [temperatures] if np.ndim(temperatures) == 0 else temperatures  # type: ignore[arg-type]
-    return [value if isinstance(value, str) else f"{float(value)!r} K" for value in several]  # type: ignore[arg-type,union-attr]
+def _kelvin(temperatures: Temperatures) -> list[str] | dict[str, Any]:
+    if isinstance(temperatures, Mapping):
+        return dict(temperatures)
+    several: list[Any]
+    try:
+        several = [temperatures] if isinstance(temperatures, str) else list(temperatures)  # type: ignore[arg-type]
+    except TypeError:
+        several = [temperatures]
+    try:
+        return [value if isinstance(value, str) else f"{float(value)!r} K" for value in several]
+    except (TypeError, ValueError):
+        raise TypeError(f"temperatures are numbers in K, or quantities such as '300 K', found {temperatures!r}") from None
 
 
 class _telling:

@@ -6,9 +6,10 @@ import io
 import json
 import os
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from itertools import groupby
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -365,6 +366,13 @@ class Result:
 
 def _restored(files: Mapping[str, bytes], summary: dict[str, Any]) -> Result:
     """A result from its files."""
+    with _placed(files) as folder:
+        return Result(_core.read(folder), summary)
+
+
+@contextmanager
+def _placed(files: Mapping[str, bytes]) -> Iterator[str]:
+    """A folder that holds files for as long as it is needed."""
     import tempfile
 
     with tempfile.TemporaryDirectory(prefix="spinneb-") as folder:
@@ -372,7 +380,7 @@ def _restored(files: Mapping[str, bytes], summary: dict[str, Any]) -> Result:
             file = Path(folder, name)
             file.parent.mkdir(exist_ok=True)
             file.write_bytes(content)
-        return Result(_core.read(folder), summary)
+        yield folder
 
 
 class Relaxed:
@@ -479,6 +487,7 @@ class Rates:
         return list(self.result.summary["transition_rates"])
 
     def _rows(self, way: Way) -> list[dict[str, Any]]:
+        _one_of(way, Way, "way")
         found = [one["temperatures"] for one in self.transitions if one["direction"] == way]
         return list(found[0]) if found else []
 
@@ -511,6 +520,8 @@ class Rates:
         Where states slide freely they depend on temperature, as T to ``prefactor_temperature_exponent`` of :attr:`saddles`, and are
         those at ``prefactor_temperature_K`` there.
         """
+        _one_of(way, Way, "way")
+        _one_of(theory, Theory, "theory")
         found = [one[f"{theory}_prefactor_Hz"] for one in self.saddles if one["direction"] == way]
         return np.array([np.nan if value is None else value for value in found], dtype=np.float64)
 
@@ -654,6 +665,8 @@ class Landscape:
         needs("pandas")
         import pandas
 
+        if f"{table}.csv" not in self.files:
+            raise ValueError(f"there is no table {table!r} here" + (", as no temperatures were given" if table == "lifetimes" else ""))
         return pandas.read_csv(io.BytesIO(self.files[f"{table}.csv"]))
 
     def graph(self) -> Any:
@@ -666,7 +679,9 @@ class Landscape:
     def save(self, folder: str | os.PathLike[str], *, force: bool = False) -> None:
         """Writes the files to a folder, as ``spinneb landscape`` does."""
         if self._core is None:
-            raise ValueError("this landscape was read from a folder, where its files are")
+            with _placed(self.files) as place:
+                config = _core.Config(None, self.files["config.json"].decode(), place, [], [], "landscape")
+            self._core = config.landscape_of(self.files)
         self._core.save(os.fspath(folder), force)
 
     def _repr_html_(self) -> str:
@@ -679,6 +694,12 @@ class Landscape:
         told = self.summary
         each = (("minima", told["minima"], told["kinds_of_minima"]), ("saddles", told["saddles"], told["kinds_of_saddles"]))
         return f"<Landscape {told['name']}: " + ", ".join(f"{n} {what} of {kinds} kind{'s' * (kinds != 1)}" for what, n, kinds in each) + ">"
+
+
+def _one_of(word: str, words: Any, name: str) -> None:
+    """An error where a word is none of a Literal's."""
+    if word not in get_args(words):
+        raise ValueError(f"{name} is one of {', '.join(map(repr, get_args(words)))}, found {word!r}")
 
 
 def _number(text: str | None) -> Any:

@@ -61,9 +61,9 @@ class System:
             if not isinstance(term, (Term, Mapping)):
                 raise TypeError(f"an energy term is made by exchange(…), anisotropy(…) … or Term(…), found {term!r}")
         self.lattice = lattice
-        self.energy = [term for term in terms if not isinstance(term, Term)]
-        #: the terms of your own
-        self.terms = _named([term for term in terms if isinstance(term, Term)])
+        #: all terms, those of your own among them
+        self.energy = terms
+        _named(self.terms)
         self.material = material
         self.moment = moment
         self.Ms = Ms
@@ -71,6 +71,11 @@ class System:
         self.initial = initial
         self.final = final
         self.options = options
+
+    @property
+    def terms(self) -> list[Term]:
+        """The terms of your own."""
+        return [term for term in self.energy if isinstance(term, Term)]
 
     def config(self, initial: AnyState | None = None, final: AnyState | None = None, **options: Any) -> dict[str, Any]:
         """The system as a config, with these states and keys in place of its own."""
@@ -82,7 +87,7 @@ class System:
             "name": self.name,
             "material": material,
             "lattice": self.lattice,
-            "energy": self.energy,
+            "energy": [term for term in self.energy if not isinstance(term, Term)],
             "custom_terms": [term.name for term in self.terms] or None,
             "initial": as_state(self.initial if initial is None else initial, "initial"),
             "final": as_state(self.final if final is None else final, "final"),
@@ -105,7 +110,7 @@ class System:
         """The same system with other arguments: ``system.replaced(moment="2 mu_B")``."""
         own: dict[str, Any] = {
             "lattice": self.lattice,
-            "energy": [*self.energy, *self.terms],
+            "energy": self.energy,
             "material": self.material,
             "moment": self.moment,
             "Ms": self.Ms,
@@ -118,7 +123,7 @@ class System:
 
     def _repr_html_(self) -> str:
         rows: list[tuple[str, Any]] = [("lattice", self.lattice), ("material", self.material), ("moment", self.moment), ("Ms", self.Ms)]
-        rows += [("energy" if k == 0 else "", term) for k, term in enumerate([*self.energy, *self.terms])]
+        rows += [("energy" if k == 0 else "", term) for k, term in enumerate(self.energy)]
         rows += [("initial", _shown(self.initial)), ("final", _shown(self.final)), *self.options.items()]
         shown = [(key, value if isinstance(value, str) else repr(value)) for key, value in rows if value is not None]
         return paragraph(f"System {self.name or ''}") + table(shown)
@@ -130,8 +135,7 @@ class System:
             for key, value in [("material", self.material), ("moment", self.moment), ("Ms", self.Ms), ("name", self.name)]
             if value is not None
         ]
-        terms = [*map(repr, self.energy), *map(repr, self.terms)]
-        return f"System({', '.join(shown)}, energy=[{', '.join(terms)}])"
+        return f"System({', '.join(shown)}, energy={self.energy!r})"
 
 
 def _shown(state: AnyState | None) -> Any:
@@ -139,13 +143,12 @@ def _shown(state: AnyState | None) -> Any:
     return state if state is None or isinstance(state, Mapping) else f"vectors of shape {np.shape(state)}"
 
 
-def _named(terms: list[Term]) -> list[Term]:
-    """Each with a name of its own."""
+def _named(terms: list[Term]) -> None:
+    """An error where two have one name."""
     names = [term.name for term in terms]
     for name in names:
         if names.count(name) > 1:
             raise ValueError(f"two terms are called {name!r}: give each a name of its own, Term(…, name=…)")
-    return terms
 
 
 def as_guess(value: Guess | Mapping[str, Any] | ArrayLike) -> Any:

@@ -96,7 +96,10 @@ class Term:
     def _asked(self, found: Any, what: str) -> NDArray[Any]:
         if found is None:
             raise ValueError(f"the {what} of the term {self.name!r} returned nothing: does the function end with return?")
-        return np.asarray(found, dtype=np.float64)
+        numbers = np.asarray(found)
+        if numbers.dtype.kind == "c" or (numbers.dtype.kind == "f" and numbers.dtype.itemsize < 8):
+            raise ValueError(f"the {what} of the term {self.name!r} is of {numbers.dtype}, but energies need float64 (jax: jax_enable_x64)")
+        return numbers.astype(np.float64, copy=False)
 
     def _checked(self, found: NDArray[Any], shape: tuple[int, ...], what: str) -> NDArray[Any]:
         if found.shape != shape:

@@ -12,10 +12,11 @@ pub use found::{FoundMinimum, FoundSaddle, Kind, Survey};
 pub use lifetimes::{Lifetime, Lifetimes};
 pub use unseen::Unseen;
 
+use super::problem::of_so_many_sites;
 use super::run::Run;
 use super::{Observer, Problem};
 use crate::energy::recorded_each;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::field::Components;
 use crate::geometry::{Direction, vector};
 use crate::landscape::{Aim, Effort, KINDS, Minimum, Searched, Settings, search};
@@ -25,6 +26,7 @@ use crate::record::Count;
 use crate::spins::Spins;
 use crate::stationary::{RELAXED, relax_to_minimum};
 use crate::symmetry::Group;
+use crate::words::number;
 use std::collections::BTreeSet;
 
 /// Searches and joins follow each other so many times at most.
@@ -112,6 +114,7 @@ fn searched<T: Send>(
     observer: &mut dyn Observer,
     tell: impl FnOnce(Run, &Group, (usize, Unseen), Searched) -> Result<T> + Send,
 ) -> Result<T> {
+    asked.check()?;
     asked.problem.control.recorder().begin(|| asked.fingerprint());
     asked.problem.control.relied_on(rayon::scope(|_| {
         let mut run = Run::prepare(&asked.problem, observer)?;
@@ -125,6 +128,20 @@ fn searched<T: Send>(
 }
 
 impl SurveyProblem {
+    /// An error where a state, the window or what is asked of rates is none that a survey can have.
+    fn check(&self) -> Result<()> {
+        self.problem.check().map_err(|e| e.within("problem"))?;
+        let sites = self.problem.hamiltonian.sites();
+        for (k, seed) in self.seeds.iter().enumerate() {
+            of_so_many_sites(sites, &format!("seeds[{k}]"), seed)?;
+        }
+        if self.window_mev.is_nan() || self.window_mev < 0.0 {
+            let message = format!("found {}, but a window of energies is 0 or greater", number(self.window_mev));
+            return Err(Error::invalid("window_mev", message));
+        }
+        self.rates.as_ref().map_or(Ok(()), |rates| rates.check(sites).map_err(|e| e.within("rates")))
+    }
+
     fn fingerprint(&self) -> crate::record::Fingerprint {
         let SurveyProblem { problem, seeds, window_mev, effort, groups, rates, shares, images } = self;
         let print =

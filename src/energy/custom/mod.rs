@@ -117,6 +117,10 @@ impl EnergyTerm for Custom {
         self.energy.name()
     }
 
+    fn sites(&self) -> Option<usize> {
+        Some(self.sites)
+    }
+
     fn reference_mev(&self) -> f64 {
         0.0
     }

@@ -219,6 +219,10 @@ impl EnergyTerm for Magnetostatics {
         self.name
     }
 
+    fn sites(&self) -> Option<usize> {
+        Some(self.moments.len())
+    }
+
     fn reference_mev(&self) -> f64 {
         self.reference.iter().sum()
     }
