@@ -8,8 +8,9 @@
 //! a busy spell of the machine does not meet one size alone.
 
 use spinneb::band::Band;
+use spinneb::control::Control;
 use spinneb::drive::{Images, Outcome, Problem, Silent, run};
-use spinneb::energy::{Anisotropy, Exchange, Hamiltonian};
+use spinneb::energy::{Anisotropy, Evaluator, Exchange, Hamiltonian};
 use spinneb::geometry::Direction;
 use spinneb::landscape::{Effort, peaks};
 use spinneb::lattice::Chain;
@@ -139,7 +140,10 @@ fn saddle_solves(problem: &Problem, outcome: &Outcome) -> usize {
     band.evaluate();
     let c = 2.0 * anisotropy(outcome.path.sites());
     let top = peaks(&band, c).into_iter().next();
-    top.map_or(0, |top| refine((&problem.hamiltonian).into(), &top.m, &top.tau, top.floor_mev).factorisations)
+    let control = Control::default();
+    let h = Evaluator::new(&problem.hamiltonian, &control);
+    top.map(|top| refine(h, &top.m, &top.tau, top.floor_mev));
+    control.evaluated().hessians
 }
 
 /// Energy (meV) of the wall in the middle of the chain above the uniform state, by Newton's method on its angles:

@@ -49,12 +49,9 @@ impl Control {
         }
     }
 
-    /// What was found, unless something on the way cannot be relied on; a run that is stopped at its very end is finished.
+    /// What was found, unless it was to stop: what is stopped on its way may look like what there is none of.
     pub fn relied_on<T>(&self, found: Result<T>) -> Result<T> {
-        match self.fault.get() {
-            Some(_) => self.check().and(found),
-            None => found,
-        }
+        self.check().and(found)
     }
 
     /// Records in `keep`, and takes what an interrupted run has recorded there: a run goes on to the outcome that that would

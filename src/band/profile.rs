@@ -112,9 +112,10 @@ impl Profile {
         found
     }
 
-    /// The highest maximum inside the path, if there is one.
-    pub fn highest(&self) -> Option<Extremum> {
-        self.extrema().into_iter().filter(|x| x.is_maximum).max_by(|a, b| a.energy.total_cmp(&b.energy))
+    /// The highest maximum between image k and its neighbours, if there is one.
+    pub fn highest_beside(&self, k: usize) -> Option<Extremum> {
+        let near = self.extrema().into_iter().filter(|x| x.is_maximum && (x.interval == k || x.interval + 1 == k));
+        near.max_by(|a, b| a.energy.total_cmp(&b.energy))
     }
 }
 

@@ -3,19 +3,17 @@
 use super::outcome::MOVED_FAR_RAD;
 use crate::energy::Evaluator;
 use crate::spins::Spins;
-use crate::stationary::{ALIKE, Point, Relaxed, WayDown};
+use crate::stationary::{ALIKE, Point, Relaxed, Spectrum, WayDown};
 
-/// An end that stays as given.
-pub fn kept(h: Evaluator, spins: &Spins) -> Relaxed {
-    Relaxed {
-        spins: spins.clone(),
-        max_torque_mev: Point::at(h, spins.as_slice().to_vec()).max_torque_mev(),
-        steps: 0,
-        largest_rotation_rad: 0.0,
-        left: None,
-        converged: true,
-        spectrum: None,
-    }
+/// An end that stays as it is.
+pub fn kept(spins: &Spins, max_torque_mev: f64, spectrum: Option<Spectrum>) -> Relaxed {
+    let spins = spins.clone();
+    Relaxed { spins, max_torque_mev, steps: 0, largest_rotation_rad: 0.0, left: None, converged: true, spectrum }
+}
+
+/// The largest component of the force on a state (meV).
+pub fn torque_mev(h: Evaluator, spins: &Spins) -> f64 {
+    Point::at(h, spins.as_slice().to_vec()).max_torque_mev()
 }
 
 /// What a user should know of how an end relaxed.

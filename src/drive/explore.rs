@@ -5,6 +5,7 @@
 
 use super::Problem;
 use crate::field::Components;
+use crate::geometry::matrix::UNIT;
 use crate::geometry::{Direction, vector};
 use crate::path::guess::{
     Edge, Geodesic, GuessContext, GuessSpec, NoiseSpec, Rotation, Sweep, Ways, best_turn, natural,
@@ -109,8 +110,7 @@ fn rotation_axes(problem: &Problem, a: &Spins, b: &Spins) -> Vec<Direction> {
         return Vec::new();
     }
     let mut axes: Vec<Direction> = Vec::new();
-    let cartesian = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    for v in cartesian.iter().chain(problem.hamiltonian.symmetry_axes()) {
+    for v in UNIT.iter().chain(problem.hamiltonian.symmetry_axes()) {
         let Ok(axis) = Direction::new(*v) else { continue };
         let [p, q] = [a, b].map(|s| Components::new(s.as_slice()));
         let (angle, together) = (best_turn(a, b, axis), best_overlap(p, q, axis.vector()));
@@ -137,9 +137,8 @@ fn best_axis(problem: &Problem, ways: &Ways, cost: impl Fn(Direction) -> f64 + S
     if !ways.have_a_choice() {
         return Direction::X;
     }
-    let cartesian = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let oblique = h.symmetry_axes().iter().filter(|v| v.iter().all(|c| c.abs() < 1.0));
-    let candidates = cartesian.iter().chain(oblique).flat_map(|v| [*v, v.map(|c| -c)]);
+    let candidates = UNIT.iter().chain(oblique).flat_map(|v| [*v, v.map(|c| -c)]);
     let axes: Vec<Direction> = candidates.filter_map(|axis| Direction::new(axis).ok()).collect();
     let halfway = axes.par_iter().with_min_len(apiece(3 * h.sites(), MADE)).map(|axis| (cost(*axis), *axis));
     let mut best: Option<(f64, Direction)> = None;

@@ -60,7 +60,7 @@ impl<'a> FirstPath<'a> {
     /// 0: a saddle of index one; 1: nothing refined; 2: a saddle of higher index.
     pub fn rank(&self, c: f64) -> u8 {
         match self.stationary(c) {
-            Some(f) if f.refined.index <= 1 => 0,
+            Some(f) if f.refined.index() <= 1 => 0,
             None => 1,
             Some(_) => 2,
         }
@@ -71,10 +71,10 @@ impl<'a> FirstPath<'a> {
 pub fn rejection(c: &FirstPath, best: &FirstPath, scale: f64) -> RejectedPath {
     let found = c.stationary(scale);
     let barrier_mev = Some(c.followed_mev.unwrap_or(c.barrier_mev(scale)));
-    let negative_modes = found.map(|f| f.refined.index);
+    let negative_modes = found.map(|f| f.refined.index());
     let lower = c.followed_mev.map_or(0.0, |mev| best.barrier_mev(scale) - mev);
     let reason = match found {
-        Some(f) if f.refined.index > 1 => "its top is a saddle of higher index".to_string(),
+        Some(f) if f.refined.index() > 1 => "its top is a saddle of higher index".to_string(),
         Some(_) if lower > LOWER * best.barrier_mev(scale) => {
             format!("followed from end to end, it passes {lower:.1e} meV lower, but could not be proven")
         }

@@ -59,7 +59,7 @@ impl<'a> Run<'a, '_> {
             }
         }
         tried.sort_by(|p, q| p.peak_mev().total_cmp(&q.peak_mev()));
-        let scale = self.scales.stiffness_mev;
+        let scale = self.tools.scales.stiffness_mev;
         let (mut finished, mut lowest_barrier) = (0, f64::INFINITY);
         let mut kinds: Vec<String> = vec!["geodesic".into()];
         for c in &mut tried {
@@ -92,7 +92,7 @@ impl<'a> Run<'a, '_> {
 
     /// Relaxes a path, where it needs to be, until its top is a refined saddle of index one, leaving saddles of higher index sideways.
     pub(super) fn conclude(&mut self, c: &mut FirstPath<'a>) -> Result<()> {
-        let scale = self.scales.stiffness_mev;
+        let scale = self.tools.scales.stiffness_mev;
         c.band.wake();
         // on a film the saddle is found by its lowest mode, and from farther away than by a valley
         let mut relaxes = self.problem.hamiltonian.lattice().is_row();
@@ -118,7 +118,7 @@ impl<'a> Run<'a, '_> {
             let mut best: Option<Band<'a>> = None;
             for path in escapes(&c.band, found, scale) {
                 let mut band = Band::continued(self.problem.evaluator(), path, c.band.evaluations());
-                band.align(&self.axes);
+                band.align(&self.tools.axes);
                 band.evaluate();
                 let top = |b: &Band| b.energies_mev()[b.highest()];
                 if best.as_ref().is_none_or(|b| top(&band) < top(b) - ALIKE * scale) {
@@ -126,7 +126,7 @@ impl<'a> Run<'a, '_> {
                 }
             }
             let Some(band) = best else { break };
-            self.observer.stage(&format!("leaving a saddle of index {}", found.refined.index));
+            self.observer.stage(&format!("leaving a saddle of index {}", found.refined.index()));
             c.band = band;
             c.stop = Stop::NotFinite;
         }
@@ -135,7 +135,7 @@ impl<'a> Run<'a, '_> {
 
     /// The path's top. One inside the first or last interval is not resolved: the part of the path around it becomes finer.
     fn zoom(&mut self, c: &mut FirstPath<'a>) -> Result<Option<Peak>> {
-        let scale = self.scales.stiffness_mev;
+        let scale = self.tools.scales.stiffness_mev;
         let mut tops = peaks(&c.band, scale);
         for _ in 0..ZOOMS {
             let images = self.problem.images.asked_for().unwrap_or(c.band.images() + 8);
@@ -171,7 +171,7 @@ impl<'a> Run<'a, '_> {
         let coarsest = match self.problem.images {
             Images::Auto => {
                 let lattice = context.states.lattice;
-                let images = self.scales.images_between(lattice, moving_sites(a, b, lattice));
+                let images = self.tools.scales.images_between(lattice, moving_sites(a, b, lattice));
                 // a film's is looked at, and put together anew
                 let is_tried = limit < usize::MAX && !lattice.is_row() && images == LEAST_IMAGES;
                 if is_tried { COARSE + 2 } else { images + 2 }

@@ -5,14 +5,12 @@ use super::outcome::{Barrier, SaddlePoint};
 use super::relaxation::height;
 use super::{Problem, Verdict};
 use crate::band::Band;
-use crate::landscape::Minimum;
-use crate::landscape::{Doubt, PathEnd};
+use crate::landscape::{Doubt, Minimum, PathEnd};
 use crate::stationary::{ALIKE, LOWER};
 
 /// What a path shows.
 pub struct Seen<'a> {
     pub problem: &'a Problem,
-    pub band: &'a Band<'a>,
     pub saddles: &'a [SaddlePoint],
     /// Final above initial state (meV).
     pub above_final: f64,
@@ -31,7 +29,7 @@ impl Seen<'_> {
     /// Energy to climb, from the highest saddle or, where the path has an image above all of them, from that. The `doubts` are those
     /// about its saddles.
     pub fn judge(&self, c: &FirstPath, mut doubts: Vec<Doubt>) -> Judgement {
-        if self.is_flat() {
+        if self.is_flat(&c.band) {
             // what no saddle search could find or prove there does not count against it
             let barrier = Some(Barrier { forward_mev: 0.0, backward_mev: 0.0 });
             return Judgement { verdict: Verdict::FlatValley, barrier, doubts: Vec::new() };
@@ -41,8 +39,7 @@ impl Seen<'_> {
             return Judgement { verdict: Verdict::HigherIndex(c.stop), barrier: None, doubts };
         }
         let mut highest = self.saddles.iter().map(|s| s.above_initial_mev).fold(f64::NEG_INFINITY, f64::max);
-        let seen = self.band.energies_mev()[self.band.highest()] - self.band.energies_mev()[0];
-        let (ends, height) = (self.above_final.max(0.0), height(self.band));
+        let (seen, ends, height) = (c.top_mev(), self.above_final.max(0.0), height(&c.band));
         if seen > highest + LOWER * height && seen > ends + ALIKE * height {
             highest = seen;
             doubts.extend(self.problem.seeks_saddles().then_some(Doubt::HigherImage));
@@ -61,8 +58,8 @@ impl Seen<'_> {
     }
 
     /// Whether the path joins two proven minima and no image of it differs from the first by more than rounding.
-    fn is_flat(&self) -> bool {
-        let (h, path) = (self.band.hamiltonian(), self.band.path());
+    fn is_flat(&self, band: &Band) -> bool {
+        let (h, path) = (band.hamiltonian(), band.path());
         let rounding = h.rounding_mev();
         let level = |k: usize| h.difference_mev(path.image(k), path.image(0)).abs() <= rounding;
         self.problem.relax_ends
@@ -73,7 +70,7 @@ impl Seen<'_> {
 
     fn is_of_higher_index(&self, c: &FirstPath) -> bool {
         self.problem.seeks_saddles()
-            && c.found.as_ref().is_some_and(|f| f.refined.index > 1)
+            && c.found.as_ref().is_some_and(|f| f.refined.index() > 1)
             && self.saddles.iter().all(|s| s.negative_modes != Some(1))
     }
 }

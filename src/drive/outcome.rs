@@ -6,8 +6,7 @@ use crate::landscape::Effort;
 use crate::path::Path;
 use crate::rates::Rates;
 use crate::spins::Spins;
-use crate::stationary::FAR;
-use crate::stationary::Spectrum;
+use crate::stationary::{FAR, Spectrum};
 use serde::{Deserialize, Serialize};
 
 /// A finished run.

@@ -3,17 +3,14 @@
 use super::Verdict;
 use super::outcome::{Barrier, SaddlePoint, SearchReport};
 use crate::energy::Evaluator;
-use crate::landscape::Doubt;
-use crate::landscape::Peak;
-use crate::landscape::Saddle;
-use crate::landscape::{Minimum, Pass};
+use crate::landscape::{Doubt, Minimum, Pass, Peak, Saddle};
 use crate::linalg::slab;
 use crate::rates::{
     Equivalents, KEPT, Orbits, RateSettings, Rates, Refusal, SaddleRate, Theory, Turn, ZeroKind, ZeroModes,
-    equivalent_saddles, leads_back, refused, saddle_rates, transitions,
+    equivalent_saddles, leads_back, refused, transitions,
 };
 use crate::spins::Spins;
-use crate::stationary::{self, ALIKE, Refined, State};
+use crate::stationary::{ALIKE, Refined, Spectrum, State};
 use crate::symmetry::Group;
 use crate::units::K_B;
 
@@ -123,11 +120,8 @@ impl Slides {
 }
 
 fn proven(known: &Known, group: &Group, link: &Pass, settings: &RateSettings) -> [SaddleRate; 2] {
-    let h = known.h;
-    let doubt = link.doubt(h).map(|doubt| doubt.to_string());
-    let m = &link.saddle.refined.state.m;
-    let number = known.saddles.iter().position(|s| s.spins.as_slice() == m).unwrap_or(0);
-    saddle_rates(h, number, &link.crossing(group, doubt.as_deref()), settings)
+    let number = known.saddles.iter().position(|s| s.spins.as_slice() == link.saddle.spins()).unwrap_or(0);
+    link.rates(known.h, number, group, settings)
 }
 
 /// Without a proof there is no minimum to leave: the barriers are those above the ends.
@@ -177,27 +171,15 @@ pub fn stored_rates(
 /// A stored saddle between two minima, its descending mode found anew.
 fn stored_link(h: Evaluator, saddle: &SaddlePoint, beside: &[Minimum]) -> Pass {
     let state = State::at(h, saddle.spins.as_slice().to_vec());
-    let (before, after) = (beside[0].clone(), beside[1].clone());
-    let towards = |end: &Minimum| h.difference_mev(&state.m, end.spins.as_slice());
-    let fallen_mev = [towards(&before), towards(&after)];
-    let spectrum = stationary::Spectrum::of(h, &state, 0);
+    let spectrum = Spectrum::of(h, &state, 0);
     let lowest = state.lowest_mode(h);
     let valley = lowest.as_ref().map_or_else(|| vec![0.0; state.m.len()], |mode| state.field(&mode.vector));
     let mut tau = valley.clone();
     slab::normalise(&mut tau);
     let (s, image) = (saddle.reaction_coordinate_rad, saddle.image);
     let top = Peak { m: state.m.clone(), tau, energy_mev: state.energy_mev, s, image, floor_mev: f64::NEG_INFINITY };
-    let index = spectrum.negative;
-    let refined = Refined { arrived: true, state, valley, factorisations: 0, index, spectrum: Some(spectrum.clone()) };
-    Pass {
-        saddle: Saddle::new(top, refined),
-        spectrum,
-        before,
-        after,
-        fallen_mev,
-        ways: Default::default(),
-        given: false,
-    }
+    let saddle = Saddle::new(top, Refined { state, valley, spectrum: Some(spectrum) });
+    Pass { given: false, ..Pass::between(h, saddle, [beside[0].clone(), beside[1].clone()]) }
 }
 
 /// That some numbers are rough.

@@ -3,8 +3,7 @@
 use super::outcome::HistoryRow;
 use super::{NebSettings, Observer, Scales, Silent, Stop};
 use crate::band::{Band, Laplacian, Sweep};
-use crate::energy::Evaluator;
-use crate::energy::Stored;
+use crate::energy::{Evaluator, Stored};
 use crate::error::Result;
 use crate::geometry::Vector;
 use crate::landscape::{Bands, are_counts, are_finite};
@@ -47,23 +46,18 @@ pub enum Goal {
 
 /// What a relaxation works with.
 pub struct Relaxation<'a> {
-    /// Settings of the run.
-    pub settings: &'a NebSettings,
+    /// The same in all relaxations of the run.
+    pub tools: &'a Tools<'a>,
     /// Let prominent maxima climb by the reversed force, where the method has springs.
     pub climb: bool,
-    /// Scales of the problem.
-    pub scales: Scales,
-    /// Symmetry axes, for the rotation gauge.
-    pub axes: &'a [Vector],
-    /// The preconditioner, for methods that follow no sweep.
-    pub laplacian: Option<&'a Laplacian>,
     /// One row an evaluation is appended.
     pub history: Vec<HistoryRow>,
     /// Who watches.
     pub observer: &'a mut dyn Observer,
 }
 
-/// What relaxes bands that nobody watches.
+/// What relaxes bands.
+#[derive(Clone)]
 pub struct Tools<'a> {
     /// Settings of the run.
     pub settings: &'a NebSettings,
@@ -77,15 +71,7 @@ pub struct Tools<'a> {
 
 impl Tools<'_> {
     fn relax(&self, band: &mut Band, goal: Goal, evaluations: usize) -> Result<()> {
-        let mut relaxation = Relaxation {
-            settings: self.settings,
-            climb: false,
-            scales: self.scales,
-            axes: &self.axes,
-            laplacian: self.laplacian.as_deref(),
-            history: Vec::new(),
-            observer: &mut Silent,
-        };
+        let mut relaxation = Relaxation { tools: self, climb: false, history: Vec::new(), observer: &mut Silent };
         let more = match self.settings.optimiser.member().follows() {
             Follows::Sweep => evaluations,
             _ => SLOWER * evaluations,
@@ -155,7 +141,7 @@ impl Relaxation<'_> {
             self.history.extend(end.rows.into_owned());
             return Ok(end.stop);
         }
-        self.observer.relaxing(goal, self.settings.tolerance);
+        self.observer.relaxing(goal, self.tools.settings.tolerance);
         let mut now = self.start(h, goal);
         if let Some(stand) = call.underway(|stand: Stand| stand.restored(band)) {
             self.history.extend(now.take_over(stand, band));
@@ -178,8 +164,8 @@ impl Relaxation<'_> {
     }
 
     fn start(&self, h: Evaluator, goal: Goal) -> Iterate {
-        let method = self.settings.optimiser.member();
-        let sweep = Sweep::new(self.scales.stiffness_mev);
+        let method = self.tools.settings.optimiser.member();
+        let sweep = Sweep::new(self.tools.scales.stiffness_mev);
         Iterate {
             optimiser: method.start(h.stiffness_mev()),
             sweep: if goal == Goal::Tight { sweep } else { sweep.roughly() },
@@ -198,20 +184,21 @@ impl Relaxation<'_> {
         limit: usize,
     ) -> Option<Stop> {
         let size = 3 * band.path().sites();
-        let tolerance = self.settings.tolerance;
-        self.align(band);
+        let Tools { settings, scales, axes, .. } = self.tools;
+        let tolerance = settings.tolerance;
+        band.align(axes);
         band.evaluate();
         let force = band.max_perpendicular_mev();
-        let enough = LOOSE * self.scales.stiffness_mev;
+        let enough = LOOSE * scales.stiffness_mev;
         if goal == Goal::Loose && (force < enough || self.top_stands(band, now, enough)) {
-            let rotation = force.min(enough) / self.scales.stiffness_mev;
+            let rotation = force.min(enough) / scales.stiffness_mev;
             self.record(band, rotation, 0);
             return Some(Stop::Converged { rotation, tolerance: LOOSE });
         }
         let climbing = self.climbing(band, goal);
-        let (rotation, products) = match self.settings.optimiser.member().follows() {
+        let (rotation, products) = match settings.optimiser.member().follows() {
             Follows::Sweep => {
-                let step = now.sweep.step(band, self.axes, direction);
+                let step = now.sweep.step(band, axes, direction);
                 (step.rotation, step.products)
             }
             follows => (self.along_forces(band, follows, &climbing, direction), 0),
@@ -247,22 +234,18 @@ impl Relaxation<'_> {
         let Some(before) = now.peak_mev.replace(peak) else { return false };
         let height = peak - (e[e.len() - 1] - e[0]).max(0.0);
         let perpendicular = band.perpendicular(top);
-        let lowered = slab::dot(perpendicular, perpendicular) / self.scales.stiffness_mev;
+        let lowered = slab::dot(perpendicular, perpendicular) / self.tools.scales.stiffness_mev;
         let relaxed = band.force(top) < enough || lowered < LOWERED * height;
         height > 0.0 && (peak - before).abs() < STILL * height && relaxed
-    }
-
-    fn align(&self, band: &mut Band) {
-        band.align(self.axes);
     }
 
     /// Writes what the methods that follow forces want to be shown; the rotation that still seems needed (rad).
     fn along_forces(&self, band: &Band, follows: Follows, climbing: &[usize], y: &mut [f64]) -> f64 {
         let slab = 3 * band.path().sites();
-        let Some(laplacian) = self.laplacian else { return f64::NAN };
+        let Some(laplacian) = &self.tools.laplacian else { return f64::NAN };
         laplacian.rotations(band, y);
         let rotation = y.chunks(slab).map(rotation_of).fold(0.0, f64::max);
-        let c = self.scales.stiffness_mev;
+        let c = self.tools.scales.stiffness_mev;
         if follows == Follows::Preconditioned {
             let shifts = band.equal_shifts();
             for k in 1..band.images() - 1 {
@@ -284,7 +267,7 @@ impl Relaxation<'_> {
         if goal == Goal::Loose || !self.climb {
             return Vec::new();
         }
-        if band.max_perpendicular_mev() > LOOSE * self.scales.stiffness_mev {
+        if band.max_perpendicular_mev() > LOOSE * self.tools.scales.stiffness_mev {
             return Vec::new();
         }
         prominent_maxima(band.energies_mev(), LOWER * height(band))

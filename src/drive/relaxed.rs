@@ -1,6 +1,6 @@
 //! A state relaxed by itself, with what it was before and what kind of state it is now.
 
-use super::ends::{judge_end, kept};
+use super::ends::{judge_end, torque_mev};
 use crate::energy::Evaluator;
 use crate::error::Result;
 use crate::landscape::Minimum;
@@ -45,7 +45,7 @@ pub fn relaxed_state(h: Evaluator, spins: &Spins, modes: usize, which: &str) -> 
     }
     Ok(RelaxedState {
         given_mev: h.energy_mev(spins.as_slice()),
-        given_torque_mev: kept(h, spins).max_torque_mev,
+        given_torque_mev: torque_mev(h, spins),
         minimum,
         relaxed,
         warnings,

@@ -6,32 +6,20 @@ use super::outcome::*;
 use super::places::{Place, in_order, nearest};
 use super::rates::{self, Known};
 use super::relaxation::{height, prominent_maxima};
+use super::run::Run;
 use super::{Partial, Problem, Verdict};
-use crate::band::{Band, Extremum, Profile};
+use crate::band::{Band, Profile};
 use crate::energy::Evaluator;
 use crate::landscape::{Doubt, Effort, Minimum, Pass, Saddle};
 use crate::linalg::slab;
 use crate::path::{Path, RESOLVED, is_within};
-use crate::record::Count;
 use crate::spins::Spins;
-use crate::stationary::{LOWER, RELAXED, Relaxed, Spectrum, relax_to_minimum};
+use crate::stationary::{LOWER, RELAXED, Spectrum, relax_to_minimum};
 use crate::threads::{MADE, apiece};
 use rayon::prelude::*;
-use std::time::Instant;
 
 /// Points of the profile in every interval.
 const PROFILE: usize = 16;
-
-/// What a run knew before its path.
-#[derive(Clone, Copy)]
-pub struct Prepared<'a> {
-    pub problem: &'a Problem,
-    pub started: Instant,
-    /// In it.
-    pub evaluated: Count,
-    pub ends: &'a [Relaxed; 2],
-    pub warnings: &'a [String],
-}
 
 /// What was proven of a path.
 pub struct Proof {
@@ -43,11 +31,11 @@ pub struct Proof {
     pub doubts: Vec<Doubt>,
 }
 
-impl Prepared<'_> {
+impl Run<'_, '_> {
     fn work(&self, iterations: usize) -> Work {
         Work {
             iterations,
-            force_evaluations: self.evaluated.evaluations,
+            force_evaluations: self.evaluated().evaluations,
             seconds: self.problem.made_in_s + self.started.elapsed().as_secs_f64(),
             threads: rayon::current_num_threads(),
         }
@@ -60,14 +48,14 @@ impl Prepared<'_> {
     }
 
     /// What is to be said, with this of the path.
-    fn warnings(&self, of_path: impl IntoIterator<Item = String>) -> Vec<String> {
+    fn told(&self, of_path: impl IntoIterator<Item = String>) -> Vec<String> {
         self.warnings.iter().cloned().chain(of_path).chain(self.problem.warnings.iter().cloned()).collect()
     }
 }
 
 /// The outcome of a path.
 pub fn outcome(
-    run: Prepared,
+    run: &Run,
     c: FirstPath,
     found: &[Saddle],
     proof: Proof,
@@ -80,7 +68,7 @@ pub fn outcome(
     let above_final = h.difference_mev(band.path().image(band.images() - 1), initial);
     let places = places_of(band.path(), &proof.links);
     let mut saddles = saddles(run.problem, band, found, &proof.links, &places);
-    let seen = Seen { problem: run.problem, band, saddles: &saddles, above_final, ends: &proof.ends };
+    let seen = Seen { problem: run.problem, saddles: &saddles, above_final, ends: &proof.ends };
     let Judgement { verdict, barrier, doubts } = seen.judge(&c, proof.doubts);
     // nothing is crossed in a flat valley
     let (saddles, links) = match verdict {
@@ -109,12 +97,12 @@ pub fn outcome(
     let of_rates = rates.iter().flat_map(|rates| rates::warnings(rates, &search, barrier));
     let images: Vec<usize> = saddles.iter().map(|saddle| saddle.image).collect();
     let lower = lower_maxima(band.energies_mev(), LOWER * height(band), &images);
-    let warnings = run.warnings(doubts.iter().map(Doubt::warning).chain(flat).chain(lower).chain(of_rates));
+    let warnings = run.told(doubts.iter().map(Doubt::warning).chain(flat).chain(lower).chain(of_rates));
     let (certified, iterations) = (doubts.is_empty() && barrier.is_some(), band.evaluations());
     let beside = links.iter().flat_map(|link| [&link.before, &link.after]).chain(&proof.ends);
     let spectra = links.iter().map(|link| &link.spectrum).chain(beside.map(|minimum| &minimum.spectrum));
     let certificate = certified.then(|| Certificate::of(spectra));
-    let course = Course::of(c.band, c.history);
+    let ends = run.end_points(&proof.ends);
     Outcome {
         certified,
         certificate,
@@ -126,7 +114,7 @@ pub fn outcome(
         rates,
         search,
         rejected_paths,
-        ..course.outcome(&verdict, run.end_points(&proof.ends), run.work(iterations))
+        ..of_band(c.band, c.history, &verdict, ends, run.work(iterations))
     }
 }
 
@@ -137,11 +125,13 @@ fn highest_climb(
     minima: impl Iterator<Item = (f64, f64)>,
     above_final: f64,
 ) -> Barrier {
-    let tops = saddles.map(|s| (s.0, s.1, true));
-    let mut levels: Vec<(f64, f64, bool)> = minima.map(|m| (m.0, m.1, false)).chain(tops).collect();
-    levels.sort_by(|p, q| p.0.total_cmp(&q.0));
-    let climb = |levels: &mut dyn Iterator<Item = &(f64, f64, bool)>, from: f64, least: f64| {
-        let step = |(deepest, most): (f64, f64), &(_, height, is_top): &(f64, f64, bool)| match is_top {
+    // where a path is coarse a saddle and the minimum behind it may be at one place
+    let tops = saddles.enumerate().map(|(k, s)| (s.0, s.1, 2 * k));
+    let mut levels: Vec<(f64, f64, usize)> =
+        minima.enumerate().map(|(k, m)| (m.0, m.1, 2 * k + 1)).chain(tops).collect();
+    levels.sort_by(|p, q| p.0.total_cmp(&q.0).then(p.2.cmp(&q.2)));
+    let climb = |levels: &mut dyn Iterator<Item = &(f64, f64, usize)>, from: f64, least: f64| {
+        let step = |(deepest, most): (f64, f64), &(_, height, k): &(f64, f64, usize)| match k % 2 == 0 {
             true => (deepest, f64::max(most, height - deepest)),
             false => (f64::min(deepest, height), most),
         };
@@ -154,21 +144,14 @@ fn highest_climb(
 }
 
 /// Both ends relaxed to one minimum: a result without a path.
-pub fn same_minimum(run: Prepared) -> Outcome {
+pub fn same_minimum(run: &Run) -> Outcome {
     let h = run.problem.evaluator();
     let path = Path::new(&[run.ends[0].spins.clone(), run.ends[1].spins.clone()]);
-    let ends = Minimum::of_both(h, run.ends);
-    let course = Course {
-        images: image_table(h, &Band::new(h, path.clone())),
-        path,
-        profile: Vec::new(),
-        profile_terms_mev: Vec::new(),
-        history: Vec::new(),
-        max_perpendicular_torque_mev: 0.0,
-    };
+    let ends = Minimum::of_both(h, &run.ends);
+    let images = image_table(h, &Band::new(h, path.clone()));
     Outcome {
-        warnings: run.warnings(["there is no path between a minimum and itself".into()]),
-        ..course.outcome(&Verdict::SameMinimum, run.end_points(&ends), run.work(0))
+        warnings: run.told(["there is no path between a minimum and itself".into()]),
+        ..bare(path, images, &Verdict::SameMinimum, run.end_points(&ends), run.work(0))
     }
 }
 
@@ -178,60 +161,49 @@ pub fn partial(problem: &Problem, partial: &Partial, why: &str) -> Outcome {
     band.evaluate();
     let ends = [0, band.images() - 1].map(|k| image_state(&band, k));
     let work = Work { iterations: partial.history.len(), threads: rayon::current_num_threads(), ..Work::default() };
-    Course::of(band, partial.history.clone()).outcome(&Verdict::Interrupted(why.into()), ends, work)
+    of_band(band, partial.history.clone(), &Verdict::Interrupted(why.into()), ends, work)
 }
 
-/// A path with its tables.
-struct Course {
-    path: Path,
-    images: ImageTable,
-    profile: Vec<ProfilePoint>,
-    profile_terms_mev: Vec<(String, Vec<f64>)>,
-    history: Vec<HistoryRow>,
-    max_perpendicular_torque_mev: f64,
-}
-
-impl Course {
-    /// Of a band that was evaluated.
-    fn of(band: Band, history: Vec<HistoryRow>) -> Course {
-        let images = image_table(band.evaluator(), &band);
-        Course {
-            profile: profile(&band),
-            profile_terms_mev: profile_terms(&band.profile(), &images),
-            images,
-            history,
-            max_perpendicular_torque_mev: band.max_perpendicular_mev(),
-            path: band.into_path(),
-        }
+/// What a run came to whose band was evaluated, with nothing else said of its path.
+fn of_band(band: Band, history: Vec<HistoryRow>, verdict: &Verdict, ends: [EndPoint; 2], work: Work) -> Outcome {
+    let images = image_table(band.evaluator(), &band);
+    Outcome {
+        profile: profile(&band),
+        profile_terms_mev: profile_terms(&band.profile(), &images),
+        max_perpendicular_torque_mev: band.max_perpendicular_mev(),
+        largest_predicted_rotation_rad: history.last().map_or(0.0, |r| r.largest_predicted_rotation_rad),
+        history,
+        ..bare(band.into_path(), images, verdict, ends, work)
     }
+}
 
-    /// What a run came to, with nothing else said of its path.
-    fn outcome(self, verdict: &Verdict, [initial, final_state]: [EndPoint; 2], work: Work) -> Outcome {
-        Outcome {
-            converged: verdict.is_converged(),
-            certified: false,
-            certificate: None,
-            stop_code: verdict.code(),
-            stop_reason: verdict.to_string(),
-            warnings: Vec::new(),
-            barrier: None,
-            highest_climb: None,
-            saddles: Vec::new(),
-            initial,
-            final_state,
-            intermediate_minima: Vec::new(),
-            rates: None,
-            search: SearchReport { effort: Effort::None, ..SearchReport::default() },
-            rejected_paths: Vec::new(),
-            path: self.path,
-            images: self.images,
-            profile: self.profile,
-            profile_terms_mev: self.profile_terms_mev,
-            work,
-            max_perpendicular_torque_mev: self.max_perpendicular_torque_mev,
-            largest_predicted_rotation_rad: self.history.last().map_or(0.0, |r| r.largest_predicted_rotation_rad),
-            history: self.history,
-        }
+/// The same of a path that is not relaxed.
+fn bare(path: Path, images: ImageTable, verdict: &Verdict, ends: [EndPoint; 2], work: Work) -> Outcome {
+    let [initial, final_state] = ends;
+    Outcome {
+        converged: verdict.is_converged(),
+        certified: false,
+        certificate: None,
+        stop_code: verdict.code(),
+        stop_reason: verdict.to_string(),
+        warnings: Vec::new(),
+        barrier: None,
+        highest_climb: None,
+        saddles: Vec::new(),
+        initial,
+        final_state,
+        intermediate_minima: Vec::new(),
+        rates: None,
+        search: SearchReport { effort: Effort::None, ..SearchReport::default() },
+        rejected_paths: Vec::new(),
+        path,
+        images,
+        profile: Vec::new(),
+        profile_terms_mev: Vec::new(),
+        history: Vec::new(),
+        work,
+        max_perpendicular_torque_mev: 0.0,
+        largest_predicted_rotation_rad: 0.0,
     }
 }
 
@@ -277,7 +249,7 @@ fn saddles(problem: &Problem, band: &Band, found: &[Saddle], links: &[Pass], pla
         ([], []) => band_saddles(problem, band),
         ([], found) => {
             // where the path only rises to an end, a search may come to that
-            let found = found.iter().filter(|f| f.refined.index > 0);
+            let found = found.iter().filter(|f| f.refined.index() > 0);
             let at = |f: &Saddle| saddle_of(h, band, f, nearest(band.path(), &f.refined.state.m));
             let mut saddles: Vec<SaddlePoint> = found.map(at).collect();
             saddles.sort_by(|p, q| p.reaction_coordinate_rad.total_cmp(&q.reaction_coordinate_rad));
@@ -300,7 +272,7 @@ fn saddle_of(h: Evaluator, band: &Band, f: &Saddle, place: Place) -> SaddlePoint
         image: place.image,
         spins: Spins::from_unit_components(&f.refined.state.m),
         max_torque_mev: Some(f.refined.state.max_torque_mev()),
-        negative_modes: Some(f.refined.index),
+        negative_modes: Some(f.refined.index()),
         zero_modes: Some(f.refined.state.zeros.len()),
         lowest_eigenvalues_mev: Vec::new(),
     }
@@ -326,11 +298,8 @@ fn band_saddles(problem: &Problem, band: &Band) -> Vec<SaddlePoint> {
     let first = band.path().image(0);
     let profile = band.profile();
     let peak = |k: usize| {
-        let near = |x: &&Extremum| x.is_maximum && (x.interval == k || x.interval + 1 == k);
         let image = h.difference_mev(band.path().image(k), first);
-        let extrema = profile.extrema();
-        let between = extrema.iter().filter(near).max_by(|p, q| p.energy.total_cmp(&q.energy));
-        between.map_or((profile.s[k], image), |x| (x.s, x.energy.max(image)))
+        profile.highest_beside(k).map_or((profile.s[k], image), |x| (x.s, x.energy.max(image)))
     };
     let reference = h.energy_mev(first);
     let point = |k: usize| {

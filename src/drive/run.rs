@@ -1,17 +1,17 @@
 //! A whole run: the ends, first paths, a route that connects them, a search below its top, and what all this came to.
 
-use super::ends::{judge_end, kept};
+use super::ends::{judge_end, kept, torque_mev};
 use super::explore::turning_axis;
 use super::first_path::{FirstPath, rejection};
 use super::outcome::*;
-use super::relaxation::{Goal, Relaxation, height, needs_laplacian};
-use super::report::{self, Prepared, Proof};
+use super::relaxation::{Goal, Relaxation, Tools, height, needs_laplacian};
+use super::report::{self, Proof};
 use super::settled::Settled;
 use super::{Observer, Problem, Scales, Stop};
 use crate::band::{Band, Laplacian};
 use crate::energy::{Evaluator, recorded};
 use crate::error::{Error, Result};
-use crate::geometry::{Direction, Vector};
+use crate::geometry::Direction;
 use crate::landscape::{Doubt, Landscape, Minimum, Pass};
 use crate::path::guess::{FirstGuess, GuessContext, Rotation};
 use crate::path::is_within;
@@ -64,9 +64,7 @@ pub(super) struct Run<'a, 'o> {
     /// What was evaluated before it.
     pub(super) before: Count,
     pub(super) ends: [Relaxed; 2],
-    pub(super) scales: Scales,
-    pub(super) axes: Vec<Vector>,
-    pub(super) laplacian: Option<Arc<Laplacian>>,
+    pub(super) tools: Tools<'a>,
     pub(super) axis: Direction,
     pub(super) warnings: Vec<String>,
     /// All that was found.
@@ -88,7 +86,7 @@ impl<'a, 'o> Run<'a, 'o> {
         let ends = if problem.relax_ends {
             recorded(h, "ends", &given.map(|spins| spins.as_slice()), || relaxed_ends(h, given))?
         } else {
-            given.map(|spins| kept(h, spins))
+            given.map(|spins| kept(spins, torque_mev(h, spins), None))
         };
         if problem.relax_ends {
             warnings.extend(ends.iter().zip(["initial", "final"]).flat_map(|(end, which)| judge_end(h, end, which)));
@@ -113,9 +111,7 @@ impl<'a, 'o> Run<'a, 'o> {
             started,
             before,
             ends,
-            scales,
-            axes,
-            laplacian,
+            tools: Tools { settings: &problem.neb, scales, axes, laplacian },
             axis: Direction::X,
             warnings,
             land,
@@ -127,33 +123,27 @@ impl<'a, 'o> Run<'a, 'o> {
     }
 
     pub(super) fn context(&self) -> GuessContext<'a> {
-        GuessContext { states: self.problem.states(&self.scales), default_axis: self.axis }
+        GuessContext { states: self.problem.states(&self.tools.scales), default_axis: self.axis }
     }
 
     fn finish(mut self) -> Result<Outcome> {
         let (a, b) = (self.ends[0].spins.as_slice(), self.ends[1].spins.as_slice());
         if is_within(a, b, SAME) {
-            return Ok(report::same_minimum(self.prepared()));
+            return Ok(report::same_minimum(&self));
         }
         if let Some(flat) = self.turned_minimum()? {
             return Ok(flat);
         }
         let firsts = self.first_paths()?;
         let (mut best, others) = self.best_of(firsts)?;
-        let scale = self.scales.stiffness_mev;
+        let scale = self.tools.scales.stiffness_mev;
         let mut rejected: Vec<RejectedPath> = others.iter().map(|c| rejection(c, &best.first, scale)).collect();
         let mut search = self.search(&mut best, &mut rejected)?;
         search.lowest_exits_mev = self.lowest_exits(&best.proof.links);
-        let has_rates = self.problem.rates.is_some();
-        if has_rates {
+        if self.problem.rates.is_some() {
             self.observer.stage("computing the rates");
         }
-        let outcome = report::outcome(self.prepared(), best.first, &best.found, best.proof, search, rejected);
-        // rates that were stopped on their way look like rates that there are none of
-        if has_rates {
-            self.problem.control.check()?;
-        }
-        Ok(outcome)
+        Ok(report::outcome(&self, best.first, &best.found, best.proof, search, rejected))
     }
 
     /// Beside the path over these saddles, of the initial and of the final state (meV above it).
@@ -172,7 +162,7 @@ impl<'a, 'o> Run<'a, 'o> {
 
     /// The first of the paths in full, or another one that could be proven where it could not or that is lower; and all others.
     fn best_of(&mut self, firsts: Vec<FirstPath<'a>>) -> Result<(Settled<'a>, Vec<FirstPath<'a>>)> {
-        let scale = self.scales.stiffness_mev;
+        let scale = self.tools.scales.stiffness_mev;
         let mut firsts = firsts.into_iter();
         let Some(first) = firsts.next() else { return Err(Error::Numerical("no first path could be made".into())) };
         let mut best = self.settle(first, f64::INFINITY)?;
@@ -215,11 +205,8 @@ impl<'a, 'o> Run<'a, 'o> {
         let left = self.left(&c.band) / c.band.images();
         let limit = limit.min(self.problem.neb.max_evaluations).min(c.band.evaluations() + left);
         let mut relaxation = Relaxation {
-            settings: &self.problem.neb,
+            tools: &self.tools,
             climb: self.problem.neb.climb && !self.problem.refine,
-            scales: self.scales,
-            axes: &self.axes,
-            laplacian: self.laplacian.as_deref(),
             history: std::mem::take(&mut c.history),
             observer: &mut *self.observer,
         };
@@ -251,20 +238,10 @@ impl<'a, 'o> Run<'a, 'o> {
         self.left(band) == 0
     }
 
-    fn prepared(&self) -> Prepared<'_> {
-        Prepared {
-            problem: self.problem,
-            started: self.started,
-            evaluated: self.evaluated(),
-            ends: &self.ends,
-            warnings: &self.warnings,
-        }
-    }
-
     /// Ends that are one minimum turned about a symmetry axis: the rigid turn between them costs nothing.
     fn turned_minimum(&mut self) -> Result<Option<Outcome>> {
         let h = self.problem.evaluator();
-        if self.axes.is_empty() || !self.problem.relax_ends {
+        if self.tools.axes.is_empty() || !self.problem.relax_ends {
             return Ok(None);
         }
         let [a, b] = self.ends.each_ref().map(|end| &end.spins);
@@ -276,7 +253,7 @@ impl<'a, 'o> Run<'a, 'o> {
         let ends = Minimum::of_both(h, &self.ends);
         let images = self.problem.images.asked_for().unwrap_or(FEWEST_IMAGES);
         // about an axis of symmetry the way is as long as it is; the shortest way between two states of a cone leads across it
-        let axis = match self.axes[..] {
+        let axis = match self.tools.axes[..] {
             [axis] => Direction::new(axis).ok(),
             _ => None,
         };
@@ -289,7 +266,7 @@ impl<'a, 'o> Run<'a, 'o> {
         let stop = Stop::Converged { rotation: 0.0, tolerance: self.problem.neb.tolerance };
         let c = FirstPath::new("rotation".into(), band, stop);
         let proof = Proof { ends, links: Vec::new(), doubts: vec![Doubt::CostlyTurn] };
-        Ok(Some(report::outcome(self.prepared(), c, &[], proof, SearchReport::default(), Vec::new())))
+        Ok(Some(report::outcome(self, c, &[], proof, SearchReport::default(), Vec::new())))
     }
 }
 

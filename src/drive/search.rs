@@ -1,6 +1,7 @@
 //! The search below the top of the best of the first paths: what they met, third states, and climbs.
 
 use super::Silent;
+use super::ends::kept;
 use super::explore::turning_axis;
 use super::outcome::{RejectedPath, SearchReport};
 use super::relaxation::height;
@@ -15,7 +16,7 @@ use crate::hessian::factorisation_flops;
 use crate::landscape::{Aim, Effort, KINDS, Landscape, Minimum, Searched, Settings, search};
 use crate::record::Count;
 use crate::spins::Spins;
-use crate::stationary::{RELAXED, Relaxed, STRIDE, relax_to_minimum};
+use crate::stationary::{RELAXED, STRIDE, relax_to_minimum};
 
 /// Single states are evaluated until so many spins were, or as often as for the first paths; and their Hessians until so many
 /// operations were spent on factorising them, or as often. At `thorough` several times as much of all.
@@ -55,7 +56,7 @@ impl<'a> Run<'a, '_> {
             most,
             together: self.worth(TOGETHER),
             most_kinds: KINDS,
-            c: self.scales.stiffness_mev,
+            c: self.tools.scales.stiffness_mev,
             context: self.context(),
         };
         let searched = search(&mut self.land, Aim::Route(ends, top_mev), &settings, &mut |standing| {
@@ -147,15 +148,16 @@ impl<'a> Run<'a, '_> {
     pub(super) fn connect_by_first_path(&mut self, minima: [usize; 2], below_mev: f64) -> Result<()> {
         let h = self.problem.evaluator();
         let land = std::mem::replace(&mut self.land, Landscape::new(h, self.ends[0].spins.as_slice()));
-        let ends = minima.map(|k| at_rest(&land.minima()[k]));
+        let ends = minima.map(|k| {
+            let Minimum { spins, max_torque_mev, spectrum, .. } = &land.minima()[k];
+            kept(spins, *max_torque_mev, Some(spectrum.clone()))
+        });
         let mut run = Run {
             problem: self.problem,
             observer: &mut Silent,
             started: self.started,
             ends,
-            scales: self.scales,
-            axes: self.axes.clone(),
-            laplacian: self.laplacian.clone(),
+            tools: self.tools.clone(),
             axis: self.axis,
             warnings: Vec::new(),
             land,
@@ -169,19 +171,6 @@ impl<'a> Run<'a, '_> {
         }
         self.land = run.land;
         Ok(())
-    }
-}
-
-/// A minimum as an end that need not be relaxed.
-fn at_rest(minimum: &Minimum) -> Relaxed {
-    Relaxed {
-        spins: minimum.spins.clone(),
-        max_torque_mev: minimum.max_torque_mev,
-        steps: 0,
-        largest_rotation_rad: 0.0,
-        left: None,
-        converged: true,
-        spectrum: Some(minimum.spectrum.clone()),
     }
 }
 

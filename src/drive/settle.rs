@@ -2,7 +2,7 @@
 
 use super::Images;
 use super::first_path::FirstPath;
-use super::relaxation::{Goal, LOOSELY, TIGHTLY, Tools, height, image_levels, prominent_maxima, refined};
+use super::relaxation::{Goal, LOOSELY, TIGHTLY, height, image_levels, prominent_maxima, refined};
 use super::report::Proof;
 use super::run::{FEWEST_IMAGES, Run};
 use super::settled::Settled;
@@ -93,7 +93,7 @@ impl<'a> Run<'a, '_> {
 
     /// Puts the refined top in the place of its image: then the rest of the path need not be relaxed around it once more.
     fn seat_top(&self, c: &mut FirstPath<'a>) {
-        let scale = self.scales.stiffness_mev;
+        let scale = self.tools.scales.stiffness_mev;
         if self.problem.neb.climb
             && let Some(top) = c.found.as_ref().filter(|f| f.is_saddle(scale))
         {
@@ -137,7 +137,7 @@ impl<'a> Run<'a, '_> {
         let mut led = false;
         for apart in APART {
             let ends = [&self.ends[0].spins, &self.ends[1].spins];
-            let assembled = assemble(&self.land, &proof.links, ends, images, apart, &self.tools())?;
+            let assembled = assemble(&self.land, &proof.links, ends, images, apart, &self.tools)?;
             led = match assembled {
                 Some(way) => self.follow_finer(c, way, &proof.links)?,
                 None => false,
@@ -195,7 +195,7 @@ impl<'a> Run<'a, '_> {
             return Ok(Proof { ends, links: Vec::new(), doubts: vec![doubt] });
         }
         self.observer.stage("proving the saddles");
-        let scale = self.scales.stiffness_mev;
+        let scale = self.tools.scales.stiffness_mev;
         if let Some(alone) = highest.filter(|_| !self.problem.relax_ends) {
             return self.prove_alone(alone, ends);
         }
@@ -257,13 +257,12 @@ impl<'a> Run<'a, '_> {
     /// Connects the ends below a height (meV above the initial state), and not higher than the path itself rises; what stands against
     /// that.
     fn connect(&mut self, c: &FirstPath<'a>, below_mev: f64) -> Result<Option<Doubt>> {
-        let tools = self.tools();
         let connector = Connector {
-            bands: &tools,
+            bands: &self.tools,
             path: c.band.path(),
             below_mev,
             evaluations: self.allowed(&c.band),
-            sides: Sides { c: self.scales.stiffness_mev, level_mev: level_mev(&c.band), beside: &[] },
+            sides: Sides { c: self.tools.scales.stiffness_mev, level_mev: level_mev(&c.band), beside: &[] },
             context: self.context(),
         };
         let gap = connector.connect(&mut self.land, self.minima)?;
@@ -288,29 +287,19 @@ impl<'a> Run<'a, '_> {
     /// What a saddle between ends that are kept as they are is by itself.
     fn prove_alone(&self, saddle: &Saddle, ends: [Minimum; 2]) -> Result<Proof> {
         let h = self.problem.evaluator();
-        let alone = match self.problem.rates {
-            None => Pass::between(h, saddle.clone(), ends.clone()),
-            Some(_) => None,
-        };
-        let sides = Sides { c: self.scales.stiffness_mev, level_mev: 0.0, beside: &ends.each_ref() };
+        // a descending direction may be too flat for that
+        let is_plain = self.problem.rates.is_none() && saddle.refined.index() > 0;
+        let alone = is_plain.then(|| Pass::between(h, saddle.clone(), ends.clone()));
+        let sides = Sides { c: self.tools.scales.stiffness_mev, level_mev: 0.0, beside: &ends.each_ref() };
         let descended = || Pass::recorded(h, saddle.clone(), sides);
         let pass = alone.map_or_else(descended, Ok)?;
         let doubts = pass.doubt(h).into_iter().collect();
         Ok(Proof { ends, links: vec![pass], doubts })
     }
 
-    fn tools(&self) -> Tools<'a> {
-        Tools {
-            settings: &self.problem.neb,
-            scales: self.scales,
-            axes: self.axes.clone(),
-            laplacian: self.laplacian.clone(),
-        }
-    }
-
     /// Every maximum within a tenth of the highest, refined, one of a plateau; saddles found twice count once.
     fn all_saddles(&mut self, c: &FirstPath<'a>) -> Result<Vec<Saddle>> {
-        let scale = self.scales.stiffness_mev;
+        let scale = self.tools.scales.stiffness_mev;
         if !self.problem.seeks_saddles() {
             return Ok(Vec::new());
         }

@@ -42,6 +42,12 @@ pub(super) fn through<T: Stored>(h: Evaluator, call: &Call, compute: impl FnOnce
     Ok(found)
 }
 
+impl<T: Stored> Stored for Option<T> {
+    fn restored(self, h: Evaluator) -> Option<Self> {
+        self.map_or(Some(None), |one| one.restored(h).map(Some))
+    }
+}
+
 impl<T: Stored> Stored for Vec<T> {
     fn restored(self, h: Evaluator) -> Option<Self> {
         self.into_iter().map(|one| one.restored(h)).collect()

@@ -34,7 +34,7 @@ impl Landscape<'_> {
             leads_off.then(|| (saddles_mev[..place].iter().copied().fold(height, f64::max), (!on_path).then_some(to)))
         };
         let ways = self.edges().iter().flat_map(|edge| {
-            let [a, b] = edge.ends.map(|k| self.standing_for(k));
+            let [a, b] = edge.ends;
             [way(a, b, edge.height_mev), way(b, a, edge.height_mev)]
         });
         let mut ways: Vec<(f64, Option<usize>)> = ways.flatten().collect();
@@ -48,7 +48,7 @@ impl Landscape<'_> {
     fn states(&self, within_mev: f64) -> Vec<usize> {
         let mut parts = Parts::of(self.minima().len());
         for edge in self.edges() {
-            let [a, b] = edge.ends.map(|k| self.standing_for(k));
+            let [a, b] = edge.ends;
             if [a, b].iter().all(|k| edge.height_mev - self.heights_mev()[*k] < within_mev) {
                 parts.join(a, b);
             }

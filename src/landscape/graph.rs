@@ -300,11 +300,7 @@ impl<'a> Landscape<'a> {
 
     /// How many minima there are of which no symmetry makes another one.
     pub fn kinds(&self) -> usize {
-        self.firsts().count()
-    }
-
-    fn firsts(&self) -> impl Iterator<Item = usize> + '_ {
-        (0..self.minima.len()).filter(|k| self.orbits[*k] == *k)
+        (0..self.minima.len()).filter(|k| self.orbits[*k] == *k).count()
     }
 
     /// How many passes below a height there are (meV above the reference), images not counted.
@@ -370,11 +366,7 @@ impl<'a> Landscape<'a> {
 
     /// Whether a saddle is known.
     pub fn knows(&self, saddle: &Saddle) -> bool {
-        self.knows_state(saddle.spins(), self.height_mev(saddle.spins()))
-    }
-
-    fn knows_state(&self, m: &[f64], height_mev: f64) -> bool {
-        self.edges_over(m, height_mev).next().is_some()
+        self.edges_over(saddle.spins(), self.height_mev(saddle.spins())).next().is_some()
     }
 
     /// The edges over a saddle.

@@ -20,8 +20,6 @@ pub(super) struct Pairs {
     apart: Vec<Vec<f64>>,
     /// How often each was tried, it or an image of it by symmetry: the orbits of the two, and the square of their distance.
     tried: BTreeMap<([usize; 2], i64), usize>,
-    /// Whether any pair with a minimum of an orbit was tried.
-    is_tried: Vec<bool>,
 }
 
 /// The square of a distance that counts a pair as further apart with every try.
@@ -55,9 +53,6 @@ impl Landscape<'_> {
     /// How often a pair was tried; one time more from now on.
     pub(super) fn try_once_more(&mut self, pair: [usize; 2]) -> usize {
         let key = self.alike(pair, self.squared_distance(pair));
-        let is_tried = &mut self.pairs.is_tried;
-        is_tried.resize(is_tried.len().max(key.0[1] + 1), false);
-        key.0.iter().for_each(|k| is_tried[*k] = true);
         let tried = self.pairs.tried.entry(key).or_default();
         *tried += 1;
         *tried - 1
@@ -67,13 +62,6 @@ impl Landscape<'_> {
     fn alike(&self, pair: [usize; 2], squared: f64) -> ([usize; 2], i64) {
         let [a, b] = pair.map(|k| self.orbit(k));
         ([a.min(b), a.max(b)], (squared / SAME).round() as i64)
-    }
-
-    fn tries(&self, pairs: &Pairs, pair: [usize; 2], squared: f64) -> usize {
-        if pair.iter().any(|k| !pairs.is_tried.get(self.orbit(*k)).is_some_and(|tried| *tried)) {
-            return 0;
-        }
-        pairs.tried.get(&self.alike(pair, squared)).copied().unwrap_or(0)
     }
 
     /// The pair to try next on the way from one minimum to another over passes below a height (meV); none if all that lead on were
@@ -99,7 +87,7 @@ impl Landscape<'_> {
                 let mut step = if is_apart { self.known_distance(&mut pairs, [here, there]) } else { 0.0 };
                 // most are far from here however often they were tried
                 if is_apart && far[here] + step < far[there] {
-                    let tried = self.tries(&pairs, [here, there], step);
+                    let tried = pairs.tried.get(&self.alike([here, there], step)).copied().unwrap_or(0);
                     step = if tried < tries { tired(step, tried) } else { f64::INFINITY };
                 }
                 if far[here] + step < far[there] {

@@ -4,7 +4,7 @@ use super::{Doubt, Minimum, Saddle};
 use crate::energy::{Evaluator, recorded};
 use crate::error::Result;
 use crate::linalg::slab;
-use crate::rates::Crossing;
+use crate::rates::{Crossing, RateSettings, SaddleRate, saddle_rates};
 use crate::spins::Spins;
 use crate::stationary::{
     Downhill, RELAXED, ROUGHLY, Refined, Spectrum, descend, lowest_eigenvalues_mev, relax_to_minimum,
@@ -90,16 +90,12 @@ impl Pass {
         Ok(Pass { spectrum, before, after, fallen_mev: [f, g], ways: [back, on].map(Arc::new), saddle, given: false })
     }
 
-    /// A saddle whose spectrum alone tells that it is one, between ends that are kept as they are, minima or not. Nothing if its
-    /// descending direction is too flat for that.
-    pub fn between(h: Evaluator, saddle: Saddle, [before, after]: [Minimum; 2]) -> Option<Pass> {
+    /// A saddle whose spectrum alone tells that it is one, between ends that are kept as they are, minima or not.
+    pub fn between(h: Evaluator, saddle: Saddle, [before, after]: [Minimum; 2]) -> Pass {
         let state = &saddle.refined.state;
         let spectrum = saddle.refined.spectrum.clone().unwrap_or_else(|| Spectrum::of(h, state, 0));
-        if spectrum.negative == 0 {
-            return None;
-        }
         let fallen_mev = [&before, &after].map(|end| h.difference_mev(&state.m, end.spins.as_slice()));
-        Some(Pass { spectrum, before, after, fallen_mev, ways: Default::default(), saddle, given: true })
+        Pass { spectrum, before, after, fallen_mev, ways: Default::default(), saddle, given: true }
     }
 
     /// The same, as far as it is not on record.
@@ -121,17 +117,19 @@ impl Pass {
         lowest_eigenvalues_mev(h, state, SOFTEST, lowest.as_slice())
     }
 
-    /// As the theories of rates take it. `doubt`: what stands against its certificate.
-    pub fn crossing<'a>(&'a self, group: &'a Group, doubt: Option<&'a str>) -> Crossing<'a> {
-        Crossing {
+    /// The rates over it, from the minimum before it and back; as a saddle of this number.
+    pub fn rates(&self, h: Evaluator, number: usize, group: &Group, settings: &RateSettings) -> [SaddleRate; 2] {
+        let doubt = self.doubt(h).map(|doubt| doubt.to_string());
+        let crossing = Crossing {
             saddle: &self.saddle.refined.state,
             valley: &self.saddle.refined.valley,
             spectrum: &self.spectrum,
             minima: [&self.before.spins, &self.after.spins],
             minima_spectra: [&self.before.spectrum, &self.after.spectrum],
             group,
-            doubt,
-        }
+            doubt: doubt.as_deref(),
+        };
+        saddle_rates(h, number, &crossing, settings)
     }
 
     /// What a symmetry of the energy makes of it.

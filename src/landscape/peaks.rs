@@ -74,8 +74,7 @@ fn beside(band: &Band, profile: &Profile, k: usize, c: f64) -> Peak {
         image: k,
         floor_mev: floor(band, band.energies_mev()[k], k, c),
     };
-    let near = profile.extrema().into_iter().filter(|x| x.is_maximum && (x.interval == k || x.interval + 1 == k));
-    let Some(x) = near.max_by(|p, q| p.energy.total_cmp(&q.energy)) else { return image };
+    let Some(x) = profile.highest_beside(k) else { return image };
     let top = between(band, profile, &x, c);
     let h = band.evaluator();
     let (mut g, mut f) = (vec![0.0; top.m.len()], vec![0.0; top.m.len()]);

@@ -3,7 +3,7 @@
 use super::peaks::Peak;
 use crate::energy::{Evaluator, recorded};
 use crate::error::Result;
-use crate::stationary::{self, ALIKE, Climb, Limits, Refined, STATIONARY, State, climb, refine};
+use crate::stationary::{self, ALIKE, Limits, Refined, STATIONARY, State, climb, refine};
 use crate::symmetry::Operation;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -31,8 +31,7 @@ impl Saddle {
 
     /// The saddle of index one that a climb from any state leads to, if it leads to one within the limits.
     pub fn climbed(h: Evaluator, start: &[f64], limits: &Limits) -> Option<Saddle> {
-        let Climb { saddle, steps: factorisations } = climb(h, start, limits);
-        let stationary::Saddle { state, mode, spectrum, .. } = saddle.ok()?;
+        let stationary::Saddle { state, mode, spectrum, .. } = climb(h, start, limits).saddle.ok()?;
         let top = Peak {
             m: start.to_vec(),
             tau: mode.clone(),
@@ -41,9 +40,7 @@ impl Saddle {
             image: 0,
             floor_mev: f64::NEG_INFINITY,
         };
-        let refined =
-            Refined { arrived: true, valley: mode, factorisations, index: 1, spectrum: Some(spectrum), state };
-        Some(Saddle::new(top, refined))
+        Some(Saddle::new(top, Refined { valley: mode, spectrum: Some(spectrum), state }))
     }
 
     /// Its spins (3N).
@@ -58,7 +55,7 @@ impl Saddle {
         let state = State::at(h, operation.apply(self.spins()));
         let valley = operation.apply_field(&refined.valley);
         let spectrum = refined.spectrum.clone();
-        Saddle::new(Peak { m, tau, ..**top }, Refined { state, valley, spectrum, ..**refined })
+        Saddle::new(Peak { m, tau, ..**top }, Refined { state, valley, spectrum })
     }
 
     /// The same, as far as it is not on record.
@@ -71,11 +68,13 @@ impl Saddle {
     pub fn is_stationary(&self, c: f64) -> bool {
         let zero = (ALIKE * c).max(STATIONARY * self.refined.state.hessian.norm1());
         let near = self.refined.state.energy_mev >= self.top.floor_mev;
-        self.refined.arrived && near && self.refined.state.max_torque_mev() < zero
+        // a minimum is no saddle
+        let is_one = self.refined.spectrum.as_ref().is_some_and(|s| s.negative + s.flat > 0);
+        is_one && near && self.refined.state.max_torque_mev() < zero
     }
 
     /// A stationary state with at most one negative direction.
     pub fn is_saddle(&self, c: f64) -> bool {
-        self.is_stationary(c) && self.refined.index <= 1
+        self.is_stationary(c) && self.refined.index() <= 1
     }
 }

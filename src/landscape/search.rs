@@ -14,7 +14,7 @@
 
 use super::rivals::{Cut, Rival, rivals, scouts, vanguard};
 use super::{Landscape, Pass, Saddle, Sides};
-use crate::energy::{Evaluator, Stored, recorded_each};
+use crate::energy::recorded_each;
 use crate::error::Result;
 use crate::path::guess::GuessContext;
 use crate::record::Count;
@@ -205,9 +205,10 @@ pub fn search(
         }
         let input: Vec<&[f64]> = starts.iter().map(Vec::as_slice).collect();
         let below = cut.top_mev;
-        let caught: Vec<Caught> = recorded_each(h, "searches", &input, |k| climb(land, &starts[k], below, settings.c))?;
-        for (Caught(pass), counts) in caught.into_iter().zip(count_as_quiet) {
-            let news = pass.is_some_and(|pass| bring(land, *pass, below, aim));
+        let caught: Vec<Option<Pass>> =
+            recorded_each(h, "searches", &input, |k| climb(land, &starts[k], below, settings.c))?;
+        for (pass, counts) in caught.into_iter().zip(count_as_quiet) {
+            let news = pass.is_some_and(|pass| bring(land, pass, below, aim));
             done.searches += 1;
             done.quiet = if news { 0 } else { done.quiet + usize::from(counts) };
         }
@@ -251,21 +252,8 @@ fn bring(land: &mut Landscape, pass: Pass, below: f64, aim: Aim) -> bool {
     land.add(pass) && new
 }
 
-/// What a search found.
-#[derive(Serialize, Deserialize)]
-struct Caught(Option<Box<Pass>>);
-
-impl Stored for Caught {
-    fn restored(self, h: Evaluator) -> Option<Self> {
-        match self.0 {
-            Some(pass) => pass.restored(h).map(|pass| Caught(Some(Box::new(pass)))),
-            None => Some(self),
-        }
-    }
-}
-
 /// The pass that a climb from a state leads to, if that is a new one below a height (meV).
-fn climb(land: &Landscape, start: &[f64], below: f64, c: f64) -> Result<Caught> {
+fn climb(land: &Landscape, start: &[f64], below: f64, c: f64) -> Result<Option<Pass>> {
     let h = land.evaluator();
     let limits = Limits {
         steps: STEPS,
@@ -274,9 +262,9 @@ fn climb(land: &Landscape, start: &[f64], below: f64, c: f64) -> Result<Caught> 
         ceiling_mev: land.reference_mev() + below,
         known: &|m, energy_mev| land.is_beside_a_saddle(m, energy_mev - land.reference_mev()),
     };
-    let Some(saddle) = Saddle::climbed(h, start, &limits) else { return Ok(Caught(None)) };
+    let Some(saddle) = Saddle::climbed(h, start, &limits) else { return Ok(None) };
     if land.height_mev(saddle.spins()) >= below || land.knows(&saddle) {
-        return Ok(Caught(None));
+        return Ok(None);
     }
-    Ok(Caught(Some(Box::new(Pass::of(h, saddle, Sides { c, level_mev: 0.0, beside: &[] })?))))
+    Pass::of(h, saddle, Sides { c, level_mev: 0.0, beside: &[] }).map(Some)
 }

@@ -39,19 +39,17 @@ fn is_tangent(h: Evaluator, v: &[f64]) -> bool {
 impl Stored for Saddle {
     fn restored(mut self, h: Evaluator) -> Option<Self> {
         let Peak { m, tau, energy_mev, s, image, floor_mev } = &*self.top;
-        let Refined { state, valley, factorisations, index, spectrum, .. } = Arc::make_mut(&mut self.refined);
+        let Refined { state, valley, spectrum } = Arc::make_mut(&mut self.refined);
         let is_sound = are_spins(h, m)
             && are_spins(h, &state.m)
             && is_tangent(h, tau)
             && is_tangent(h, valley)
             && are_finite(&[*energy_mev, *s])
             && !floor_mev.is_nan()
-            && are_counts(&[*image, *factorisations, *index]);
+            && are_counts(&[*image]);
         is_sound.then_some(())?;
         *state = State::at(h, std::mem::take(&mut state.point.m));
-        if let Some(counted) = spectrum.take() {
-            *spectrum = Some(counted.restored(h)?);
-        }
+        *spectrum = spectrum.take().restored(h)?;
         Some(self)
     }
 }

@@ -1,7 +1,6 @@
 //! First ways between two minima, none of them relaxed.
 
 use super::{Landscape, turned, turns};
-use crate::geometry::Direction;
 use crate::path::Path;
 use crate::path::guess::{Edge, Geodesic, GuessContext, GuessSpec, Sweep};
 
@@ -15,10 +14,9 @@ pub fn way(land: &Landscape, [a, b]: [usize; 2], k: usize, images: usize, contex
     let b = &turned(b, &turns(land.evaluator(), b, a));
     let edges = if context.states.lattice.is_ring() { [Edge::Center, Edge::Left] } else { [Edge::Left, Edge::Right] };
     let axis = if k < WAYS / 2 { context.default_axis } else { context.default_axis.reversed() };
-    let sweep = |from: Edge, axis: Direction| GuessSpec::Sweep(Sweep { axis: Some(axis), ..from.into() });
     let guess = match k % (WAYS / 2) {
         0 => GuessSpec::Geodesic(Geodesic { axis: Some(axis) }),
-        k => sweep(edges[k - 1], axis),
+        k => GuessSpec::Sweep(Sweep { axis: Some(axis), ..edges[k - 1].into() }),
     };
     guess.member().path(a, b, images, context).ok()
 }

@@ -52,7 +52,7 @@ impl PinnedHessian {
             Some(u) if -u.eigenvalue_mev < STIFF * hessian.norm1() => {
                 let mut border = Border::along(u.mode.clone());
                 let (_, factors) = border.factor_refined(matrix, &mut used, kappa);
-                let [[a, b], [c, d]] = border.schur();
+                let [[a, b], [c, d]] = border.schur;
                 (factors, Some(border), libm::log(kappa) + libm::log((a * d - b * c).abs()))
             }
             Some(u) => {
@@ -64,7 +64,7 @@ impl PinnedHessian {
         let mut log_determinant = factors.log_abs_determinant() - added + own;
         if soft {
             let left_out = zeros.iter().take(pins.len()).chain(border.as_ref().map(|b| &b.soft));
-            let all_pins: Vec<Pin> = pins.iter().copied().chain(border.as_ref().map(Border::pin)).collect();
+            let all_pins: Vec<Pin> = pins.iter().copied().chain(border.as_ref().map(|b| b.pin)).collect();
             let own = if border.is_some() { 0.0 } else { own };
             log_determinant = Bordered::new(&factors, left_out.collect(), &all_pins, kappa).log_determinant() + own;
         }

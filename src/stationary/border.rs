@@ -49,15 +49,23 @@ pub fn pin(matrix: &mut Matrix, mode: &[f64], used: &mut Vec<usize>, kappa: f64)
     Pin { site, e }
 }
 
+/// Pins orthonormal modes; the pins, and their sites.
+pub fn pin_all(matrix: &mut Matrix, modes: &[Vec<f64>], kappa: f64) -> (Vec<Pin>, Vec<usize>) {
+    let mut used = Vec::new();
+    (modes.iter().map(|mode| pin(matrix, mode, &mut used, kappa)).collect(), used)
+}
+
 /// The soft mode and its pin.
 #[derive(Debug, Default)]
 pub struct Border {
     /// t: a unit vector.
     pub soft: Vec<f64>,
-    pin: Pin,
+    /// e.
+    pub pin: Pin,
     /// Z, the two columns side by side.
     solved: Vec<f64>,
-    schur: [[f64; 2]; 2],
+    /// S: symmetric.
+    pub schur: [[f64; 2]; 2],
 }
 
 impl Border {
@@ -109,16 +117,6 @@ impl Border {
         };
         let off = -0.5 * (te + at_pin(0));
         self.schur = [[-tt, off], [off, 1.0 / kappa - at_pin(1)]];
-    }
-
-    /// e.
-    pub fn pin(&self) -> Pin {
-        self.pin
-    }
-
-    /// S: symmetric.
-    pub fn schur(&self) -> [[f64; 2]; 2] {
-        self.schur
     }
 
     /// From x = H″⁻¹b to the solution of [H' t; tᵀ 0] (x, ν) = (b, 0), in place.

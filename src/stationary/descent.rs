@@ -190,7 +190,7 @@ impl Walk<'_> {
                 return Fall::Stuck;
             }
             let Some(step) =
-                flow(self.h, &self.here, &mut self.next, rate, STEP, &mut self.room.matrix, self.unfactored.as_mut())
+                flow(self.h, &self.here, &mut self.next, rate, &mut self.room.matrix, self.unfactored.as_mut())
             else {
                 rate *= LARGER;
                 continue;
@@ -232,7 +232,7 @@ impl Walk<'_> {
     /// A step along the valley, and down by gradients alone from there; whether that leads to a minimum. Where it does not, the descent
     /// is back where it began.
     fn roll(&mut self) -> bool {
-        let (from, tau, points) = (self.here.clone(), self.tau.clone(), self.trail.len());
+        let (from, tau, trail) = (self.here.clone(), self.tau.clone(), self.trail.clone());
         self.room.v.clone_from(&self.tau);
         slab::scale(&mut self.room.v, LAST_DIGITS / rotation_of(&self.tau));
         self.here.go(self.h, &from, &self.room.v);
@@ -240,15 +240,14 @@ impl Walk<'_> {
             && from.above_mev(&self.here) > self.h.rounding_mev()
             && (self.join() || matches!(self.fall(), Fall::Arrived) && (self.has_none_softer(0.0) || self.fork()));
         if !arrived {
-            self.trail.go_back_to(points);
-            (self.here, self.tau) = (from, tau);
+            (self.here, self.tau, self.trail) = (from, tau, trail);
         }
         arrived
     }
 
     /// Down by gradients alone; whether to where the slope ends.
     fn quench(&mut self) -> bool {
-        quench(self.h, &mut self.here, &mut self.next, &mut self.trail, [LAST_DIGITS, STEP])
+        quench(self.h, &mut self.here, &mut self.next, &mut self.trail)
     }
 
     /// To a state beside the descent that is all but reached; whether there is one.

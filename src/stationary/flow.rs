@@ -9,6 +9,7 @@
 //! Comput. 18, 1 (1997), doi:10.1137/S1064827594276424), in the tangent space of the step's start. As Δt grows it becomes Newton's.
 
 use super::point::Point;
+use super::tolerances::STEP;
 use super::unfactored::Unfactored;
 use crate::energy::Evaluator;
 use crate::linalg::{Factors, Matrix, remove, slab};
@@ -34,32 +35,31 @@ pub struct Flown {
 }
 
 /// One step from `here` to `next`, of 1/(d Δt) = `rate` (meV); `matrix` is memory. None where H + rate is not positive definite, or along the
-/// step not by half the rate, so near to where the method has a pole; and where the step turns a spin by more than about `cap` (rad).
+/// step not by half the rate, so near to where the method has a pole; and where the step turns a spin by more than about [`STEP`] (rad).
 pub fn flow(
     h: Evaluator,
     here: &Point,
     next: &mut Point,
     rate: f64,
-    cap: f64,
     matrix: &mut Matrix,
     without: Option<&mut Unfactored>,
 ) -> Option<Flown> {
     let mut equations = Equations::at(h, here, rate, matrix, without)?;
-    let flown = step(h, here, next, rate, cap, &mut equations);
+    let flown = step(h, here, next, rate, &mut equations);
     if let Equations::Factors(factors) = equations {
         *matrix = factors.into_memory();
     }
     flown
 }
 
-fn step(h: Evaluator, here: &Point, next: &mut Point, rate: f64, cap: f64, equations: &mut Equations) -> Option<Flown> {
+fn step(h: Evaluator, here: &Point, next: &mut Point, rate: f64, equations: &mut Equations) -> Option<Flown> {
     let mut v = Vec::new();
     let f0 = force(here, here);
     let u1 = equations.solve(here, sum(&[(1.0 / D, &f0)]))?;
     here.write_field(&u1, &mut v);
     // it is half of this that the next force is taken at, and what comes of it is the shorter by d
     let is_near_pole = slab::dot(&u1, &f0) < 0.5 * D * rate * slab::dot(&u1, &u1);
-    if is_near_pole || D * rotation_of(&v) > cap {
+    if is_near_pole || D * rotation_of(&v) > STEP {
         return None;
     }
     slab::scale(&mut v, 0.5);
@@ -147,7 +147,7 @@ mod tests {
         let m = Spins::from_vectors(&[[start.sin(), 0.0, start.cos()]]).unwrap().as_slice().to_vec();
         let wrong = |dt: f64| {
             let (here, mut next, mut matrix) = (Point::at(h, m.clone()), Point::default(), Matrix::default());
-            let flown = flow(h, &here, &mut next, 1.0 / (D * dt), 1.0, &mut matrix, None).unwrap();
+            let flown = flow(h, &here, &mut next, 1.0 / (D * dt), &mut matrix, None).unwrap();
             let exact = (start.tan() * (-2.0 * dt).exp()).atan();
             let off = (next.m[0].atan2(next.m[2]) - exact).abs();
             assert!(off < flown.error && flown.slopes_mev[0] > flown.slopes_mev[1], "{off:e} {flown:?}");
@@ -164,7 +164,7 @@ mod tests {
         let h = Evaluator::from(&h);
         let m = Spins::from_vectors(&[[1.0, 0.0, 0.01]]).unwrap().as_slice().to_vec();
         let (here, mut next, mut matrix) = (Point::at(h, m), Point::default(), Matrix::default());
-        assert!(flow(h, &here, &mut next, 1.9, 1.0, &mut matrix, None).is_none());
-        assert!(flow(h, &here, &mut next, 20.0, 1.0, &mut matrix, None).is_some());
+        assert!(flow(h, &here, &mut next, 1.9, &mut matrix, None).is_none());
+        assert!(flow(h, &here, &mut next, 20.0, &mut matrix, None).is_some());
     }
 }

@@ -28,7 +28,7 @@ mod trail;
 mod unfactored;
 mod valley;
 
-pub(crate) use border::{Border, Pin, pin};
+pub(crate) use border::{Border, Pin, pin, pin_all};
 pub use descent::{Descent, Downhill, descend};
 pub use pinned::Pinned;
 pub use point::{Point, move_free};

@@ -73,7 +73,7 @@ impl Pinned {
     }
 
     fn count(&mut self, factors: Factors) {
-        let (negatives, schur) = (factors.negatives(), self.border.schur());
+        let (negatives, schur) = (factors.negatives(), self.border.schur);
         self.complement_negatives = (negatives + negatives_of(schur)).saturating_sub(1);
         self.factors = factors;
     }

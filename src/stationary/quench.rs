@@ -3,7 +3,7 @@
 //! no step has.
 
 use super::point::Point;
-use super::tolerances::{FEW, LARGER};
+use super::tolerances::{FEW, LARGER, LAST_DIGITS, STEP};
 use super::trail::Trail;
 use crate::energy::Evaluator;
 use crate::field::project;
@@ -21,10 +21,10 @@ const LEFT: f64 = 1e-4;
 const NONE: f64 = 1e-6;
 
 /// Goes down from `here` until the torque is less than a part of the largest on the way, in steps that turn no spin by more than
-/// `cap` (rad), the first one by `first`; `next` is memory. Whether it came so far.
-pub fn quench(h: Evaluator, here: &mut Point, next: &mut Point, trail: &mut Trail, [first, cap]: [f64; 2]) -> bool {
+/// [`STEP`] (rad), the first one by [`LAST_DIGITS`]; `next` is memory. Whether it came so far.
+pub fn quench(h: Evaluator, here: &mut Point, next: &mut Point, trail: &mut Trail) -> bool {
     let mut secants = Secants::of(FEW);
-    let (mut force, mut step, mut length) = (here.field(&here.downhill()), Vec::new(), first);
+    let (mut force, mut step, mut length) = (here.field(&here.downhill()), Vec::new(), LAST_DIGITS);
     let mut largest = 0.0f64;
     for _ in 0..STEPS {
         let torque = here.max_torque_mev();
@@ -39,7 +39,7 @@ pub fn quench(h: Evaluator, here: &mut Point, next: &mut Point, trail: &mut Trai
         let told = secants.apply(&mut step);
         project(&here.m, &mut step);
         let rotation = rotation_of(&step);
-        length = if told { rotation.min(cap) } else { length.min(cap) };
+        length = if told { rotation.min(STEP) } else { length.min(STEP) };
         slab::scale(&mut step, length / rotation);
         next.go(h, here, &step);
         let risen = next.above_mev(here) > 0.0;
@@ -47,7 +47,7 @@ pub fn quench(h: Evaluator, here: &mut Point, next: &mut Point, trail: &mut Trai
             // a shorter one, straight down
             secants = Secants::of(FEW);
             length /= LARGER;
-            if length < NONE * cap {
+            if length < NONE * STEP {
                 return false;
             }
             continue;
@@ -97,7 +97,7 @@ mod tests {
         let h = Evaluator::from(&h);
         let start = Point::at(h, bubble().as_slice().to_vec());
         let (mut here, mut next, mut trail) = (start.clone(), Point::default(), Trail::from(&start.m));
-        assert!(quench(h, &mut here, &mut next, &mut trail, [0.05, 0.3]), "it comes to rest");
+        assert!(quench(h, &mut here, &mut next, &mut trail), "it comes to rest");
         let points = trail.into_points();
         // a bubble that shrinks is steeper than the one it began as; the steepest place may lie between two points
         let largest = points.iter().map(|m| Point::at(h, m.clone()).max_torque_mev()).fold(0.0, f64::max);
@@ -123,7 +123,7 @@ mod tests {
         let h = Evaluator::from(&h);
         let m = Spins::uniform(h.sites(), crate::geometry::Direction::Z).as_slice().to_vec();
         let (mut here, mut next, mut trail) = (Point::at(h, m.clone()), Point::default(), Trail::from(&m));
-        assert!(quench(h, &mut here, &mut next, &mut trail, [0.05, 0.3]));
+        assert!(quench(h, &mut here, &mut next, &mut trail));
         assert_eq!(here.m, m);
     }
 }

@@ -21,18 +21,19 @@ const FARTHEST: f64 = 2.0;
 /// A refined saddle.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Refined {
-    /// The search came to rest at a stationary point.
-    pub arrived: bool,
     /// Where it ended.
     pub state: State,
     /// Unit tangent field (3N) of the valley there.
     pub valley: Vec<f64>,
-    /// Factorisations that it took.
-    pub factorisations: usize,
-    /// Negative directions, zero modes apart.
-    pub index: usize,
     /// The signs of its modes, if they were counted.
     pub spectrum: Option<Spectrum>,
+}
+
+impl Refined {
+    /// Negative directions, zero modes apart, as far as they were counted.
+    pub fn index(&self) -> usize {
+        self.spectrum.as_ref().map_or(0, |s| s.negative)
+    }
 }
 
 /// The saddle of index one, or of one mode flat to rounding and none that falls, that following the lowest mode from `m` reaches, if it
@@ -42,28 +43,21 @@ pub fn refine(h: Evaluator, m: &[f64], tau: &[f64], floor_mev: f64) -> Refined {
     let mut search = Search::from(h, m, STEP);
     let left = |here: &Point| largest_angle(m, &here.m) > FARTHEST || here.energy_mev < floor_mev;
     let found = search.saddle(STEPS, true, |here, _| left(here).then_some(GaveUp::Stuck));
-    let factorisations = search.steps;
     match found {
-        Ok(Saddle { state, mode: valley, spectrum, .. }) => {
-            let index = spectrum.negative;
-            Refined { arrived: true, state, valley, factorisations, index, spectrum: Some(spectrum) }
-        }
-        Err(_) => beside(h, m, tau, factorisations),
+        Ok(Saddle { state, mode: valley, spectrum, .. }) => Refined { state, valley, spectrum: Some(spectrum) },
+        Err(_) => beside(h, m, tau),
     }
 }
 
 /// The stationary state beside `m`, if there is one.
-fn beside(h: Evaluator, m: &[f64], tau: &[f64], factorisations: usize) -> Refined {
+fn beside(h: Evaluator, m: &[f64], tau: &[f64]) -> Refined {
     let here = Point::at(h, m.to_vec());
     let here = if h.forgoes_factors() { here } else { polish(h, here) };
     let state = State::of(h, here);
     let rests = state.max_torque_mev() < ALIKE * h.stiffness_mev() && !h.forgoes_factors();
     let spectrum = rests.then(|| Spectrum::of(h, &state, 0));
-    // a minimum is no saddle
-    let arrived = spectrum.as_ref().is_some_and(|s| s.negative + s.flat > 0);
-    let index = spectrum.as_ref().map_or(0, |s| s.negative);
     let mut valley = tau.to_vec();
     project(&state.m, &mut valley);
     slab::normalise(&mut valley);
-    Refined { arrived, state, valley, factorisations, index, spectrum }
+    Refined { state, valley, spectrum }
 }

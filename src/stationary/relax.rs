@@ -2,7 +2,7 @@
 
 use super::tolerances::{ALIKE, FIRST_SHIFT, LARGER, LAST_SHIFT, NEARLY, ROUNDING, STATIONARY, STRIDE};
 use super::unfactored::Unfactored;
-use super::{Downhill, Point, Spectrum, State, descend, pin};
+use super::{Downhill, Point, Spectrum, State, descend, pin_all};
 use crate::energy::Evaluator;
 use crate::error::{Error, Result};
 use crate::field::Components;
@@ -161,10 +161,7 @@ fn newton(h: Evaluator, p: &Point, shift: f64, memory: &mut Matrix) -> Option<Ve
     }
     let mut matrix = take(memory);
     p.write_hessian(h, shift, &mut matrix);
-    let mut used = Vec::new();
-    for zero in &p.zeros {
-        pin(&mut matrix, zero, &mut used, h.stiffness_mev());
-    }
+    pin_all(&mut matrix, &p.zeros, h.stiffness_mev());
     let factors = Factors::solving(matrix, &mut x, 1);
     let positive = factors.negatives() == 0;
     *memory = factors.into_memory();

@@ -3,7 +3,7 @@
 //! A sign is told only above the noise floor 8·eps·‖H‖₁. The counts come from the inertia of H ± floor with the zero modes
 //! pinned (see [`super::Pinned`]), so they hold for all eigenvalues, not just the few that are computed.
 
-use super::border::pin;
+use super::border::pin_all;
 use super::point::Point;
 use super::state::State;
 use super::tolerances::{INDEPENDENT, ROUGHLY, STATIONARY};
@@ -148,10 +148,7 @@ pub fn lowest_eigenvalues_mev(h: Evaluator, state: &State, count: usize, known: 
 
 /// The factors of a Hessian + shift·1 whose zero modes are pinned.
 fn pinned(h: Evaluator, mut matrix: Matrix, zeros: &[Vec<f64>], shift: f64) -> Factors {
-    let mut used = Vec::new();
-    for z in zeros {
-        pin(&mut matrix, z, &mut used, h.stiffness_mev());
-    }
+    pin_all(&mut matrix, zeros, h.stiffness_mev());
     matrix.shift(shift);
     matrix.factor()
 }

@@ -60,16 +60,11 @@ impl State {
 
     /// The lowest mode, zero modes apart; none where there is no other direction.
     pub fn lowest_mode(&self, h: Evaluator) -> Option<Mode> {
-        self.lowest_modes(h, 1).into_iter().next()
+        self.lowest_modes_beside(h, 1, &[]).into_iter().next()
     }
 
-    /// The lowest modes, so many if there are, zero modes apart; where factors take long, without them if that can be had. None where
-    /// there are no factors and they are not found.
-    pub fn lowest_modes(&self, h: Evaluator, count: usize) -> Vec<Mode> {
-        self.modes(h, count, Wanted::Vectors, &[])
-    }
-
-    /// The same where the vectors of the lowest are known roughly.
+    /// The lowest modes, so many if there are, zero modes apart, where the vectors of the lowest may be known roughly; where factors take
+    /// long, without them if that can be had. None where there are no factors and they are not found.
     pub fn lowest_modes_beside(&self, h: Evaluator, count: usize, roughly: &[Vec<f64>]) -> Vec<Mode> {
         self.modes(h, count, Wanted::Vectors, roughly)
     }

@@ -10,7 +10,7 @@
 //! (Cerjan, Miller, J. Chem. Phys. 75, 2800 (1981), doi:10.1063/1.442352; Wales, J. Chem. Phys. 101, 3750 (1994),
 //! doi:10.1063/1.467559.)
 
-use super::border::pin;
+use super::border::pin_all;
 use super::point::Point;
 use super::spectrum::floor_mev;
 use super::tolerances::{ALIKE, FEW, FIRST_SHIFT, LARGER, LAST_DIGITS, LAST_SHIFT, ROUGHLY};
@@ -157,10 +157,7 @@ impl<'a> Region<'a> {
     fn newton(&mut self, here: &Point) -> Factors {
         let mut matrix = take(&mut self.room);
         matrix.copy_from(&self.hessian);
-        let mut used = Vec::new();
-        for z in &here.zeros {
-            pin(&mut matrix, z, &mut used, self.h.stiffness_mev());
-        }
+        pin_all(&mut matrix, &here.zeros, self.h.stiffness_mev());
         self.solve(here, matrix)
     }
 

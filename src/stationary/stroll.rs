@@ -32,11 +32,10 @@ impl Walk<'_> {
         if self.meets() {
             return false;
         }
-        let (start, points) = (self.here.clone(), self.trail.len());
+        let (start, trail) = (self.here.clone(), self.trail.clone());
         let end = if self.set_out() { self.stay_level() } else { End::Nowhere };
         if matches!(end, End::Nowhere) {
-            self.here = start;
-            self.trail.go_back_to(points);
+            (self.here, self.trail) = (start, trail);
         }
         matches!(end, End::Falls)
     }

@@ -10,7 +10,7 @@ const MOST_NUMBERS: usize = 24_000_000;
 const FEWEST: usize = 6;
 
 /// States on a way, a quarter radian or more apart; twice as far, and so on, when they become too many to store.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Trail {
     start: Vec<f64>,
     points: Vec<Vec<f64>>,
@@ -42,16 +42,6 @@ impl Trail {
     /// The last point that is farther than this (rad, any spin) from a state, or the start.
     pub fn last_beyond(&self, m: &[f64], angle: f64) -> &[f64] {
         self.points.iter().rev().find(|point| largest_angle(point, m) > angle).unwrap_or(&self.start)
-    }
-
-    /// How many points it has.
-    pub fn len(&self) -> usize {
-        self.points.len()
-    }
-
-    /// Forgets the points after the first so many.
-    pub fn go_back_to(&mut self, points: usize) {
-        self.points.truncate(points);
     }
 
     /// The points, first to last.

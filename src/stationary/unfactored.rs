@@ -92,8 +92,7 @@ mod tests {
         let at = Point::at((&h).into(), m);
         let mut t = at.m.iter().enumerate().map(|(k, _)| (k as f64 * 0.07).sin()).collect::<Vec<f64>>();
         project(&at.m, &mut t);
-        let size = slab::norm(&t);
-        slab::scale(&mut t, 1.0 / size);
+        slab::normalise(&mut t);
 
         let (mut pinned, mut matrix) = (Pinned::default(), Matrix::default());
         at.write_hessian((&h).into(), 0.0, &mut matrix);
@@ -104,8 +103,7 @@ mod tests {
         let mut across = at.downhill();
         pinned.solve_in_place(&mut across);
 
-        let stand_in = StandIn::about(&h, &at.m, &at.gradient, C);
-        let mut without = Unfactored { stand_in, equations: Complement::default() };
+        let mut without = Unfactored::about(&h, &at, C);
         let found = without.valley(&h, &at, 0.0, &t).expect("no direction is negative");
         let off = |found: &[f64], exact: &[f64]| {
             let mut difference = at.field(exact);
@@ -122,8 +120,7 @@ mod tests {
     fn where_another_direction_is_negative_there_is_no_valley() {
         let (h, m) = disordered(Direction::X);
         let at = Point::at((&h).into(), m);
-        let stand_in = StandIn::about(&h, &at.m, &at.gradient, C);
-        let mut without = Unfactored { stand_in, equations: Complement::default() };
+        let mut without = Unfactored::about(&h, &at, C);
         let mut t = vec![0.0; at.m.len()];
         t[h.sites() + 3] = 1.0;
         project(&at.m, &mut t);

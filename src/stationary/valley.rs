@@ -22,7 +22,7 @@ const SHIFT: f64 = 1e-6;
 /// A step that ends by a correction larger than this part of it may have left its valley for the next: a shorter one is taken.
 const ASTRAY: f64 = 0.5;
 /// Slopes below this part of the stiffness (a radian) may be rounding error.
-const FLAT: f64 = 256.0 * f64::EPSILON;
+const FLAT: f64 = LARGER * NOISE;
 /// A slope below this part of the torque is not the valley's, but of what is left across it.
 const ROUGH: f64 = 1e-3;
 /// Most steps.
@@ -174,8 +174,7 @@ impl Walk<'_> {
     fn iterate_across(&mut self) -> Option<()> {
         let Room { x, v, .. } = &mut self.room;
         let unfactored = self.unfactored.as_mut()?;
-        let size = slab::norm(&self.tau);
-        slab::scale(&mut self.tau, 1.0 / size);
+        slab::normalise(&mut self.tau);
         let valley = unfactored.valley(&self.h, &self.next, SHIFT * self.c, &self.tau)?;
         if 1.0 < ON_THE_WAY * slab::norm(&valley) {
             return None;

@@ -245,8 +245,8 @@ impl View<'_> {
         let is_in =
             |e: &usize| edges[*e].height_mev <= self.top && !edges[*e].is_twin && edges[*e].ends.iter().all(is_listed);
         let mut order: Vec<usize> = (0..edges.len()).filter(is_in).collect();
-        let own: Vec<f64> = land.passes().iter().map(|pass| land.height_mev(pass.saddle.spins())).collect();
-        let place = |e: &usize| (own[edges[*e].pass], edges[*e].pass);
+        // images are as high as the pass itself
+        let place = |e: &usize| (edges[*e].height_mev, edges[*e].pass);
         order.sort_by(|p, q| place(p).0.total_cmp(&place(q).0).then(place(p).1.cmp(&place(q).1)).then(p.cmp(q)));
         let (mut kinds, mut saddles): (Vec<Kind>, Vec<FoundSaddle>) = (Vec::new(), Vec::new());
         let mut passes = Vec::new();
@@ -260,7 +260,7 @@ impl View<'_> {
                     multiplicity: self.multiplicity(&state.m),
                     listed: 0,
                     places: land.places().count(land.evaluator(), &state.m),
-                    above_lowest_mev: own[edge.pass] - self.lowest,
+                    above_lowest_mev: edge.height_mev - self.lowest,
                     energy_mev: land.evaluator().energy_mev(&state.m),
                     spectrum: pass.spectrum.clone(),
                     max_torque_mev: state.max_torque_mev(),

@@ -4,7 +4,7 @@ use super::{Label, Survey, SurveyProblem};
 use crate::error::Result;
 use crate::landscape::{Landscape, Pass};
 use crate::network::{Network, Parts};
-use crate::rates::{LEAST_BARRIER, ORDER, RateSettings, SaddleRate, Theory, saddle_rates};
+use crate::rates::{LEAST_BARRIER, ORDER, RateSettings, SaddleRate, Theory};
 use crate::stationary::ALIKE;
 use crate::symmetry::Group;
 use crate::units::K_B;
@@ -61,7 +61,7 @@ impl Lifetimes {
         passes: &[&Pass],
     ) -> Result<Lifetimes> {
         let rates = |(k, pass): (usize, &&Pass)| {
-            let rates = over(land, group, pass, k, settings);
+            let rates = pass.rates(land.evaluator(), k, group, settings);
             // rates that were stopped on their way look like rates that there are none of
             asked.problem.control.check().map(|()| rates)
         };
@@ -362,13 +362,6 @@ fn climb(survey: &Survey, ascending: &[([usize; 2], f64)], from: &[usize], to: &
         }
     }
     f64::INFINITY
-}
-
-/// The rates over a pass, from the minimum before it and back.
-fn over(land: &Landscape, group: &Group, pass: &Pass, number: usize, settings: &RateSettings) -> [SaddleRate; 2] {
-    let h = land.evaluator();
-    let doubt = pass.doubt(h).map(|doubt| doubt.to_string());
-    saddle_rates(h, number, &pass.crossing(group, doubt.as_deref()), settings)
 }
 
 #[cfg(test)]

@@ -204,7 +204,7 @@ impl Run<'_, '_> {
                 false => "looking for minima and passes of any energy (landscape.energy_window is not given)",
             });
             let most = self.left_of_budget(asked, before);
-            let (c, context) = (self.scales.stiffness_mev, self.context());
+            let (c, context) = (self.tools.scales.stiffness_mev, self.context());
             let settings = Settings {
                 effort: asked.effort,
                 shares: asked.shares,

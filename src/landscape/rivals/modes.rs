@@ -27,7 +27,7 @@ impl Rival for Modes {
             self.left.insert(cut.land.orbit(minimum));
             let h = cut.land.evaluator();
             let state = State::at(h, cut.land.minima()[minimum].spins.as_slice().to_vec());
-            for mode in state.lowest_modes(h, SOFTEST) {
+            for mode in state.lowest_modes_beside(h, SOFTEST, &[]) {
                 let along = state.field(&mode.vector);
                 self.next.extend([1.0, -1.0].map(|sense| top(h, &state, &along, sense)));
             }
