@@ -1,14 +1,17 @@
 //! What a program that links the library may get wrong, and do more than once.
 
 use spinneb::drive::survey::{SurveyProblem, survey};
-use spinneb::drive::{Images, Outcome, Problem, Silent, run};
+use spinneb::drive::{HistoryRow, Images, Observer, Outcome, Problem, Silent, run};
 use spinneb::energy::{Anisotropy, EnergyTerm, Exchange, Hamiltonian};
 use spinneb::error::Error;
 use spinneb::geometry::Direction;
 use spinneb::landscape::Effort;
 use spinneb::lattice::Chain;
+use spinneb::path::Path;
 use spinneb::rates::{RateSettings, Theory};
 use spinneb::spins::Spins;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 const SITES: usize = 20;
 
@@ -54,6 +57,40 @@ fn a_problem_is_run_as_often_as_one_likes() {
         assert_eq!(again.barrier.unwrap().forward_mev.to_bits(), first.barrier.unwrap().forward_mev.to_bits());
         assert_eq!(again.work.force_evaluations, first.work.force_evaluations);
         assert!(again.certified && again.search.searches == first.search.searches);
+    }
+}
+
+/// Stops a run after so many bands were relaxed.
+struct StopAfter {
+    relaxed: usize,
+    last: usize,
+    switch: Arc<AtomicBool>,
+}
+
+impl Observer for StopAfter {
+    fn iteration(&mut self, _: &HistoryRow) {}
+
+    fn relaxed(&mut self, _: &Path, _: &[HistoryRow]) {
+        self.relaxed += 1;
+        if self.relaxed == self.last {
+            self.switch.store(true, Ordering::Relaxed);
+        }
+    }
+}
+
+#[test]
+fn what_is_stopped_after_its_last_relaxation_is_no_result() {
+    let stopped_after = |last: usize| {
+        let problem = problem();
+        let mut observer = StopAfter { relaxed: 0, last, switch: problem.control.switch().clone() };
+        let found = run(&problem, &mut observer);
+        (observer.relaxed, found)
+    };
+    let (all, found) = stopped_after(usize::MAX);
+    assert!(all > 1 && found.unwrap().certified);
+    for last in [1, all] {
+        let (_, found) = stopped_after(last);
+        assert!(matches!(found, Err(Error::Stopped)), "{last} of {all}: {found:?}");
     }
 }
 

@@ -534,5 +534,9 @@ mod tests {
         assert_eq!(climb(&[0.5, 0.25], &[-0.5], 0.25), [0.75, 1.0]);
         // two of them: the deeper one before the higher saddle
         assert_eq!(climb(&[1.0, 2.0, 1.5], &[-1.0, -2.0], -3.0), [3.5, 5.0]);
+        // a minimum at the place of the saddle before it comes after that
+        let barrier = Barrier { forward_mev: 2.0, backward_mev: 2.0 };
+        let found = highest_climb(barrier, [(1.0, 2.0), (2.0, 1.5)].into_iter(), [(1.0, -1.0)].into_iter(), 0.0);
+        assert_eq!([found.forward_mev, found.backward_mev], [2.5, 3.0]);
     }
 }

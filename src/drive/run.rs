@@ -33,7 +33,8 @@ pub(super) const WORTH: f64 = 1.2;
 
 /// Finds the minimum-energy path of a problem, taking what its [`Control`](crate::control::Control) finds on record from there, and
 /// recording what it computes. A run that its control stops ends with [`Error::Stopped`](crate::error::Error::Stopped), one that meets an
-/// energy that is no finite number with [`Error::Numerical`](crate::error::Error::Numerical).
+/// energy that is no finite number with [`Error::Numerical`](crate::error::Error::Numerical). A problem may be run as often as one
+/// likes; runs of one problem at the same time share what it may evaluate, so that each is better given a problem of its own.
 ///
 /// ```
 /// use spinneb::drive::{Problem, Silent, run};

@@ -21,11 +21,12 @@ pub struct Modes {
 
 impl Rival for Modes {
     fn start(&mut self, cut: &Cut, _: &mut ChaCha8Rng) -> Option<Vec<f64>> {
-        while self.next.is_empty() {
+        let h = cut.land.evaluator();
+        // what is stopped has no modes, of no minimum
+        while self.next.is_empty() && !h.is_stopped() {
             // from an image of a minimum its modes lead to images of what they lead to from that
             let minimum = cut.starts().find(|k| !self.left.contains(&cut.land.orbit(*k)))?;
             self.left.insert(cut.land.orbit(minimum));
-            let h = cut.land.evaluator();
             let state = State::at(h, cut.land.minima()[minimum].spins.as_slice().to_vec());
             for mode in state.lowest_modes_beside(h, SOFTEST, &[]) {
                 let along = state.field(&mode.vector);
