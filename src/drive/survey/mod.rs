@@ -94,8 +94,7 @@ fn share(effort: Effort) -> [usize; 2] {
     }
 }
 
-/// Finds the minima and passes of a problem below an energy. One that its control stops ends with
-/// [`Error::Stopped`](crate::error::Error::Stopped).
+/// Finds the minima and passes of a problem below an energy. One that its control stops ends with [`Error::Stopped`].
 pub fn survey(asked: &SurveyProblem, observer: &mut dyn Observer) -> Result<Survey> {
     searched(asked, observer, |run, group, planted, searched| {
         // how the ends relaxed is no news: they are states to start from, and perhaps not even given
