@@ -63,6 +63,7 @@ def run(
         Replace what is in ``out``.
     resume
         Go on from the checkpoint in ``out``, or read the finished result of this config that is there; without either, start anew.
+        What a :class:`Term` computes is not in a config, so that a finished result of a system with terms of your own is made anew.
 
     Raises
     ------
