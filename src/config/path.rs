@@ -64,7 +64,7 @@ impl<'de> Deserialize<'de> for ImageCount {
             }
             fn visit_u64<E: de::Error>(self, n: u64) -> Result<ImageCount, E> {
                 match usize::try_from(n) {
-                    Ok(n @ 3..) => Ok(ImageCount(Images::Count(n))),
+                    Ok(n @ Images::LEAST..) => Ok(ImageCount(Images::Count(n))),
                     Ok(n) => Err(E::custom(format!(
                         "found {n}, but a path has at least 3 images: its two ends, which are counted, and one between"
                     ))),

@@ -111,7 +111,7 @@ impl Problem {
         of_so_many_sites(sites, "final_state", &self.final_state)?;
         if let Images::Count(n) = self.images {
             let fits = n.checked_mul(24 * sites).is_some_and(|bytes| isize::try_from(bytes).is_ok());
-            if n < 3 || !fits {
+            if n < Images::LEAST || !fits {
                 let message =
                     format!("found {n}, but a path has 3 images or more, both ends counted, that memory holds");
                 return Err(Error::invalid("images", message));
@@ -160,6 +160,9 @@ pub enum Images {
 }
 
 impl Images {
+    /// Fewest images of a path: its two ends, and one between.
+    pub const LEAST: usize = 3;
+
     /// The number, if one was asked for.
     pub fn asked_for(self) -> Option<usize> {
         match self {
