@@ -119,7 +119,7 @@ pub fn project_row(m: Components, v: ComponentsMut) {
     project_slices(m, v.x, v.y, v.z);
 }
 
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn project_slices(m: Components, vx: &mut [f64], vy: &mut [f64], vz: &mut [f64]) {
     let n = m.x.len();
     let (mx, my, mz) = (&m.x[..n], &m.y[..n], &m.z[..n]);

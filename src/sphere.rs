@@ -58,7 +58,7 @@ pub fn best_overlap(a: Components, b: Components, axis: Vector) -> f64 {
     (sine * sine + cosine * cosine).sqrt() + (0..a.sites()).map(fixed).sum::<f64>()
 }
 
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn turns(a: Components, b: Components, [x, y, z]: Vector, sine: &mut [f64], cosine: &mut [f64]) {
     let n = sine.len();
     let (ax, ay, az) = (&a.x[..n], &a.y[..n], &a.z[..n]);
@@ -73,7 +73,7 @@ fn turns(a: Components, b: Components, [x, y, z]: Vector, sine: &mut [f64], cosi
 }
 
 /// No component over ¼, so that |s v| ≤ √3/4 < ½.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn move_short(x: &mut [f64], y: &mut [f64], z: &mut [f64], v: Components, s: f64) {
     let n = v.x.len();
     let (x, y, z) = (&mut x[..n], &mut y[..n], &mut z[..n]);
@@ -175,7 +175,7 @@ const SQUARE: [f64; 21] = [
 ];
 
 /// Writes |a − b|² of every site.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn chords_squared(a: Components, b: Components, out: &mut [f64]) {
     let n = out.len();
     let (ax, ay, az) = (&a.x[..n], &a.y[..n], &a.z[..n]);
@@ -187,7 +187,7 @@ fn chords_squared(a: Components, b: Components, out: &mut [f64]) {
 }
 
 /// |a − b|² ≤ 2 → θ² (rad²), in place.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn angles_squared(values: &mut [f64]) {
     for v in values {
         let s = *v;
@@ -200,7 +200,7 @@ fn angles_squared(values: &mut [f64]) {
 }
 
 /// Writes θ² (rad²) of every site, of any size.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn wide_angles_squared(a: Components, b: Components, out: &mut [f64]) {
     let n = out.len();
     let (ax, ay, az) = (&a.x[..n], &a.y[..n], &a.z[..n]);
@@ -246,7 +246,7 @@ pub fn write_logs(a: Components, b: Components, out: &mut [f64]) {
 }
 
 /// For s = |a − b|² ≤ 2: θ/sin θ of the part of b − a across a; sin² θ = s (1 − ¼ s).
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn logs_of_chords(a: Components, b: Components, chords: &[f64], x: &mut [f64], y: &mut [f64], z: &mut [f64]) {
     let n = chords.len();
     let (ax, ay, az) = (&a.x[..n], &a.y[..n], &a.z[..n]);

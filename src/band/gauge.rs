@@ -56,7 +56,7 @@ fn turn_by(image: &mut [f64], axis: Vector, (sine, cosine): (f64, f64)) -> bool 
 }
 
 /// Turns every vector about a unit axis by an angle of known sine and cosine, and makes it of unit length.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn turn(mx: &mut [f64], my: &mut [f64], mz: &mut [f64], [x, y, z]: Vector, (sine, cosine): (f64, f64)) {
     let n = mx.len();
     let (my, mz) = (&mut my[..n], &mut mz[..n]);

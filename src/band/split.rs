@@ -54,7 +54,7 @@ pub fn image(
 }
 
 /// t = w⁺ (after − here) + w⁻ (here − before), one component.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn chord((plus, minus): (f64, f64), before: &[f64], here: &[f64], after: &[f64], t: &mut [f64]) {
     let n = t.len();
     let (before, here, after) = (&before[..n], &here[..n], &after[..n]);

@@ -96,7 +96,7 @@ impl Linear {
     }
 }
 
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn multiply(linear: &Linear, m: &[Spin], gradient: &mut [Spin]) {
     for ((row, own), g) in linear.0.iter().zip(m).zip(gradient) {
         let mut sum: Spin = row.constant.map(|b| [b; LANES]);

@@ -66,7 +66,7 @@ impl<'a> Bath<'a> {
 }
 
 /// Spins `m` after a step with the field at `at`, into `to`.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn turn(sites: &[Site], damping: f64, [m, at, gradient, noise]: [&[Spin]; 4], to: &mut [Spin]) {
     let spins = m.iter().zip(at).zip(gradient.iter().zip(noise));
     for ((site, to), ((m, own), (gradient, noise))) in sites.iter().zip(to).zip(spins) {
@@ -80,7 +80,7 @@ fn turn(sites: &[Site], damping: f64, [m, at, gradient, noise]: [&[Spin]; 4], to
     }
 }
 
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn middle_of(a: &[Spin], b: &[Spin], into: &mut [Spin]) {
     for ((a, b), into) in a.iter().zip(b).zip(into) {
         (0..3).for_each(|c| (0..LANES).for_each(|l| into[c][l] = 0.5 * (a[c][l] + b[c][l])));

@@ -79,7 +79,7 @@ impl Anisotropy {
 }
 
 /// The second-order part of a row of sites. Counted as squares of what is small: 1 − c² = |m − c e|².
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn add_quadratic(
     k: &[f64],
     e: Vector,

@@ -85,7 +85,7 @@ impl CubicAnisotropy {
 }
 
 /// A row of sites. For K < 0 the energy is counted from the diagonal's ⅓: ⅓ − Σ α_i²α_j² = ⅙ Σ (α_i² − α_j²)².
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn add_row(
     k: &[f64],
     axes: [Vector; 3],

@@ -165,7 +165,7 @@ impl Dmi {
 }
 
 /// A run of sites, from the first on, whose partners ahead and behind are runs of as many.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn add_run(
     (d, [ex, ey, ez]): (&[f64], Vector),
     [first, ahead, behind]: [usize; 3],
@@ -193,7 +193,7 @@ fn add_run(
 
 /// A run of sites with partners on one side only, ahead (`side` 1) or behind (−1); the energy is there if the bonds are of these
 /// sites.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn add_side(
     (d, [ex, ey, ez], side): (&[f64], Vector, f64),
     [first, other]: [usize; 2],

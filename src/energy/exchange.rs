@@ -110,7 +110,7 @@ pub struct Exchange {
 }
 
 /// One family's share on a run of sites, from the first on, whose partners ahead and behind are runs of as many.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn add_run(
     [first, ahead, behind]: [usize; 3],
     j: &[f64],
@@ -136,7 +136,7 @@ fn add_run(
 }
 
 /// Its share on a run of sites with partners on one side only; the energy is there if the bonds are of these sites.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn add_side(
     [first, other]: [usize; 2],
     j: &[f64],

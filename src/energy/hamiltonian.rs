@@ -393,7 +393,7 @@ impl Hamiltonian {
 }
 
 /// P o − (m·g) v of a tangent field v, in place of o.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn curve(m: Components, g: Components, v: Components, ox: &mut [f64], oy: &mut [f64], oz: &mut [f64]) {
     let n = m.x.len();
     let [m, g, v] = [m, g, v].map(|f| f.range(0..n));

@@ -69,7 +69,7 @@ impl Zeeman {
 }
 
 /// One component's share: −b m·e = −b + ½ b |m − e|².
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn add_component(b: &[f64], e: f64, x: &[f64], g: &mut [f64], density: &mut [f64]) {
     let n = b.len();
     let (x, g, density) = (&x[..n], &mut g[..n], &mut density[..n]);

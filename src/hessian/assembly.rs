@@ -96,7 +96,7 @@ const ROW: usize = 64;
 const PART: usize = 4096;
 
 /// (ee, fe, ff) of a row of sites.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn diagonals(parts: &Parts, row: Range<usize>, out: &mut [[f64; ROW]; 4]) {
     let n = row.len().min(ROW);
     let [xx, yy, zz, yz, zx, xy] = [0, 1, 2, 3, 4, 5].map(|c: usize| &parts.blocks.site[c][row.clone()][..n]);
@@ -119,7 +119,7 @@ fn diagonals(parts: &Parts, row: Range<usize>, out: &mut [[f64; ROW]; 4]) {
 }
 
 /// The couplings (e e', e f', f e', f f') of a row of sites to their partners' e' and f', n sites on.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn couplings(parts: &Parts, bonds: &Bonds, n: usize, row: Range<usize>, out: &mut [[f64; ROW]; 4]) {
     let length = row.len().min(ROW);
     let ((e, f), (p, q)) = (parts.basis.range(row.clone()), parts.basis.range(row.start + n..row.end + n));

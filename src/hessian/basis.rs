@@ -137,7 +137,7 @@ impl TangentBasis {
     }
 }
 
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn write_basis(
     m: Components,
     ex: &mut [f64],
@@ -158,7 +158,7 @@ fn write_basis(
     }
 }
 
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn write_coordinates(e: Components, f: Components, v: Components, t: &mut [f64]) {
     let n = v.x.len();
     let (vx, vy, vz) = (&v.x[..n], &v.y[..n], &v.z[..n]);
@@ -171,7 +171,7 @@ fn write_coordinates(e: Components, f: Components, v: Components, t: &mut [f64])
     }
 }
 
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn write_sum(e: Components, f: Components, u: Components, s: f64, v: Components, t: &mut [f64]) {
     let n = v.x.len();
     let (ux, uy, uz) = (&u.x[..n], &u.y[..n], &u.z[..n]);
@@ -186,7 +186,7 @@ fn write_sum(e: Components, f: Components, u: Components, s: f64, v: Components,
     }
 }
 
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn write_pair(e: Components, f: Components, v: Components, axis: Vector, both: &mut [f64]) {
     let n = v.x.len();
     let (vx, vy, vz) = (&v.x[..n], &v.y[..n], &v.z[..n]);
@@ -201,7 +201,7 @@ fn write_pair(e: Components, f: Components, v: Components, axis: Vector, both: &
     }
 }
 
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn write_rotation(axis: Vector, e: Components, f: Components, t: &mut [f64]) {
     let n = e.x.len();
     let (ex, ey, ez) = (&e.x[..n], &e.y[..n], &e.z[..n]);
@@ -213,7 +213,7 @@ fn write_rotation(axis: Vector, e: Components, f: Components, t: &mut [f64]) {
     }
 }
 
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn write_component(t: &[f64], e: &[f64], f: &[f64], v: &mut [f64]) {
     let n = v.len();
     let (t, e, f) = (&t[..2 * n], &e[..n], &f[..n]);

@@ -81,7 +81,7 @@ fn each_turn(x: &mut [Vec<f64>], weights: &[Vec<f64>], vectors: &[Vec<f64>], kee
 }
 
 /// Adds the products of tiles.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn add_products(a: &[&[f64]], b: &[&[f64]], sums: &mut [f64]) {
     let whole = a.first().map_or(0, |a| a.len() / LANES * LANES);
     for i in (0..a.len()).step_by(TOGETHER) {
@@ -106,7 +106,7 @@ fn add_products(a: &[&[f64]], b: &[&[f64]], sums: &mut [f64]) {
 }
 
 /// At most so many targets, to each the sum of all sources with its weights.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn add_sums(targets: &mut [&mut [f64]], weights: &[[f64; TOGETHER]], sources: &[&[f64]], keep: bool) {
     let whole = targets[0].len() / LANES * LANES;
     for first in (0..whole).step_by(LANES) {

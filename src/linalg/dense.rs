@@ -191,7 +191,7 @@ impl DenseLdl {
 }
 
 /// Substitution of C right-hand sides or as many as there are, from one of them on.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn substitute<const C: usize>(factors: &DenseLdl, x: &mut [f64], columns: usize, first: usize) {
     let there = first..columns.min(first + C);
     let mut w = vec![[0.0; C]; factors.d.len()];

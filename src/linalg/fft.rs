@@ -79,7 +79,7 @@ fn butterfly(x: [f64; 4], y: [f64; 4], w: [f64; 6]) -> ([f64; 4], [f64; 4]) {
     ([sx + tx, one.0, two.0, three.0], [sy + ty, one.1, two.1, three.1])
 }
 
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn first_pass(re: &[f64], im: &[f64], to_re: &mut [f64], to_im: &mut [f64], w: &[Vec<f64>; 6]) {
     let m = re.len() / 4;
     let part = |v: &[f64], k: usize, p: usize| v[k * m + p];
@@ -93,12 +93,12 @@ fn first_pass(re: &[f64], im: &[f64], to_re: &mut [f64], to_im: &mut [f64], w: &
     }
 }
 
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn pass_of_four(re: &[f64], im: &[f64], to_re: &mut [f64], to_im: &mut [f64], w: &[Vec<f64>; 6]) {
     strided(re, im, to_re, to_im, w, 4);
 }
 
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn quarter_pass(re: &[f64], im: &[f64], to_re: &mut [f64], to_im: &mut [f64], w: &[Vec<f64>; 6], stride: usize) {
     strided(re, im, to_re, to_im, w, stride);
 }
@@ -127,7 +127,7 @@ fn strided(re: &[f64], im: &[f64], to_re: &mut [f64], to_im: &mut [f64], w: &[Ve
     }
 }
 
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn half_pass(re: &[f64], im: &[f64], to_re: &mut [f64], to_im: &mut [f64], s: usize) {
     for (from, to) in [(re, to_re), (im, to_im)] {
         let (a, b) = from.split_at(s);

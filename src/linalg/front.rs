@@ -41,7 +41,7 @@ pub(super) fn eliminate(l: &mut [f64], rows: usize, rest: &mut [f64], d: &mut [f
 }
 
 /// LDLᵀ of a panel: the square on the diagonal, then the rows below.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn eliminate_panel(panel: &mut [f64], d: &mut [f64], floor: f64) {
     let (square, below) = panel.split_at_mut(SQUARE);
     let mut inverse = [0.0; WIDTH];
@@ -137,7 +137,7 @@ impl Sources<'_> {
 }
 
 /// The rows of a panel from `row` of the front on; its eliminated panels begin with `first`.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn subtract_tiles(panel: &mut [f64], l: &[f64], [rows, first, mut row]: [usize; 3], scaled: &[f64]) {
     let mut tiles = panel.chunks_exact_mut(TILE * WIDTH);
     for tile in &mut tiles {

@@ -7,10 +7,11 @@ use super::{Factors, eigen_symmetric, slab};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// A vector with |A⁻¹v − θv| ≤ this part of θ is an eigenvector; where its eigenvalue alone is wanted, the other: that is right to the
-/// square of it.
+/// A vector with |A⁻¹v − θv| ≤ this part of θ is an eigenvector; where its eigenvalue alone is wanted, the second, and where only the
+/// size of that, the third: it is right to the square of it.
 pub(super) const SHARP: f64 = 1e-8;
 pub(super) const BY_VALUE: f64 = 1e-6;
+pub(super) const BY_SIZE: f64 = 0.03;
 /// Most vectors.
 pub(super) const MOST: usize = 160;
 
@@ -85,11 +86,12 @@ impl<'a> Krylov<'a> {
         let (old, last) = (self.basis.len(), self.images.len().saturating_sub(self.block));
         let wanted = self.block.min(self.room().saturating_sub(old));
         for k in 0..wanted {
-            let next = match self.images.get(last + k) {
-                Some(image) if old > 0 => image.clone(),
-                _ => self.starts.pop().unwrap_or_else(|| self.anything()),
+            // the inverse of a block has nothing of the blocks before the last two but rounding
+            let (next, recent) = match self.images.get(last + k) {
+                Some(image) if old > 0 => (image.clone(), old.saturating_sub(2 * self.block)),
+                _ => (self.starts.pop().unwrap_or_else(|| self.anything()), 0),
             };
-            if let Some(v) = self.new_direction(next) {
+            if let Some(v) = self.new_direction(next, recent) {
                 self.basis.push(v);
             }
         }
@@ -113,12 +115,14 @@ impl<'a> Krylov<'a> {
         (0..self.inverse.order()).map(|_| self.random.random_range(-1.0..1.0)).collect()
     }
 
-    /// The part of `v` that is new, or of something random where nothing is.
-    fn new_direction(&mut self, mut v: Vec<f64>) -> Option<Vec<f64>> {
+    /// The part of `v` that is new, or of something random where nothing is; of the basis, `v` has something of the vectors from
+    /// `recent` on.
+    fn new_direction(&mut self, mut v: Vec<f64>, mut recent: usize) -> Option<Vec<f64>> {
         for _ in 0..4 {
             slab::normalise(&mut v);
-            for _ in 0..self.passes {
-                for space in [self.known, &self.basis] {
+            for pass in 0..self.passes {
+                let first = if pass + 1 < self.passes { recent } else { 0 };
+                for space in [self.known, &self.basis[first..]] {
                     slab::without(&mut v, space);
                 }
             }
@@ -127,7 +131,7 @@ impl<'a> Krylov<'a> {
                 slab::scale(&mut v, 1.0 / rest);
                 return Some(v);
             }
-            v = self.anything();
+            (v, recent) = (self.anything(), 0);
         }
         None
     }
@@ -169,18 +173,23 @@ impl<'a> Krylov<'a> {
         wanted.rev().map(vector).collect()
     }
 
-    /// How many of the first `count` vectors of [`largest`](Self::largest) are eigenvectors, one after the other.
-    pub fn converged(&self, count: usize, part: f64) -> usize {
+    /// The eigenvalues θ of the inverse that belong to the first `count` vectors of [`largest`](Self::largest), and |A⁻¹v − θv|.
+    pub fn residuals(&self, count: usize) -> Vec<(f64, f64)> {
         let (values, weights) = eigen_symmetric(&self.projected(), self.basis.len());
-        let is_one = |(theta, w): (&f64, &Vec<f64>)| self.is_eigenvector(*theta, w, &combination(w, &self.basis), part);
-        values.iter().zip(&weights).rev().take(count).take_while(|pair| is_one(*pair)).count()
+        let rest = |(theta, w): (&f64, &Vec<f64>)| (*theta, self.residual(*theta, w, &combination(w, &self.basis)));
+        values.iter().zip(&weights).rev().take(count).map(rest).collect()
     }
 
     /// Whether v = Σ w_k b_k is an eigenvector of the inverse, to a part of its eigenvalue θ.
     fn is_eigenvector(&self, theta: f64, w: &[f64], v: &[f64], part: f64) -> bool {
+        self.residual(theta, w, v) <= part * theta.abs()
+    }
+
+    /// |A⁻¹v − θv| of v = Σ w_k b_k.
+    fn residual(&self, theta: f64, w: &[f64], v: &[f64]) -> f64 {
         let mut rest = combination(w, &self.images);
         slab::add_scaled(&mut rest, -theta, v);
         slab::without(&mut rest, self.known);
-        slab::norm(&rest) <= part * theta.abs()
+        slab::norm(&rest)
     }
 }

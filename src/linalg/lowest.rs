@@ -1,7 +1,7 @@
 //! The lowest eigenvalues of a matrix: slice by slice, or by block Lanczos on the inverse; those of a matrix that is factorised
 //! already by the latter alone.
 
-use super::krylov::{BY_VALUE, Krylov, MOST, Modes, SHARP};
+use super::krylov::{BY_SIZE, BY_VALUE, Krylov, MOST, Modes, SHARP};
 use super::ritz::{Mode, none_is_missed, rayleigh_ritz};
 use super::slices::sliced;
 use super::together::{quotient, together};
@@ -33,7 +33,11 @@ pub fn lowest_modes_beside(
     known: &[Vec<f64>],
     (wanted, given): (Wanted, &[Vec<f64>]),
 ) -> Vec<Mode> {
-    let part = if wanted == Wanted::Vectors { SHARP } else { BY_VALUE };
+    let part = match wanted {
+        Wanted::Vectors => SHARP,
+        Wanted::Values => BY_VALUE,
+        Wanted::Size => BY_SIZE,
+    };
     those_below(matrix, Modes { count, below: f64::INFINITY, part }, known, given)
 }
 
@@ -241,6 +245,8 @@ mod tests {
         let a = Matrix::Sparse(sparse);
         let exact = lowest_modes(&a, 5, &[]);
         assert!(exact[1].value < 0.0 && exact[4].value > exact[3].value);
+        let size = lowest_modes_beside(&a, 1, &[], (Wanted::Size, &[]));
+        assert!((size[0].value / exact[0].value - 1.0).abs() < 1e-3, "{} {}", size[0].value, exact[0].value);
         let mut stirred = exact[0].vector.clone();
         slab::stir(&mut stirred, 0.2);
         let size = slab::norm(&stirred);

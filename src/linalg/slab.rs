@@ -11,7 +11,7 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     dot_short(a, b)
 }
 
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn dot_short(a: &[f64], b: &[f64]) -> f64 {
     let (mut low, mut high) = ([0.0; 8], [0.0; 8]);
     let (a16, b16) = (a.chunks_exact(16), b.chunks_exact(16));
@@ -95,7 +95,7 @@ pub fn add_all(v: &mut [f64], weights: &[f64], vectors: &[Vec<f64>]) {
 }
 
 /// y ← (((y + s_0 x_0) + s_1 x_1) + s_2 x_2) + s_3 x_3.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn add_four(y: &mut [f64], s: [f64; 4], [a, b, c, d]: [&[f64]; 4]) {
     for ((((y, a), b), c), d) in y.iter_mut().zip(a).zip(b).zip(c).zip(d) {
         *y = *y + s[0] * a + s[1] * b + s[2] * c + s[3] * d;
@@ -106,7 +106,7 @@ fn add_four(y: &mut [f64], s: [f64; 4], [a, b, c, d]: [&[f64]; 4]) {
 const WORK: usize = 2048;
 
 /// y ← y + s x.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 pub fn add_scaled(y: &mut [f64], s: f64, x: &[f64]) {
     for (y, x) in y.iter_mut().zip(x) {
         *y += s * x;
@@ -121,7 +121,7 @@ pub fn scale(y: &mut [f64], s: f64) {
 }
 
 /// The largest |a_k|; NaN if any entry is NaN or infinite.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 pub fn max_abs(a: &[f64]) -> f64 {
     let (mut largest, mut poison) = ([0.0; 8], [0.0; 8]);
     let mut look = |lane: usize, x: f64| {
@@ -140,7 +140,7 @@ pub fn max_abs(a: &[f64]) -> f64 {
 }
 
 /// The largest |a_k|; entries that are no numbers do not count.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 pub fn largest(a: &[f64]) -> f64 {
     let mut largest = [0.0; 16];
     let chunks = a.chunks_exact(16);
@@ -208,7 +208,7 @@ pub fn dot_pairs(a: &[f64], both: &[f64]) -> [f64; 2] {
     dot_pairs_short(a, both)
 }
 
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn dot_pairs_short(a: &[f64], both: &[f64]) -> [f64; 2] {
     let mut sums = [0.0; 16];
     let (a8, both8) = (a.chunks_exact(8), both.chunks_exact(16));
@@ -243,7 +243,7 @@ pub fn add_dots(a: &[f64], together: &[f64], sums: &mut [f64]) {
 }
 
 /// x ← x + s_0 a + s_1 b of two columns side by side.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 pub fn add_pairs(x: &mut [f64], s: [f64; 2], both: &[f64]) {
     for (x, pair) in x.iter_mut().zip(both.chunks_exact(2)) {
         *x += s[0] * pair[0] + s[1] * pair[1];
@@ -265,7 +265,7 @@ pub fn add_columns(x: &mut [f64], s: &[f64], together: &[f64]) {
 }
 
 /// Of two columns side by side and two others: a·c, b·c and b·d.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 pub fn cross_pairs(ab: &[f64], cd: &[f64]) -> [f64; 3] {
     let (mut straight, mut crossed) = ([0.0; 16], [0.0; 16]);
     let (ab16, cd16) = (ab.chunks_exact(16), cd.chunks_exact(16));
@@ -287,7 +287,7 @@ pub fn cross_pairs(ab: &[f64], cd: &[f64]) -> [f64; 3] {
 }
 
 /// Of two columns side by side, the second ← s times it plus t times the first; and a copy of both.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 pub fn turn_second(both: &mut [f64], s: f64, t: f64, copy: &mut [f64]) {
     let (own, other) = ([1.0, s, 1.0, s, 1.0, s, 1.0, s], [0.0, t, 0.0, t, 0.0, t, 0.0, t]);
     let turn = |both: &mut [f64], copy: &mut [f64]| {

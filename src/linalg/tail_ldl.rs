@@ -185,7 +185,7 @@ impl TailLdl {
     }
 }
 
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn plain_dot(a: &[f64], b: &[f64]) -> f64 {
     let mut lanes = [0.0; LANES];
     for (a, b) in a.chunks_exact(LANES).zip(b.chunks_exact(LANES)) {
@@ -197,7 +197,7 @@ fn plain_dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// s ← s + a u + b v.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn accumulate(s: &mut [f64], u: &[f64], a: f64, v: &[f64], b: f64) {
     let n = s.len();
     let (u, v) = (&u[..n], &v[..n]);
@@ -207,7 +207,7 @@ fn accumulate(s: &mut [f64], u: &[f64], a: f64, v: &[f64], b: f64) {
 }
 
 /// P ← ΦPΦ + V Wᵀ, and PCᵀ with the next site's C in the same pass; rows two by two, which share what they read.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn advance(p: &mut [f64], phi: &[f64], v: &[f64], w: &[f64], c: &[f64], pc: &mut [f64]) {
     let n = phi.len();
     let (w0, w1) = w.split_at(n);

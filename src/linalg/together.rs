@@ -1,7 +1,7 @@
 //! The lowest modes of a matrix whose factors are dear, all of them by few factors.
 //!
 //! ```text
-//! θ = uᵀAu,  ρ = |Au − θu|,   s = θ − ρ:   block Lanczos on (A − s)⁻¹
+//! block Lanczos on (A − s)⁻¹:   θ = uᵀ(A − s)⁻¹u,   ρ = |(A − s)⁻¹u − θu|,   the next s: s + 1/(θ + ρ)
 //! ```
 //! The inertia of A − s proves that no eigenvalue lies below s. The nearer s is to the lowest one, the fewer vectors the modes take: so
 //! the space of a few gives the next s, where that is much nearer; and where some modes are found, the next s lies between them and the
@@ -43,17 +43,25 @@ pub(super) fn together(matrix: &Matrix, known: &[Vec<f64>], given: &[Vec<f64>], 
     // no other eigenvalue below the one, some below the other
     let (mut low, mut high, mut down) = (f64::NEG_INFINITY, f64::INFINITY, FAR * scale);
     let (mut shift, mut memory) = (-down, Matrix::default());
+    let mut went_far = false;
     if sure == 0
-        && let Some(near) = nearer(matrix, &modes, 0, known, low, scale)
+        && let Some(lowest) = modes.first()
     {
-        shift = near;
+        let (theta, rest) = quotient(matrix, &lowest.vector, known);
+        shift = theta - rest.max(APART * scale);
     }
     for _ in 0..ROUNDS {
         memory.copy_from(matrix);
         memory.shift(-shift);
         let factors = memory.factor();
         if factors.negatives() > sure + known_values.iter().filter(|v| **v < shift).count() {
+            memory = factors.into_memory();
             high = shift;
+            if sure > 0 && !std::mem::replace(&mut went_far, true) {
+                // s may lie above the next mode
+                shift = 0.5 * (modes[sure - 1].value + high);
+                continue;
+            }
             if sure > 0 {
                 // one of the modes below was missed: all of them once more
                 (sure, low) = (0, f64::NEG_INFINITY);
@@ -61,10 +69,9 @@ pub(super) fn together(matrix: &Matrix, known: &[Vec<f64>], given: &[Vec<f64>], 
             }
             shift = if low.is_finite() { 0.5 * (low + high) } else { high - down };
             down *= 4.0;
-            memory = factors.into_memory();
             continue;
         }
-        low = shift;
+        (low, went_far) = (shift, false);
         let mut krylov = Krylov::new(&factors, &apart, SPARE + modes.len() - sure);
         krylov.starts = modes[sure..].iter().map(|mode| mode.vector.clone()).collect();
         let rest = Modes { count: wanted.count - sure, below: wanted.below - low, ..wanted };
@@ -84,9 +91,11 @@ pub(super) fn together(matrix: &Matrix, known: &[Vec<f64>], given: &[Vec<f64>], 
                 shift = low;
                 break;
             }
-            let here = krylov.converged(space.len(), wanted.part);
-            let next = nearer(matrix, &modes, sure, known, low, scale).filter(|s| *s < high);
-            let beyond = nearer(matrix, &modes, sure + here, known, low, scale).filter(|_| here > 0);
+            let inverse = krylov.residuals(space.len());
+            let here = inverse.iter().take_while(|(theta, rest)| *rest <= wanted.part * theta.abs()).count();
+            let below = |k: usize| inverse.get(k).and_then(|by| nearer(&modes, sure + k, *by, low, scale));
+            let next = below(0).filter(|s| *s < high);
+            let beyond = below(here).filter(|_| here > 0);
             if let Some(nearer) = beyond {
                 // below that one lie the modes that are found, and no other, as the next factors tell
                 sure += here;
@@ -105,13 +114,13 @@ pub(super) fn together(matrix: &Matrix, known: &[Vec<f64>], given: &[Vec<f64>], 
     (modes, false)
 }
 
-/// s below mode k, above the modes before it, and much nearer to it than `low` is.
-fn nearer(matrix: &Matrix, modes: &[Mode], k: usize, known: &[Vec<f64>], low: f64, scale: f64) -> Option<f64> {
-    let mode = modes.get(k)?;
-    let (theta, rest) = quotient(matrix, &mode.vector, known);
-    let shift = theta - rest.max(APART * scale);
+/// s below mode k, above the modes before it, and much nearer to it than `low` is: by its eigenvalue θ in (A − low)⁻¹ and the residual
+/// there, since that of A is mostly of modes far above.
+fn nearer(modes: &[Mode], k: usize, (theta, rest): (f64, f64), low: f64, scale: f64) -> Option<f64> {
+    let value = modes.get(k)?.value;
+    let shift = (low + 1.0 / (theta + rest)).min(value - APART * scale);
     let above = k.checked_sub(1).is_none_or(|before| modes[before].value < shift);
-    (above && theta - shift < NEARER * (theta - low)).then_some(shift)
+    (theta > 0.0 && above && value - shift < NEARER * (value - low)).then_some(shift)
 }
 
 /// uᵀAu and the size of what else Au has, known vectors apart.

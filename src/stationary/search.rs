@@ -156,6 +156,14 @@ impl<'a> Search<'a> {
                     return Ok(());
                 }
             } else if step.negative <= 1 {
+                // the first step of the last ones is known
+                if step.is_newton {
+                    self.next.go(self.h, &self.here, &self.region.v);
+                    if self.next.max_torque_mev() <= sharp {
+                        swap(&mut self.here, &mut self.next);
+                        return Ok(());
+                    }
+                }
                 self.here = polish(self.h, std::mem::take(&mut self.here));
                 return Ok(());
             } else if !self.leave(step.negative) {

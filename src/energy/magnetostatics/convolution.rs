@@ -75,7 +75,7 @@ impl Convolution {
     }
 }
 
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn add_pairs(k: &[f64], x: &[f64], y: &mut [f64]) {
     let n = x.len();
     for (y, x) in y.iter_mut().zip(x) {
@@ -108,7 +108,7 @@ fn packed_weights(kernel: &[f64], n: usize) -> (Vec<f64>, Vec<f64>) {
 }
 
 /// C_j ← α_j C_j + iβ_j C̄_{n−j}.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn weigh(re: &mut [f64], im: &mut [f64], alpha: &[f64], beta: &[f64]) {
     let n = re.len();
     let turn = |a: f64, b: f64, (x, y): (f64, f64), (u, v): (f64, f64)| (a * x + b * v, a * y + b * u);

@@ -153,7 +153,7 @@ fn first(damped: &[f64], b: &[Wide], x: &mut [Wide]) {
     }
 }
 
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn invert(inverse: &[f64], b: &[Wide], x: &mut [Wide]) {
     for (x, row) in x.iter_mut().zip(inverse.chunks_exact(b.len())) {
         *x = [0.0; 4];
@@ -163,14 +163,14 @@ fn invert(inverse: &[f64], b: &[Wide], x: &mut [Wide]) {
     }
 }
 
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn multiply(matrix: &Rows, x: &[Wide], out: &mut [Wide]) {
     for (i, out) in out.iter_mut().enumerate() {
         *out = matrix.times(i, x);
     }
 }
 
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn add_product(matrix: &Rows, x: &[Wide], out: &mut [Wide]) {
     for (i, out) in out.iter_mut().enumerate() {
         let here = matrix.times(i, x);
@@ -178,7 +178,7 @@ fn add_product(matrix: &Rows, x: &[Wide], out: &mut [Wide]) {
     }
 }
 
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn residual(matrix: &Rows, b: &[Wide], x: &[Wide], out: &mut [Wide]) {
     for (i, (out, b)) in out.iter_mut().zip(b).enumerate() {
         let here = matrix.times(i, x);
@@ -187,7 +187,7 @@ fn residual(matrix: &Rows, b: &[Wide], x: &[Wide], out: &mut [Wide]) {
 }
 
 /// x + ω D⁻¹ (b − A x).
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn again(matrix: &Rows, damped: &[f64], b: &[Wide], x: &[Wide], out: &mut [Wide]) {
     for (i, out) in out.iter_mut().enumerate() {
         let here = matrix.times(i, x);

@@ -25,7 +25,7 @@ pub(super) fn add_entries(front: &Front, targets: &[Target], blocks: &[[f64; 4]]
 
 /// Adds what a front has left to the columns of the one above it and to what that will leave; `slots` tell where its sites stand
 /// there.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 pub(super) fn add_left(left: &[f64], slots: &[u32], front: &Front, l: &mut [f64], rest: &mut [f64]) {
     let (rows, others, own) = (front.rows(), front.other_rows(), SITES * front.panels);
     let mut left = left;

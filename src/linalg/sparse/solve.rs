@@ -19,7 +19,7 @@ pub(super) fn solve(plan: &Symbolic, factors: &Memory, x: &mut [f64], columns: u
 }
 
 /// At most C columns.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn pass<const C: usize>(plan: &Symbolic, factors: &Memory, x: &mut [f64], columns: usize, those: Range<usize>) {
     let there = those.len();
     let mut y = vec![[[0.0; C]; 2]; plan.place.len()];

@@ -162,7 +162,7 @@ fn reached(time: f64, entry: f64, width: f64) -> f64 {
 }
 
 /// How far each spin goes between two times (rad), squared.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn squared_steps(times: [f64; 2], entries: &[f64], lengths: &[f64], width: f64, squares: &mut [f64]) {
     for ((square, x), l) in squares.iter_mut().zip(entries).zip(lengths) {
         let step = l * (reached(times[1], *x, width) - reached(times[0], *x, width));
