@@ -7,11 +7,6 @@ use super::{Factors, eigen_symmetric, slab};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// A vector with |A⁻¹v − θv| ≤ this part of θ is an eigenvector; where its eigenvalue alone is wanted, the second, and where only the
-/// size of that, the third: it is right to the square of it.
-pub(super) const SHARP: f64 = 1e-8;
-pub(super) const BY_VALUE: f64 = 1e-6;
-pub(super) const BY_SIZE: f64 = 0.03;
 /// Most vectors.
 pub(super) const MOST: usize = 160;
 

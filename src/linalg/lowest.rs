@@ -1,12 +1,14 @@
 //! The lowest eigenvalues of a matrix: slice by slice, or by block Lanczos on the inverse; those of a matrix that is factorised
 //! already by the latter alone.
 
-use super::krylov::{BY_SIZE, BY_VALUE, Krylov, MOST, Modes, SHARP};
+use super::krylov::{Krylov, MOST, Modes};
 use super::ritz::{Mode, none_is_missed, rayleigh_ritz};
 use super::slices::sliced;
 use super::together::{quotient, together};
 use super::{Factors, Matrix, Wanted, slab};
 
+/// A vector with |A⁻¹v − θv| ≤ this part of θ is an eigenvector.
+const SHARP: f64 = 1e-8;
 /// Vectors in a block: as many as modes are often degenerate, and for the rare case in which that was too few.
 const BLOCKS: [usize; 2] = [2, 4];
 /// Most Rayleigh quotients at which a matrix is factorised, and what a step leaves of the residual at least where another is due.
@@ -33,18 +35,18 @@ pub fn lowest_modes_beside(
     known: &[Vec<f64>],
     (wanted, given): (Wanted, &[Vec<f64>]),
 ) -> Vec<Mode> {
-    let part = match wanted {
-        Wanted::Vectors => SHARP,
-        Wanted::Values => BY_VALUE,
-        Wanted::Size => BY_SIZE,
-    };
-    those_below(matrix, Modes { count, below: f64::INFINITY, part }, known, given)
+    those_below(matrix, Modes { count, below: f64::INFINITY, part: residual(wanted) }, known, given)
 }
 
 /// The modes among the `count` lowest that are below a limit, but one at least; as [`lowest_modes`], without the time that the
 /// modes above the limit take, which on long chains are close together.
 pub fn soft_modes(matrix: &Matrix, count: usize, known: &[Vec<f64>], below: f64) -> Vec<Mode> {
-    those_below(matrix, Modes { count, below, part: BY_VALUE }, known, &[])
+    those_below(matrix, Modes { count, below, part: residual(Wanted::Values) }, known, &[])
+}
+
+/// What |A⁻¹v − θv| may be in parts of θ: the eigenvalue is right to the square of it.
+fn residual(wanted: Wanted) -> f64 {
+    wanted.part().sqrt().max(SHARP)
 }
 
 fn those_below(matrix: &Matrix, wanted: Modes, known: &[Vec<f64>], given: &[Vec<f64>]) -> Vec<Mode> {
@@ -185,7 +187,7 @@ mod tests {
     /// By slices and by Lanczos, far from the modes and near them, with and without the other's help.
     fn all_ways(matrix: &Matrix, count: usize, known: &[Vec<f64>]) -> [Vec<Mode>; 4] {
         let slices = sliced(matrix, count, known, f64::INFINITY).expect("slices converge");
-        let all = Modes { count, below: f64::INFINITY, part: BY_VALUE };
+        let all = Modes { count, below: f64::INFINITY, part: residual(Wanted::Values) };
         let (near, complete) = together(matrix, known, &[], all);
         assert!(complete);
         [slices, lanczos(matrix, all, known), near, lowest_modes(matrix, count, known)]

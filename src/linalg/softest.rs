@@ -46,7 +46,7 @@ pub enum Wanted {
 
 impl Wanted {
     /// The part of an eigenvalue by which it may be wrong.
-    fn part(self) -> f64 {
+    pub(super) fn part(self) -> f64 {
         match self {
             Wanted::Vectors => 0.0,
             Wanted::Values => EXACT,

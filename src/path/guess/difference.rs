@@ -72,26 +72,17 @@ impl Difference {
         let axes = if self.across.is_empty() { &self.through } else { &self.across };
         let from = self.from(place, lattice);
         let mut points: Vec<Vector> = (0..lattice.sites).map(|i| axes_of(axes, from(i))).collect();
-        let nearer = |p: &Vector, q: &Vector| {
+        points.sort_by(|p, q| {
             vector::norm(*p).total_cmp(&vector::norm(*q)).then(p.partial_cmp(q).unwrap_or(std::cmp::Ordering::Equal))
-        };
-        let wanted = NEAR[axes.len()];
+        });
         let mut near: Vec<Vector> = Vec::new();
-        let mut sorted = 0;
-        while near.len() < wanted && sorted < points.len() {
-            // few of all, and more where several have one place
-            let rest = &mut points[sorted..];
-            let few = rest.len().min(2 * wanted + sorted);
-            if few < rest.len() {
-                rest.select_nth_unstable_by(few, nearer);
+        for p in points {
+            if near.iter().all(|q| vector::norm(vector::sub(p, *q)) > EQUAL) {
+                near.push(p);
             }
-            rest[..few].sort_by(nearer);
-            for p in &rest[..few] {
-                if near.len() < wanted && near.iter().all(|q| vector::norm(vector::sub(*p, *q)) > EQUAL) {
-                    near.push(*p);
-                }
+            if near.len() == NEAR[axes.len()] {
+                break;
             }
-            sorted += few;
         }
         let Some(found) = nearest_hollow(&near, axes.len()) else { return place };
         axes.iter().zip(found).fold(place, |sum, (e, x)| vector::add(sum, vector::scale(x, *e)))
