@@ -37,7 +37,8 @@ impl<'a> Run<'a, '_> {
         Ok(vec![c])
     }
 
-    /// The natural first paths, the most promising first: a few evaluations each, the best two followed to their saddles.
+    /// The natural first paths, the most promising first: a few evaluations each, the best two (on a film the best of each kind) followed to
+    /// their saddles.
     pub(super) fn natural(&mut self) -> Result<Vec<FirstPath<'a>>> {
         let mut tried = Vec::new();
         let context = self.context();
@@ -63,11 +64,12 @@ impl<'a> Run<'a, '_> {
         let (mut finished, mut lowest_barrier) = (0, f64::INFINITY);
         let mut kinds: Vec<String> = vec!["geodesic".into()];
         for c in &mut tried {
-            // a collapse and an escape over an edge are two answers, and both are told
-            let is_other = !is_row && !kinds.iter().any(|k| k == c.kind());
+            // on a film a collapse and an escape over an edge are two answers, and both are told
+            let is_other = if is_row { finished < 2 } else { !kinds.iter().any(|k| k == c.kind()) };
+            let part = if is_row { WORTH } else { OF_OTHER_KINDS };
             let is_below = |part: f64| c.peak_mev() < part * lowest_barrier;
             // a top that stands below every saddle may be a lower one
-            let is_worth = is_below(1.0) || finished < 2 && is_below(WORTH) || is_other && is_below(OF_OTHER_KINDS);
+            let is_worth = is_below(1.0) || is_other && is_below(part);
             if self.problem.seeks_saddles() && is_worth {
                 self.conclude(c)?;
                 c.band.rest();

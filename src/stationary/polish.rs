@@ -15,15 +15,20 @@ const IN_VAIN: usize = 2;
 
 /// The stationary point that `here` all but is, the zero modes left as they are. A point from which Newton's method leads far
 /// away, or nowhere, is given back as it came.
-pub fn polish(h: Evaluator, mut here: Point) -> Point {
+pub fn polish(h: Evaluator, here: Point) -> Point {
+    polish_on(&mut Region::new(h, LAST_DIGITS), here)
+}
+
+/// The same, by steps that go on from those before.
+pub(super) fn polish_on(region: &mut Region, mut here: Point) -> Point {
+    let h = region.h;
     let sharp = SHARP * h.stiffness_mev();
-    let mut region = Region::new(h, LAST_DIGITS);
     let mut best = here.clone();
     let mut in_vain = 0;
     for _ in 0..STEPS {
         let least = best.max_torque_mev();
         // a NaN is no small rotation either
-        let goes_on = least > sharp && in_vain < IN_VAIN && !h.is_stopped() && region.plain(&here) < LAST_DIGITS;
+        let goes_on = least > sharp && in_vain < IN_VAIN && !h.is_stopped() && region.last(&here) < LAST_DIGITS;
         if !goes_on {
             break;
         }

@@ -1,6 +1,7 @@
 //! Relaxing a state to its minimum: Newton's method with a shift that keeps the Hessian positive, and descent checked.
 
-use super::tolerances::{ALIKE, FIRST_SHIFT, LARGER, LAST_SHIFT, NEARLY, ROUNDING, STATIONARY, STRIDE};
+use super::polish::polish;
+use super::tolerances::{ALIKE, FIRST_SHIFT, LARGER, LAST_DIGITS, LAST_SHIFT, NEARLY, ROUNDING, STATIONARY, STRIDE};
 use super::unfactored::Unfactored;
 use super::{Downhill, Point, Spectrum, State, descend, pin_all};
 use crate::energy::Evaluator;
@@ -110,11 +111,15 @@ fn stationary(h: Evaluator, mut p: Point, tolerance_mev: f64, steps: &mut usize,
         let nearly = NEARLY * tolerance_mev;
         // a smaller shift is a longer step, which may be what it takes; along a soft mode it first costs torque across it
         stalled = if torque > 0.5 * before && torque < nearly && shift >= shifted { stalled + 1 } else { 0 };
+        let is_last = shift == 0.0 && largest_angle(&p.m, &next.m) < LAST_DIGITS && h.has_dear_factors();
         if before < nearly && before < torque && best.as_ref().is_none_or(|b| before < b.max_torque_mev()) {
             best = Some(p);
         }
         p = next;
         *steps += 1;
+        if is_last && !h.forgoes_factors() && p.max_torque_mev() > tolerance_mev {
+            p = polish(h, p);
+        }
     }
     let least = p.max_torque_mev();
     Ok(best.filter(|best| best.max_torque_mev() < least).unwrap_or(p))

@@ -1,14 +1,14 @@
 //! The search for a saddle of index one, from any state.
 
 use super::point::Point;
-use super::polish::polish;
+use super::polish::polish_on;
 use super::spectrum::Spectrum;
 use super::state::State;
 use super::step::{Region, Step};
 use super::tolerances::{FLAT, ROUGHLY, SHARP, STEP};
 use crate::energy::Evaluator;
 use crate::linalg::slab;
-use std::mem::swap;
+use std::mem::{swap, take};
 
 /// How far a stationary state of too many negative directions is left along the lowest of the wrong ones (rad, any spin).
 const LEAVE: f64 = 0.1;
@@ -159,12 +159,11 @@ impl<'a> Search<'a> {
                 // the first step of the last ones is known
                 if step.is_newton {
                     self.next.go(self.h, &self.here, &self.region.v);
-                    if self.next.max_torque_mev() <= sharp {
+                    if self.next.max_torque_mev() < torque {
                         swap(&mut self.here, &mut self.next);
-                        return Ok(());
                     }
                 }
-                self.here = polish(self.h, std::mem::take(&mut self.here));
+                self.here = polish_on(&mut self.region, take(&mut self.here));
                 return Ok(());
             } else if !self.leave(step.negative) {
                 return Err(GaveUp::Stuck);

@@ -15,6 +15,8 @@ use super::point::Point;
 use super::spectrum::floor_mev;
 use super::tolerances::{ALIKE, FEW, FIRST_SHIFT, LARGER, LAST_DIGITS, LAST_SHIFT, ROUGHLY};
 use crate::energy::Evaluator;
+use crate::field::project;
+use crate::hessian::TangentBasis;
 use crate::linalg::{Factors, Matrix, lowest_modes, modes_by_factors, remove, slab};
 use crate::sphere::rotation_of;
 use std::mem::take;
@@ -29,11 +31,24 @@ pub struct Region<'a> {
     largest: f64,
     pub(super) hessian: Matrix,
     room: Matrix,
+    kept: Option<Kept>,
     /// The lowest modes when they were last needed (3N each).
     pub(super) modes: Vec<Vec<f64>>,
     pub(super) x: Vec<f64>,
     /// The step (3N).
     pub v: Vec<f64>,
+}
+
+/// The factors of a step, where they are dear and the step is theirs alone; they serve for the next steps too as long as each is much
+/// shorter than the one before.
+#[derive(Debug)]
+struct Kept {
+    factors: Factors,
+    /// Where they are of.
+    basis: TangentBasis,
+    zeros: Vec<Vec<f64>>,
+    /// Largest rotation of a spin in the last step by them (rad).
+    rotation: f64,
 }
 
 /// What became of the part of a step along a mode that is all but flat.
@@ -44,6 +59,12 @@ enum Soft {
     Kept,
     /// It was left out; whether the mode's curvature is negative, by chance where it is flat to rounding.
     Frozen { falls: bool, is_flat: bool },
+}
+
+impl Soft {
+    fn is_none(&self) -> bool {
+        matches!(self, Soft::None)
+    }
 }
 
 /// A step.
@@ -68,7 +89,7 @@ impl<'a> Region<'a> {
     pub fn new(h: Evaluator<'a>, radius: f64) -> Region<'a> {
         let [hessian, room] = [(); 2].map(|()| Matrix::default());
         let (modes, x, v) = (Vec::new(), Vec::new(), Vec::new());
-        Region { h, radius, largest: radius, hessian, room, modes, x, v }
+        Region { h, radius, largest: radius, hessian, room, kept: None, modes, x, v }
     }
 
     /// Newton's step from a point, in `v`, wherever it leads (without factors, [`step`](Self::step)'s); its largest rotation of a spin (rad).
@@ -78,30 +99,80 @@ impl<'a> Region<'a> {
             self.iterate(here);
         } else {
             let factors = self.newton(here);
-            self.freeze(here, &factors);
-            self.room = factors.into_memory();
+            let soft = self.freeze(here, &factors);
+            self.keep(here, factors, soft.is_none());
         }
         here.write_field(&self.x, &mut self.v);
-        rotation_of(&self.v)
+        self.turned()
+    }
+
+    /// One of the last steps to a point of rest, in `v`: by the factors of the step before, where they still serve, or Newton's; its
+    /// largest rotation of a spin (rad).
+    pub fn last(&mut self, here: &Point) -> f64 {
+        self.again(here).unwrap_or_else(|| self.plain(here))
+    }
+
+    /// The step by the factors of the step before, in `x` and `v`, where they still serve; its largest rotation of a spin (rad).
+    fn again(&mut self, here: &Point) -> Option<f64> {
+        let Kept { factors, basis, zeros, rotation: last } = self.kept.as_mut().filter(|k| k.rotation < LAST_DIGITS)?;
+        here.write_field(&here.slope, &mut self.v);
+        basis.write_coordinates(&self.v, &mut self.x);
+        slab::scale(&mut self.x, -1.0);
+        factors.solve(&mut self.x, 1);
+        remove(&mut self.x, zeros);
+        basis.field(&self.x, &mut self.v);
+        project(&here.m, &mut self.v);
+        let rotation = rotation_of(&self.v);
+        let serves = LARGER * rotation < *last;
+        *last = rotation;
+        serves.then_some(rotation)
+    }
+
+    /// Keeps factors for the next steps, or their memory.
+    fn keep(&mut self, here: &Point, factors: Factors, serve: bool) {
+        if serve && self.h.has_dear_factors() {
+            let (basis, zeros) = (here.basis.clone(), here.zeros.clone());
+            self.kept = Some(Kept { factors, basis, zeros, rotation: f64::INFINITY });
+        } else {
+            self.room = factors.into_memory();
+        }
+    }
+
+    /// The largest rotation of a spin in the step (rad), which is that of the factors that are kept.
+    fn turned(&mut self) -> f64 {
+        let rotation = rotation_of(&self.v);
+        if let Some(kept) = &mut self.kept {
+            kept.rotation = rotation;
+        }
+        rotation
     }
 
     /// The step from a point, in `v`.
     pub fn step(&mut self, here: &Point) -> Step {
+        if let Some(rotation) = self.again(here) {
+            here.basis.write_coordinates(&self.v, &mut self.x);
+            let (rise_mev, size_mev) = self.promises(here);
+            return Step { negative: 1, rotation, is_newton: true, is_underway: false, rise_mev, size_mev };
+        }
         here.write_hessian(self.h, 0.0, &mut self.hessian);
         let (negative, leads_on) =
             if self.h.forgoes_factors() { (self.iterate(here), false) } else { self.by_factors(here) };
         here.write_field(&self.x, &mut self.v);
         self.h.hold_frozen(&mut self.v);
-        let rotation = rotation_of(&self.v);
+        let rotation = self.turned();
         let whole = rotation <= self.radius;
         if !whole {
             slab::scale(&mut self.x, self.radius / rotation);
             slab::scale(&mut self.v, self.radius / rotation);
         }
-        let rise_mev = here.predicted_mev(&self.hessian, &self.x);
-        let size_mev = slab::norm(&self.x) * slab::norm(&here.slope);
+        let (rise_mev, size_mev) = self.promises(here);
         let (is_newton, is_underway) = (whole && negative == 1, leads_on || rotation > LAST_DIGITS);
         Step { negative, rotation: rotation.min(self.radius), is_newton, is_underway, rise_mev, size_mev }
+    }
+
+    /// What the step `x` promises: by how much the energy rises, and |g||s| (meV).
+    fn promises(&self, here: &Point) -> (f64, f64) {
+        (here.predicted_mev(&self.hessian, &self.x), slab::norm(&self.x) * slab::norm(&here.slope))
     }
 
     /// Writes the step to `x`; how many directions are negative, and whether the step leads along a mode that is all but flat, or is to be
@@ -121,7 +192,7 @@ impl<'a> Region<'a> {
             2..=FEW => self.reverse(here, &factors, 1..negative),
             _ => {}
         }
-        self.room = factors.into_memory();
+        self.keep(here, factors, all == 1 && soft.is_none());
         if negative > FEW {
             self.shifted(here);
         }
@@ -155,6 +226,9 @@ impl<'a> Region<'a> {
 
     /// Newton's step in `x`; the factors.
     fn newton(&mut self, here: &Point) -> Factors {
+        if let Some(kept) = self.kept.take() {
+            self.room = kept.factors.into_memory();
+        }
         let mut matrix = take(&mut self.room);
         matrix.copy_from(&self.hessian);
         pin_all(&mut matrix, &here.zeros, self.h.stiffness_mev());

@@ -4,10 +4,11 @@
 
 use super::clock::Ways;
 use super::difference::Difference;
-use super::front::Front;
+use super::front::{Front, Turning};
 use super::{FirstGuess, GuessContext};
 use crate::error::{Error, Result};
 use crate::geometry::Direction;
+use crate::lattice::Lattice;
 use crate::path::Path;
 use crate::registry::Described;
 use crate::spins::Spins;
@@ -60,7 +61,15 @@ impl Described for Droplet {
 impl FirstGuess for Droplet {
     fn path(&self, a: &Spins, b: &Spins, images: usize, context: &GuessContext) -> Result<Path> {
         let lattice = context.states.lattice;
-        let difference = Difference::between(a, b, lattice);
+        let turning = Turning { axis: self.axis, helicity: self.helicity };
+        let front = self.front(&Difference::between(a, b, lattice), lattice)?;
+        front.path(self.width, turning, &Ways::between(a, b), images, context)
+    }
+}
+
+impl Droplet {
+    /// Its front, where two states differ as told.
+    pub(super) fn front<'l>(&self, difference: &Difference, lattice: &'l Lattice) -> Result<Front<'l>> {
         let center = match &self.center {
             Some(place) => lattice.point(place).map_err(|e| e.within("center"))?,
             None => difference.hollow(difference.middle, lattice),
@@ -73,6 +82,6 @@ impl FirstGuess for Droplet {
         let shrinks = self.of == Inside::Initial;
         let mut front = Front::round(difference.from(center, lattice), shrinks, lattice.sites);
         front.places.iter_mut().for_each(|r| *r = if shrinks { r.min(-radius) } else { r.max(radius) });
-        front.with(self.width, self.axis, self.helicity).path(&Ways::between(a, b), images, context)
+        Ok(front)
     }
 }

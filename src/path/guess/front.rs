@@ -57,10 +57,6 @@ pub(super) struct Front<'a> {
     pub(super) fold: Option<Fold>,
     /// Which way it goes at a site.
     pub(super) way: Box<dyn Fn(usize) -> Vector + Sync + 'a>,
-    /// As wide as that, or four times as wide as a wall.
-    pub(super) width: Option<Extent>,
-    /// How opposite spins turn.
-    pub(super) turning: Turning,
 }
 
 impl<'a> Front<'a> {
@@ -86,25 +82,27 @@ impl<'a> Front<'a> {
 
     /// Over places, one way at each site.
     pub(super) fn new(places: Vec<f64>, way: impl Fn(usize) -> Vector + Sync + 'a) -> Front<'a> {
-        Front { places, fold: None, way: Box::new(way), width: None, turning: Turning::default() }
+        Front { places, fold: None, way: Box::new(way) }
     }
 
-    /// The same with a width, an axis and a helicity as configs have them.
-    pub(super) fn with(self, width: Option<Extent>, axis: Option<Direction>, helicity: Option<Angle>) -> Front<'a> {
-        Front { width, turning: Turning { axis, helicity }, ..self }
-    }
-
-    /// The path on which it passes.
-    pub(super) fn path(self, ways: &Ways, images: usize, context: &GuessContext) -> Result<Path> {
-        if self.turning.axis.is_some() && self.turning.helicity.is_some() {
+    /// The path on which it passes, as wide as that, or four times as wide as a wall.
+    pub(super) fn path(
+        &self,
+        width: Option<Extent>,
+        turning: Turning,
+        ways: &Ways,
+        images: usize,
+        context: &GuessContext,
+    ) -> Result<Path> {
+        if turning.axis.is_some() && turning.helicity.is_some() {
             let message =
                 "opposite spins turn about an \"axis\" or at a \"helicity\" to the front: give one of the two";
             return Err(Error::invalid("helicity", message));
         }
-        let width = self.width.map(|width| context.states.lattice.spacings(width).map_err(|e| e.within("width")));
-        let about = self.turning.about(ways, context, &*self.way);
+        let width = width.map(|width| context.states.lattice.spacings(width).map_err(|e| e.within("width")));
+        let about = turning.about(ways, context, &*self.way);
         let lengths = about.lengths();
-        let (mut entries, extent) = entered(self.places, &lengths);
+        let (mut entries, extent) = entered(self.places.clone(), &lengths);
         let half = extent / 2.0;
         match self.fold {
             Some(Fold::Outwards) => entries.iter_mut().for_each(|x| *x = (*x - half).abs()),

@@ -14,6 +14,7 @@
 
 use super::difference::Difference;
 use super::drift::exits;
+use super::front::{Front, Turning};
 use super::outline::Outline;
 use super::{Drift, Droplet, Edge, Geodesic, GuessContext, GuessSpec, Inside, NoiseSpec, Shrink, Sweep, Ways};
 use crate::energy::Hamiltonian;
@@ -102,17 +103,23 @@ impl Route {
 /// energies as they are made.
 pub fn natural(h: &Hamiltonian, a: &Spins, b: &Spins, context: &GuessContext) -> Vec<(GuessSpec, Option<NoiseSpec>)> {
     let lattice = h.lattice();
-    let choice = Ways::between(a, b).have_a_choice();
-    let path = |guess: &GuessSpec, images: usize| guess.member().path(a, b, images, context).ok();
+    let (ways, difference) = (Ways::between(a, b), Difference::between(a, b, lattice));
+    let choice = ways.have_a_choice();
     let mut found: Vec<(GuessSpec, Vec<f64>)> = Vec::new();
-    for route in routes(a, b, h) {
-        let halfway = |sense: Sense| {
-            let middle = path(&route.guess(sense, lattice), 3);
-            middle.map_or(f64::INFINITY, |path| h.energy_mev(path.image(1)))
+    for route in routes(a, b, h, &difference) {
+        let front = front(&route.guess(Sense::AtHelicity(0.0), lattice), &ways, &difference, lattice);
+        let path = |sense: Sense, images: usize| match (&route, &front) {
+            (Route::Geodesic, _) => Ok(Geodesic { axis: sense.axis() }.along(&ways, images, context)),
+            (_, None) => route.guess(sense, lattice).member().path(a, b, images, context),
+            (_, Some(front)) => {
+                let turning = Turning { axis: sense.axis(), helicity: sense.helicity() };
+                front.path(None, turning, &ways, images, context)
+            }
         };
+        let halfway = |sense: Sense| path(sense, 3).map_or(f64::INFINITY, |path| h.energy_mev(path.image(1)));
         for sense in best_senses(route.senses(h, choice), h.stiffness_mev(), halfway) {
             let guess = route.guess(sense, lattice);
-            let Some(energies) = path(&guess, COMPARED).map(|path| profile(h, &path)) else { continue };
+            let Ok(energies) = path(sense, COMPARED).map(|path| profile(h, &path)) else { continue };
             let alike = |other: &(GuessSpec, Vec<f64>)| same(&energies, &other.1, h.stiffness_mev());
             if !found.iter().any(alike) {
                 found.push((guess, energies));
@@ -123,14 +130,23 @@ pub fn natural(h: &Hamiltonian, a: &Spins, b: &Spins, context: &GuessContext) ->
     let is_geodesic = |guess: &GuessSpec| matches!(guess, GuessSpec::Geodesic(_));
     found.sort_by(|p, q| is_geodesic(&q.0).cmp(&is_geodesic(&p.0)).then(highest(p).total_cmp(&highest(q))));
     let noise = NoiseSpec { amplitude: Angle(NOISE), seed: 5 };
-    let coherent = |guess: &GuessSpec| is_geodesic(guess) && choice && !Difference::between(a, b, lattice).is_spot();
+    let coherent = |guess: &GuessSpec| is_geodesic(guess) && choice && !difference.is_spot();
     found.into_iter().map(|(guess, _)| (guess.clone(), (!coherent(&guess)).then_some(noise))).collect()
 }
 
+/// The front of a guess that has one: it is the same for all senses.
+fn front<'l>(guess: &GuessSpec, ways: &Ways, difference: &Difference, lattice: &'l Lattice) -> Option<Front<'l>> {
+    match guess {
+        GuessSpec::Sweep(sweep) => sweep.front(ways, lattice).ok(),
+        GuessSpec::Shrink(shrink) => shrink.front(ways, difference, lattice).ok(),
+        GuessSpec::Droplet(droplet) => droplet.front(difference, lattice).ok(),
+        _ => None,
+    }
+}
+
 /// The ways that fit how two states differ.
-fn routes(a: &Spins, b: &Spins, h: &Hamiltonian) -> Vec<Route> {
+fn routes(a: &Spins, b: &Spins, h: &Hamiltonian, difference: &Difference) -> Vec<Route> {
     let lattice = h.lattice();
-    let difference = Difference::between(a, b, lattice);
     let direction = |v: &Vector| Direction::new(*v).ok();
     let mut routes = vec![Route::Geodesic];
     if difference.is_spot() {

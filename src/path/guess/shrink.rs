@@ -5,10 +5,11 @@
 
 use super::clock::Ways;
 use super::difference::{Difference, is_rougher};
-use super::front::Front;
+use super::front::{Front, Turning};
 use super::{FirstGuess, GuessContext};
 use crate::error::Result;
 use crate::geometry::Direction;
+use crate::lattice::Lattice;
 use crate::path::Path;
 use crate::registry::Described;
 use crate::spins::Spins;
@@ -43,13 +44,21 @@ impl Described for Shrink {
 impl FirstGuess for Shrink {
     fn path(&self, a: &Spins, b: &Spins, images: usize, context: &GuessContext) -> Result<Path> {
         let lattice = context.states.lattice;
-        let difference = Difference::between(a, b, lattice);
+        let turning = Turning { axis: self.axis, helicity: self.helicity };
+        let ways = Ways::between(a, b);
+        self.front(&ways, &Difference::between(a, b, lattice), lattice)?
+            .path(self.width, turning, &ways, images, context)
+    }
+}
+
+impl Shrink {
+    /// Its front, where two states differ as told.
+    pub(super) fn front<'l>(&self, ways: &Ways, difference: &Difference, lattice: &'l Lattice) -> Result<Front<'l>> {
         let center = match &self.center {
             Some(place) => lattice.point(place).map_err(|e| e.within("center"))?,
             None => difference.hollow(difference.middle, lattice),
         };
-        let inwards = !is_rougher(b, a, lattice);
-        let front = Front::round(difference.from(center, lattice), inwards, lattice.sites);
-        front.with(self.width, self.axis, self.helicity).path(&Ways::between(a, b), images, context)
+        let inwards = !is_rougher(ways.b, ways.a, lattice);
+        Ok(Front::round(difference.from(center, lattice), inwards, lattice.sites))
     }
 }

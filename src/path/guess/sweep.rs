@@ -3,7 +3,7 @@
 
 use super::clock::Ways;
 use super::difference::Difference;
-use super::front::{Fold, Front, MOVES};
+use super::front::{Fold, Front, MOVES, Turning};
 use super::outline::Outline;
 use super::{FirstGuess, GuessContext};
 use crate::error::{Error, Result};
@@ -132,9 +132,13 @@ impl FirstGuess for Sweep {
 impl Sweep {
     /// The path along ways that are known.
     pub(crate) fn along(&self, ways: &Ways, images: usize, context: &GuessContext) -> Result<Path> {
-        let lattice = context.states.lattice;
-        let front = if lattice.is_row() { self.along_row(ways, lattice) } else { self.over(ways, lattice)? };
-        front.with(self.width, self.axis, self.helicity).path(ways, images, context)
+        let turning = Turning { axis: self.axis, helicity: self.helicity };
+        self.front(ways, context.states.lattice)?.path(self.width, turning, ways, images, context)
+    }
+
+    /// Its front.
+    pub(super) fn front<'l>(&self, ways: &Ways, lattice: &'l Lattice) -> Result<Front<'l>> {
+        if lattice.is_row() { Ok(self.along_row(ways, lattice)) } else { self.over(ways, lattice) }
     }
 
     fn along_row<'l>(&self, ways: &Ways, lattice: &'l Lattice) -> Front<'l> {
