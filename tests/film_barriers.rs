@@ -8,7 +8,7 @@ use spinneb::files::{Images, Stored};
 use spinneb::geometry::{Direction, Vector, rotate, vector};
 use spinneb::landscape::{Effort, Peak, Saddle, peaks};
 use spinneb::lattice::Lattice;
-use spinneb::path::Path;
+use spinneb::path::{Path, largest_angle};
 use spinneb::path::guess::{GuessSpec, PathFile};
 use spinneb::spins::Spins;
 use spinneb::stationary::{Downhill, Spectrum, State, descend, refine, relax_to_minimum};
@@ -291,6 +291,23 @@ fn a_skyrmion_put_between_four_sites_is_no_minimum_and_is_left() {
         assert!((spectrum.lowest_mev[0] - 6.8397e-5).abs() < 1e-8, "{:?}", spectrum.lowest_mev);
     }
     assert!(h.difference_mev(a.spins.as_slice(), b.spins.as_slice()).abs() < 1e-12);
+}
+
+#[test]
+fn the_last_digits_of_a_film_take_the_factors_of_one_step_and_rest_as_exactly() {
+    let problem = skyrmion(40, 1.0, 20.0);
+    let h = problem.evaluator();
+    let tolerance = 1e-14 * h.stiffness_mev();
+    let minimum = &problem.final_state;
+    let turned = |i: usize| rotate(minimum.get(i), Direction::X, 0.02 * (0.7 * i as f64).sin());
+    let beside = Spins::from_vectors(&(0..minimum.sites()).map(turned).collect::<Vec<_>>()).unwrap();
+    let before = h.evaluated();
+    let again = relax_to_minimum(h, &beside, tolerance).unwrap();
+    let count = h.evaluated().since(before);
+    // one to begin with, one whose factors serve to the end, and that of the spectrum
+    assert!(count.hessians <= 3 && count.evaluations > count.hessians, "{count:?}");
+    assert!(again.max_torque_mev <= tolerance && again.spectrum.unwrap().negative == 0);
+    assert!(largest_angle(again.spins.as_slice(), minimum.as_slice()) < 1e-9);
 }
 
 #[test]

@@ -117,6 +117,7 @@ fn stationary(h: Evaluator, mut p: Point, tolerance_mev: f64, steps: &mut usize,
         }
         p = next;
         *steps += 1;
+        // from here on the factors of one step serve
         if is_last && !h.forgoes_factors() && p.max_torque_mev() > tolerance_mev {
             p = polish(h, p);
         }
