@@ -9,10 +9,10 @@ use super::scales::LEAST_IMAGES;
 use super::{Images, Stop};
 use crate::band::Band;
 use crate::error::Result;
-use crate::landscape::{Effort, Peak, Saddle, ZOOMS, peaks, promising, zoomed};
+use crate::landscape::{Effort, Peak, Saddle, peaks, promising, zoomed};
 use crate::path::guess::{GuessSpec, NoiseSpec, add_noise, moving_sites, smooth};
 use crate::path::{COARSE, Path};
-use crate::stationary::ALIKE;
+use crate::stationary::{ALIKE, FEW};
 
 /// Evaluations after which first paths are compared.
 const TRIAL: usize = 8;
@@ -139,7 +139,7 @@ impl<'a> Run<'a, '_> {
     fn zoom(&mut self, c: &mut FirstPath<'a>) -> Result<Option<Peak>> {
         let scale = self.tools.scales.stiffness_mev;
         let mut tops = peaks(&c.band, scale);
-        for _ in 0..ZOOMS {
+        for _ in 0..FEW {
             let images = self.problem.images.asked_for().unwrap_or(c.band.images() + 8);
             let Some(path) = zoomed(&c.band, tops.first(), images) else { break };
             c.band = Band::continued(self.problem.evaluator(), path, c.band.evaluations());

@@ -13,10 +13,8 @@ use crate::error::Result;
 use crate::path::{Path, largest_angle};
 use crate::sphere::SAME;
 use crate::spins::Spins;
+use crate::stationary::FEW;
 use rayon::prelude::*;
-
-/// Rounds of making a stretch's images fewer radians apart.
-const ROUNDS: usize = 12;
 
 /// A path, and which of its images are stationary and stay where they are.
 pub struct Assembled {
@@ -116,7 +114,7 @@ fn stretches(land: &Landscape, passes: &[Pass], a: &Spins, b: &Spins) -> Option<
 fn counts(pieces: &[Stretch], images: Option<usize>, apart: f64) -> Option<Vec<usize>> {
     let enough = |piece: &Path| {
         let mut n = 3;
-        for _ in 0..ROUNDS {
+        for _ in 0..FEW {
             let far = piece.resampled(n).largest_rotation();
             if far <= apart {
                 break;

@@ -4,16 +4,14 @@
 use super::flat::flat_way;
 use super::pass::{Pass, Sides};
 use super::ways::{WAYS, way};
-use super::zoom::{ZOOMS, zoomed};
+use super::zoom::zoomed;
 use super::{Doubt, Landscape, Peak, Saddle, highest, peaks, turned, turns};
 use crate::band::Band;
 use crate::error::Result;
 use crate::path::guess::GuessContext;
 use crate::path::{COARSE, Path, distance};
 use crate::spins::Spins;
-
-/// Intervals, at least, of a part of the path that is a way.
-const FEWEST: usize = 5;
+use crate::stationary::FEW;
 
 /// What relaxes bands.
 pub trait Bands: Sync {
@@ -82,7 +80,7 @@ impl Connector<'_> {
         let ends = pair.map(|k| &land.minima()[k].spins);
         let places = ends.map(nearest);
         let [i, j] = places;
-        if i.abs_diff(j) < FEWEST {
+        if i.abs_diff(j) < FEW {
             return None;
         }
         let mut row: Vec<Spins> = (i.min(j) + 1..i.max(j)).map(|k| path.spins(k)).collect();
@@ -103,7 +101,7 @@ impl Connector<'_> {
             land.merge(pair, flat);
             return Ok(());
         }
-        for _ in 0..ZOOMS {
+        for _ in 0..FEW {
             let Some(path) = zoomed(&band, highest(&band, self.sides.c).as_ref(), band.images() + 4) else { break };
             band = Band::new(h, path);
             self.bands.loosely(&mut band)?;

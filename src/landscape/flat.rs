@@ -8,12 +8,10 @@ use crate::geometry::Direction;
 use crate::path::{COARSE, Path, largest_angle};
 use crate::sphere::SAME;
 use crate::spins::Spins;
+use crate::stationary::STEP;
 
 /// A way that is lower than this part of c after a little relaxation may be flat.
 const LOW: f64 = 1e-3;
-/// Neighbouring images of a flat way are nearer than minima of a lattice that holds a wall or a soliton fast (rad, any spin): one that is
-/// broader than five sites it does not hold.
-const HOP: f64 = 0.2;
 /// How often a flat way's images are doubled until they are.
 const DOUBLINGS: usize = 6;
 
@@ -108,7 +106,8 @@ pub fn flat_way(bands: &dyn Bands, band: &Band, c: f64, level_mev: f64) -> Resul
             break;
         }
         path = band.into_path();
-        if path.largest_rotation() < HOP {
+        // nearer than minima of a lattice that holds a wall or a soliton fast: one that is broader than five sites it does not hold
+        if path.largest_rotation() < STEP {
             return Ok(Some(path));
         }
         path = path.doubled();

@@ -52,4 +52,4 @@ pub use places::{Places, Seen};
 pub use saddle::Saddle;
 pub use search::{Aim, Effort, KINDS, Searched, Settings, Standing, search};
 pub use stored::{are_counts, are_finite, fit};
-pub use zoom::{ZOOMS, zoomed};
+pub use zoom::zoomed;

@@ -26,8 +26,6 @@ use serde::{Deserialize, Serialize};
 
 /// Kinds of minima, at most: of a search for a route, and of a survey for each step of effort.
 pub const KINDS: usize = 1000;
-/// Gradients and Hessians that a climb takes at least.
-const A_CLIMB: usize = 15;
 /// The seed of everything random in a search.
 const SEED: u64 = 0x5ea2c4;
 
@@ -194,7 +192,7 @@ pub fn search(
         }
         let cut = Cut::of(land, aim.ends(), aim.below_mev(land, top_mev), settings.context);
         let a_climb = match done.searches {
-            0 => Count { evaluations: A_CLIMB, hessians: A_CLIMB }.part_of(settings.together),
+            0 => Count { evaluations: FEW, hessians: FEW }.part_of(settings.together),
             climbs => worked.part_of(settings.together) / climbs as f64,
         };
         let side_by_side = FEW.min((1.0 / a_climb) as usize).max(1);

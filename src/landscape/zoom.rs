@@ -4,9 +4,6 @@ use super::Peak;
 use crate::band::Band;
 use crate::path::Path;
 
-/// How often a part of the path is made finer.
-pub const ZOOMS: usize = 4;
-
 /// The path with more of its images in the first or last interval, if its top is there: or, if none shows, at its higher end
 /// (between two minima there is one).
 pub fn zoomed(band: &Band, top: Option<&Peak>, images: usize) -> Option<Path> {

@@ -17,7 +17,7 @@ use super::quench::quench;
 use super::spectrum::Spectrum;
 use super::state::State;
 use super::stroll::SOFT;
-use super::tolerances::{FEW, FLAT, LARGER, LAST_DIGITS, LAST_SHIFT, SHARP, STATIONARY, STEP};
+use super::tolerances::{FAR, FEW, FLAT, LARGER, LAST_DIGITS, LAST_SHIFT, SHARP, STATIONARY, STEP};
 use super::trail::Trail;
 use super::unfactored::Unfactored;
 use crate::energy::Evaluator;
@@ -35,14 +35,13 @@ const ERROR: f64 = 0.01;
 const GENTLE: f64 = 1e-5;
 /// Where the valley itself was followed, the flow takes over at this slope.
 pub(super) const STEEP: f64 = LARGER * GENTLE;
+/// A state whose spins are turned by less than this (rad, any spin) has been reached.
+const REACHED: f64 = 0.03;
 /// Differences of energies below this part of the stiffness may be rounding error.
 pub(super) const NOISE: f64 = 64.0 * f64::EPSILON;
 /// Most times that a descent goes on along a valley, and most steps of the flow each time.
 const ROUNDS: usize = 24;
 pub(super) const STEPS: usize = 20_000;
-/// A state whose spins are turned by less than this (rad, any spin) is beside another, and by less than that has reached it.
-const BESIDE: f64 = 1.5;
-const REACHED: f64 = 0.03;
 
 /// Where a descent ended.
 #[derive(Debug)]
@@ -273,7 +272,7 @@ impl Walk<'_> {
     /// lattice: to a state beside it, if the valley falls all the way, as the place half-way tells; whether it does.
     fn fork(&mut self) -> bool {
         let (from, rounding) = (self.here.clone(), self.h.rounding_mev());
-        let Some(end) = self.nearest().filter(|end| largest_angle(end.as_slice(), &from.m) < BESIDE) else {
+        let Some(end) = self.nearest().filter(|end| largest_angle(end.as_slice(), &from.m) < FAR) else {
             return false;
         };
         let end = Point::at(self.h, end.as_slice().to_vec());
@@ -281,7 +280,7 @@ impl Walk<'_> {
         blend(&from.m, &end.m, 0.5, &mut half);
         self.here = Point::at(self.h, half.clone());
         let falls = self.quench()
-            && largest_angle(&self.here.m, &half) < 0.5 * BESIDE
+            && largest_angle(&self.here.m, &half) < 0.5 * FAR
             && from.above_mev(&self.here) > rounding
             && self.here.above_mev(&end) > rounding;
         self.here = end;

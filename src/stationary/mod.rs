@@ -37,4 +37,6 @@ pub use relax::{Relaxed, WayDown, relax_to_minimum};
 pub use search::{Climb, GaveUp, Limits, STEPS, Saddle, climb};
 pub use spectrum::{Spectrum, lowest_eigenvalues_mev};
 pub use state::{State, both_by_factors, is_very_dear};
-pub use tolerances::{ALIKE, FAR, FEW, FLAT, INDEPENDENT, LAST_DIGITS, LOWER, RELAXED, ROUGHLY, STATIONARY, STRIDE};
+pub use tolerances::{
+    ALIKE, FAR, FEW, FLAT, INDEPENDENT, LAST_DIGITS, LOWER, MANY, RELAXED, ROUGHLY, STATIONARY, STEP, STRIDE,
+};

@@ -5,11 +5,9 @@
 
 use super::point::Point;
 use super::step::Region;
-use super::tolerances::{LAST_DIGITS, SHARP};
+use super::tolerances::{LAST_DIGITS, MANY, SHARP};
 use crate::energy::Evaluator;
 
-/// Most steps.
-const STEPS: usize = 12;
 /// Most steps in vain.
 const IN_VAIN: usize = 2;
 
@@ -25,7 +23,7 @@ pub(super) fn polish_on(region: &mut Region, mut here: Point) -> Point {
     let sharp = SHARP * h.stiffness_mev();
     let mut best = here.clone();
     let mut in_vain = 0;
-    for _ in 0..STEPS {
+    for _ in 0..MANY {
         let least = best.max_torque_mev();
         // a NaN is no small rotation either
         let goes_on = least > sharp && in_vain < IN_VAIN && !h.is_stopped() && region.last(&here) < LAST_DIGITS;

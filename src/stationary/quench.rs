@@ -17,15 +17,13 @@ const STEPS: usize = 100;
 const GROWTH: f64 = 2.0;
 /// The part of the largest torque that is left.
 const LEFT: f64 = 1e-4;
-/// A step this much shorter (rad, any spin) than the longest is none.
-const NONE: f64 = 1e-6;
 
 /// Goes down from `here` until the torque is less than a part of the largest on the way, in steps that turn no spin by more than
 /// [`STEP`] (rad), the first one by [`LAST_DIGITS`]; `next` is memory. Whether it came so far.
 pub fn quench(h: Evaluator, here: &mut Point, next: &mut Point, trail: &mut Trail) -> bool {
     let mut secants = Secants::of(FEW);
     let (mut force, mut step, mut length) = (here.field(&here.downhill()), Vec::new(), LAST_DIGITS);
-    let mut largest = 0.0f64;
+    let (mut largest, mut shorter) = (0.0f64, 0);
     for _ in 0..STEPS {
         let torque = here.max_torque_mev();
         largest = largest.max(torque);
@@ -47,11 +45,13 @@ pub fn quench(h: Evaluator, here: &mut Point, next: &mut Point, trail: &mut Trai
             // a shorter one, straight down
             secants = Secants::of(FEW);
             length /= LARGER;
-            if length < NONE * STEP {
+            shorter += 1;
+            if shorter > FEW {
                 return false;
             }
             continue;
         }
+        shorter = 0;
         length *= GROWTH;
         let mut change = std::mem::replace(&mut force, next.field(&next.downhill()));
         slab::add_scaled(&mut change, -1.0, &force);

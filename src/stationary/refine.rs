@@ -8,15 +8,12 @@ use super::polish::polish;
 use super::search::{GaveUp, STEPS, Saddle, Search};
 use super::spectrum::Spectrum;
 use super::state::State;
-use super::tolerances::{ALIKE, STEP};
+use super::tolerances::{ALIKE, FAR, STEP};
 use crate::energy::Evaluator;
 use crate::field::project;
 use crate::linalg::slab;
 use crate::path::largest_angle;
 use serde::{Deserialize, Serialize};
-
-/// Farthest from the start (rad, any spin).
-const FARTHEST: f64 = 2.0;
 
 /// A refined saddle.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -41,7 +38,7 @@ impl Refined {
 /// all but is, of whatever index, or `m` as it is. `tau` (3N): the path's direction.
 pub fn refine(h: Evaluator, m: &[f64], tau: &[f64], floor_mev: f64) -> Refined {
     let mut search = Search::from(h, m, STEP);
-    let left = |here: &Point| largest_angle(m, &here.m) > FARTHEST || here.energy_mev < floor_mev;
+    let left = |here: &Point| largest_angle(m, &here.m) > FAR || here.energy_mev < floor_mev;
     let found = search.saddle(STEPS, true, |here, _| left(here).then_some(GaveUp::Stuck));
     match found {
         Ok(Saddle { state, mode: valley, spectrum, .. }) => Refined { state, valley, spectrum: Some(spectrum) },

@@ -1,7 +1,9 @@
 //! Relaxing a state to its minimum: Newton's method with a shift that keeps the Hessian positive, and descent checked.
 
 use super::polish::polish;
-use super::tolerances::{ALIKE, FIRST_SHIFT, LARGER, LAST_DIGITS, LAST_SHIFT, NEARLY, ROUNDING, STATIONARY, STRIDE};
+use super::tolerances::{
+    ALIKE, FIRST_SHIFT, LARGER, LAST_DIGITS, LAST_SHIFT, MANY, NEARLY, ROUNDING, STATIONARY, STRIDE,
+};
 use super::unfactored::Unfactored;
 use super::{Downhill, Point, Spectrum, State, descend, pin_all};
 use crate::energy::Evaluator;
@@ -15,8 +17,6 @@ use crate::spins::Spins;
 use serde::{Deserialize, Serialize};
 use std::mem::take;
 
-/// Most Newton steps to a stationary state.
-const STEPS: usize = 500;
 /// A shift below this part of the largest stiffness gives way to none where it can.
 const SMALL: f64 = 1e-4;
 
@@ -91,7 +91,7 @@ pub fn relax_to_minimum(h: Evaluator, start: &Spins, tolerance_mev: f64) -> Resu
 fn stationary(h: Evaluator, mut p: Point, tolerance_mev: f64, steps: &mut usize, memory: &mut Matrix) -> Result<Point> {
     let mut shift = 0.0;
     let mut stalled = 0;
-    let most = *steps + STEPS;
+    let most = *steps + MANY;
     let mut best: Option<Point> = None;
     while *steps < most {
         if h.is_stopped() {

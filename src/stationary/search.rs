@@ -5,13 +5,10 @@ use super::polish::polish_on;
 use super::spectrum::Spectrum;
 use super::state::State;
 use super::step::{Region, Step};
-use super::tolerances::{FLAT, ROUGHLY, SHARP, STEP};
+use super::tolerances::{FLAT, LAST_DIGITS, ROUGHLY, SHARP, STEP};
 use crate::energy::Evaluator;
 use crate::linalg::slab;
 use std::mem::{swap, take};
-
-/// How far a stationary state of too many negative directions is left along the lowest of the wrong ones (rad, any spin).
-const LEAVE: f64 = 0.1;
 
 /// Most steps of a search.
 pub const STEPS: usize = 40;
@@ -180,7 +177,7 @@ impl<'a> Search<'a> {
 
     /// Leaves a stationary state along the lowest of its wrong modes, on the way that it left one before; not one that has none too many.
     fn leave(&mut self, negative: usize) -> bool {
-        let leads_away = negative > 1 && self.region.along_second(&self.here, LEAVE);
+        let leads_away = negative > 1 && self.region.along_second(&self.here, LAST_DIGITS);
         if leads_away {
             let v = &mut self.region.v;
             if self.away.len() == v.len() && slab::dot(&self.away, v) < 0.0 {

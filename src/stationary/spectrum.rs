@@ -6,15 +6,12 @@
 use super::border::pin_all;
 use super::point::Point;
 use super::state::State;
-use super::tolerances::{INDEPENDENT, ROUGHLY, STATIONARY};
+use super::tolerances::{FEW, INDEPENDENT, ROUGHLY, STATIONARY};
 use crate::energy::Evaluator;
 use crate::hessian::{Bound, Place, StandIn, bound};
 use crate::linalg::{Factors, Matrix, modes_by_factors, orthonormal};
 use serde::{Deserialize, Serialize};
 use std::mem::take;
-
-/// Most negative directions that are looked for without factors.
-const MOST: usize = 4;
 
 /// What kind of stationary point a state is.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -96,7 +93,7 @@ impl Spectrum {
             let known = falling.iter().map(|v| state.field(v));
             let border = orthonormal(zeros.iter().cloned().chain(known).collect(), INDEPENDENT);
             let rest = bound(at, &border, &stand_in, &|| h.is_stopped());
-            if rest.is_some() || falling.len() == MOST || h.is_stopped() {
+            if rest.is_some() || falling.len() == FEW || h.is_stopped() {
                 break rest;
             }
             let modes = state.lowest_modes_beside(h, falling.len() + 1, &falling);

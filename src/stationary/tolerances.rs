@@ -32,6 +32,9 @@ pub const LAST_SHIFT: f64 = 1e6;
 /// What is too small or too large, a shift or a step, becomes so many times as large or as small.
 pub const LARGER: f64 = 4.0;
 
+/// What ends by itself, or not at all, ends after so many steps or tries.
+pub const MANY: usize = 500;
+
 /// So many modes, vectors or steps are few, where each costs little and none of them need be the one.
 pub const FEW: usize = 8;
 

@@ -1,13 +1,10 @@
 //! The points of a descent that are kept.
 
+use super::tolerances::{FEW, STEP};
 use crate::path::largest_angle;
 
-/// Neighbouring points are so far apart at first (rad, any spin).
-const APART: f64 = 0.25;
 /// Numbers that all points of one trail may have together.
 const MOST_NUMBERS: usize = 24_000_000;
-/// Points that any trail may have.
-const FEWEST: usize = 6;
 
 /// States on a way, a quarter radian or more apart; twice as far, and so on, when they become too many to store.
 #[derive(Clone, Debug)]
@@ -20,7 +17,7 @@ pub struct Trail {
 impl Trail {
     /// Of a way that begins at `start`, which is not one of its points.
     pub fn from(start: &[f64]) -> Trail {
-        Trail { start: start.to_vec(), points: Vec::new(), apart: APART }
+        Trail { start: start.to_vec(), points: Vec::new(), apart: STEP }
     }
 
     /// Keeps a point that is far from the last one kept.
@@ -28,7 +25,7 @@ impl Trail {
         if largest_angle(self.points.last().unwrap_or(&self.start), m) < self.apart {
             return;
         }
-        if self.points.len() >= (MOST_NUMBERS / m.len().max(1)).max(FEWEST) {
+        if self.points.len() >= (MOST_NUMBERS / m.len().max(1)).max(FEW) {
             self.apart *= 2.0;
             let mut kept = 0;
             self.points.retain(|_| {
@@ -52,20 +49,20 @@ impl Trail {
 
 #[cfg(test)]
 mod tests {
-    use super::{FEWEST, MOST_NUMBERS, Trail};
+    use super::{FEW, MOST_NUMBERS, Trail};
 
     #[test]
     fn a_long_trail_is_thinned_and_keeps_its_order() {
-        let sites = MOST_NUMBERS / FEWEST / 3 / 4;
+        let sites = MOST_NUMBERS / FEW / 3 / 4;
         let at = |angle: f64| {
             let (s, c) = (libm::sin(angle), libm::cos(angle));
             [vec![s; sites], vec![0.0; sites], vec![c; sites]].concat()
         };
         let mut trail = Trail::from(&at(0.0));
-        for k in 1..=12 * FEWEST {
-            trail.pass(&at(0.3 * k as f64));
+        for k in 1..=12 * FEW {
+            trail.pass(&at(0.4 * k as f64));
         }
         let points = trail.into_points();
-        assert!(points.len() <= 4 * FEWEST && points.len() > FEWEST, "{}", points.len());
+        assert!(points.len() <= 4 * FEW && points.len() > FEW, "{}", points.len());
     }
 }

@@ -2,7 +2,7 @@
 
 use super::descent::{NOISE, Room, Walk};
 use super::pinned::Pinned;
-use super::tolerances::{LARGER, LAST_DIGITS, STEP};
+use super::tolerances::{LARGER, LAST_DIGITS, MANY, STEP};
 use crate::field::project;
 use crate::linalg::slab;
 use crate::sphere::rotation_of;
@@ -25,8 +25,6 @@ const ASTRAY: f64 = 0.5;
 const FLAT: f64 = LARGER * NOISE;
 /// A slope below this part of the torque is not the valley's, but of what is left across it.
 const ROUGH: f64 = 1e-3;
-/// Most steps.
-const STEPS: usize = 600;
 
 impl Walk<'_> {
     /// Along the valley to where its slope (meV/rad) is `enough`; whether it went any way.
@@ -36,7 +34,7 @@ impl Walk<'_> {
         let mut step = LAST_DIGITS;
         let mut moved = false;
         self.last = None;
-        for _ in 0..STEPS {
+        for _ in 0..MANY {
             self.predict(step);
             let kept = self.cross(step) && self.settle(noise, flat);
             let fallen = self.here.above_mev(&self.next);

@@ -5,7 +5,7 @@ use crate::field::Components;
 use crate::geometry::{Direction, Vector, vector};
 use crate::lattice::Lattice;
 use crate::sphere::{SAME, rotate_sites};
-use crate::stationary::STRIDE;
+use crate::stationary::{MANY, STRIDE};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
@@ -16,8 +16,6 @@ const ONE_SITE: f64 = 0.4;
 const NEAR_AN_END: f64 = 0.7;
 /// By how much at most (rad); at least by a stride.
 const MOST: f64 = 2.5;
-/// How often a block is drawn anew where all its sites are frozen.
-const DRAWS: usize = 100;
 
 /// How often each minimum was pushed.
 #[derive(Debug, Default)]
@@ -31,7 +29,7 @@ impl Rival for Push {
         let h = cut.land.evaluator();
         let mut m = cut.land.minima()[minimum].spins.as_slice().to_vec();
         let free = |sites: Vec<usize>| -> Vec<usize> { sites.into_iter().filter(|i| !h.is_frozen(*i)).collect() };
-        let mut draws = (0..DRAWS).map(|_| free(block(h.lattice(), 2, random)));
+        let mut draws = (0..MANY).map(|_| free(block(h.lattice(), 2, random)));
         let sites = draws.find(|sites| !sites.is_empty())?;
         let spins = Components::new(&m);
         let mean = sites.iter().fold([0.0; 3], |sum, i| vector::add(sum, spins.get(*i)));
