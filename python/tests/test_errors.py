@@ -149,9 +149,14 @@ def test_files_and_folders_that_are_not_there(tmp_path, chain, reversal):
 
 
 def test_threads_are_counted(chain):
-    for threads in (0, 100_000):
+    for threads in (-1, 0, 100_000, 10**30):
         with pytest.raises(sn.ConfigError, match="threads"):
             sn.barrier(chain, sn.uniform("z"), sn.uniform("-z"), threads=threads)
+    with pytest.raises(TypeError, match="threads: found 2.5, expected a whole number"):
+        sn.barrier(chain, sn.uniform("z"), sn.uniform("-z"), threads=2.5)
+    with pytest.raises(sn.ConfigError, match="modes: found -1, expected 0 or more"):
+        sn.relax(chain, sn.uniform("z"), modes=-1)
+    assert len(sn.relax(chain, sn.uniform("z"), modes=10**30).lowest_eigenvalues_meV) > 10
 
 
 def test_a_run_without_a_barrier_says_why(chain):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import operator
 import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -74,12 +75,13 @@ def run(
     KeyboardInterrupt
         Ctrl-C: within a second, but for lattices whose Hessian takes longer to factorise (50 × 50 × 50 sites: some 10 s).
     """
+    count = _count(threads, "threads", 1)
     core = _config(config, "run", set)
     place = _place(out, resume)
     if place is not None and resume and core.is_finished(place, False):
         return cast(Result, load(place))
     with _telling(progress) as tell, _recording(place):
-        return Result(core.run(threads, tell, (place, resume, force)))
+        return Result(core.run(count, tell, (place, resume, force)))
 
 
 def barrier(
@@ -169,9 +171,10 @@ def relax(
             config = config.replaced(**{"initial": None, "final": None, **names})
         else:
             set = {**(set or {}), **names}
+    wanted, count = _count(modes, "modes", 0) or 0, _count(threads, "threads", 1)
     core = _config(config, "relax", set)
     with _telling(progress) as tell:
-        files, spins = core.relax(modes, threads, tell)
+        files, spins = core.relax(wanted, count, tell)
     told = json.loads(files["relax.json"])["states"]
     found = tuple(Relaxed(one, np.asarray(m), np.asarray(core.places)) for one, m in zip(told, spins))
     return found[0] if len(states) == 1 else found
@@ -234,12 +237,13 @@ def landscape(
         "temperatures": None if temperatures is None else _kelvin(temperatures),
     }
     chosen = {f"landscape.{key}": value for key, value in own.items() if value is not None}
+    count = _count(threads, "threads", 1)
     core = _config(config, "landscape", {**chosen, **(set or {})})
     place = _place(out, resume)
     if place is not None and resume and core.is_finished(place, True):
         return cast(Landscape, load(place))
     with _telling(progress) as tell, _recording(place):
-        return Landscape(core.landscape(threads, tell, (place, resume, force)))
+        return Landscape(core.landscape(count, tell, (place, resume, force)))
 
 
 def rates(
@@ -337,6 +341,19 @@ def _recording(place: str | None) -> Iterator[None]:
         if place is not None and os.path.isdir(os.path.join(place, "checkpoint")) and hasattr(stop, "add_note"):
             stop.add_note(f"resume=True goes on from the checkpoint in {place}")
         raise
+
+
+def _count(number: int | None, what: str, least: int) -> int | None:
+    """A whole number, at least so many; more than any machine has are as many as fit."""
+    if number is None:
+        return None
+    try:
+        found = operator.index(number)
+    except TypeError:
+        raise TypeError(f"{what}: found {number!r}, expected a whole number") from None
+    if found < least:
+        raise ConfigError(f"{what}: found {found}, expected {least} or more")
+    return min(found, 2**31 - 1)
 
 
 def _kelvin(temperatures: Temperatures) -> list[str] | dict[str, Any]:
