@@ -6,7 +6,7 @@ use crate::handing::{dictionary, places};
 use crate::landscape::Landscape;
 use crate::outcome::Outcome;
 use crate::recorded::{Computed, Recorded};
-use crate::supervise::supervised;
+use crate::supervise::{ONE, supervised};
 use crate::term::{Term, Trouble};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -17,6 +17,7 @@ use spinneb::energy::{CustomEnergy, Evaluator};
 use spinneb::files::disk::File;
 use spinneb::output::RelaxReport;
 use std::collections::HashMap;
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -71,7 +72,7 @@ impl Config {
                 Kind::Landscape => Ok((source.load_landscape()?, true)),
             }
         };
-        let (loaded, with_final) = supervised(py, Some(1), None, &trouble, read)?;
+        let (loaded, with_final) = supervised(py, ONE, None, &trouble, read)?;
         Ok(Config { loaded: Arc::new(loaded.with_terms(own)), with_final, trouble })
     }
 
@@ -90,7 +91,7 @@ impl Config {
     /// What it would run, in rows of a key and words.
     fn check(&self, py: Python) -> PyResult<Vec<(&'static str, String)>> {
         let loaded = self.loaded.clone();
-        supervised(py, Some(1), None, &self.trouble, move |_| Ok(spinneb::cli::report_of(&loaded, &loaded.problem()?)))
+        supervised(py, ONE, None, &self.trouble, move |_| Ok(spinneb::cli::report_of(&loaded, &loaded.problem()?)))
     }
 
     /// Sites as (site, xyz) in lattice constants; in a chain x is the number of the site.
@@ -102,7 +103,7 @@ impl Config {
     /// The initial and the final state as they are given, before anything is relaxed.
     fn states(&self, py: Python) -> PyResult<Vec<Buffer>> {
         let (loaded, with_final) = (self.loaded.clone(), self.with_final);
-        let states = supervised(py, Some(1), None, &self.trouble, move |_| loaded.states(with_final))?;
+        let states = supervised(py, ONE, None, &self.trouble, move |_| loaded.states(with_final))?;
         let all = std::iter::once(states.initial).chain(states.final_state);
         Ok(all.map(|spins| Buffer::spins(&Arc::new(spins), |spins| spins.as_slice(), None)).collect())
     }
@@ -111,7 +112,7 @@ impl Config {
     fn run(
         &self,
         py: Python,
-        threads: Option<usize>,
+        threads: Option<NonZeroUsize>,
         progress: Option<Bound<PyAny>>,
         recorded: Recorded,
     ) -> PyResult<Outcome> {
@@ -136,7 +137,7 @@ impl Config {
         &self,
         py: Python<'py>,
         modes: usize,
-        threads: Option<usize>,
+        threads: Option<NonZeroUsize>,
         progress: Option<Bound<PyAny>>,
     ) -> PyResult<(Bound<'py, PyDict>, Vec<Buffer>)> {
         let (loaded, with_final) = (self.loaded.clone(), self.with_final);
@@ -175,7 +176,7 @@ impl Config {
     fn landscape(
         &self,
         py: Python,
-        threads: Option<usize>,
+        threads: Option<NonZeroUsize>,
         progress: Option<Bound<PyAny>>,
         recorded: Recorded,
     ) -> PyResult<Landscape> {

@@ -3,7 +3,7 @@
 use crate::buffer::Buffer;
 use crate::errors::{failed, raised};
 use crate::handing::{dictionary, places, save};
-use crate::supervise::supervised;
+use crate::supervise::{ONE, supervised};
 use crate::term::Trouble;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -49,7 +49,7 @@ impl Outcome {
 #[pyfunction]
 pub fn read(py: Python, dir: PathBuf) -> PyResult<Outcome> {
     let trouble = Trouble::default();
-    let (loaded, stored) = supervised(py, Some(1), None, &trouble, move |_| {
+    let (loaded, stored) = supervised(py, ONE, None, &trouble, move |_| {
         let loaded = Source::file(&dir.join("config.json"))?.load()?;
         let stored = StoredOutcome::read(&dir, &loaded.lattice)?;
         Ok((loaded, stored))

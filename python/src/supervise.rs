@@ -10,6 +10,7 @@ use spinneb::config::Say;
 use spinneb::drive::{HistoryRow, Observer};
 use spinneb::error::{Error, Result};
 use std::ffi::CString;
+use std::num::NonZeroUsize;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -72,19 +73,19 @@ impl Observer for Teller {
     }
 }
 
+/// A single thread.
+pub const ONE: Option<NonZeroUsize> = Some(NonZeroUsize::MIN);
+
 /// Does the work with so many threads, one for each core if nothing is said. Ctrl-C stops it, and so does what `progress` raises.
 pub fn supervised<T: Send + 'static>(
     py: Python,
-    threads: Option<usize>,
+    threads: Option<NonZeroUsize>,
     progress: Option<&Bound<PyAny>>,
     trouble: &Trouble,
     work: impl FnOnce(&mut Ways) -> Result<T> + Send + 'static,
 ) -> PyResult<T> {
     let of_threads = |message: String| raised(py, Error::invalid("threads", message));
-    if threads == Some(0) {
-        return Err(of_threads("found 0, expected 1 or more".into()));
-    }
-    let count = threads.unwrap_or(0);
+    let count = threads.map_or(0, NonZeroUsize::get);
     check_threads(1, count).map_err(|e| match e {
         Error::Invalid { message, .. } => of_threads(message),
         other => raised(py, other),

@@ -192,6 +192,7 @@ pub fn search(
         }
         let cut = Cut::of(land, aim.ends(), aim.below_mev(land, top_mev), settings.context);
         let a_climb = match done.searches {
+            // no climb takes less
             0 => Count { evaluations: FEW, hessians: FEW }.part_of(settings.together),
             climbs => worked.part_of(settings.together) / climbs as f64,
         };

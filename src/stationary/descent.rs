@@ -52,7 +52,7 @@ pub struct Descent {
     pub fallen_mev: f64,
     /// It ended at a stationary point without a negative direction.
     pub arrived: bool,
-    /// Points on the way, each with a spin turned by a quarter radian or more since the last (more on long chains, so that they
+    /// Points on the way, each with a spin turned by 0.3 rad or more since the last (more on long chains, so that they
     /// fit into memory).
     pub way: Vec<Vec<f64>>,
 }

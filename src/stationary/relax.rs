@@ -111,14 +111,15 @@ fn stationary(h: Evaluator, mut p: Point, tolerance_mev: f64, steps: &mut usize,
         let nearly = NEARLY * tolerance_mev;
         // a smaller shift is a longer step, which may be what it takes; along a soft mode it first costs torque across it
         stalled = if torque > 0.5 * before && torque < nearly && shift >= shifted { stalled + 1 } else { 0 };
-        let is_last = shift == 0.0 && largest_angle(&p.m, &next.m) < LAST_DIGITS && h.has_dear_factors();
+        let is_near = || torque > tolerance_mev && shift == 0.0 && largest_angle(&p.m, &next.m) < LAST_DIGITS;
+        // from here on the factors of one step serve
+        let is_last = h.has_dear_factors() && !h.forgoes_factors() && is_near();
         if before < nearly && before < torque && best.as_ref().is_none_or(|b| before < b.max_torque_mev()) {
             best = Some(p);
         }
         p = next;
         *steps += 1;
-        // from here on the factors of one step serve
-        if is_last && !h.forgoes_factors() && p.max_torque_mev() > tolerance_mev {
+        if is_last {
             p = polish(h, p);
         }
     }

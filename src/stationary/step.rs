@@ -31,7 +31,7 @@ pub struct Region<'a> {
     largest: f64,
     pub(super) hessian: Matrix,
     room: Matrix,
-    kept: Option<Kept>,
+    kept: Option<Factored>,
     /// The lowest modes when they were last needed (3N each).
     pub(super) modes: Vec<Vec<f64>>,
     pub(super) x: Vec<f64>,
@@ -42,7 +42,7 @@ pub struct Region<'a> {
 /// The factors of a step, where they are dear and the step is theirs alone; they serve for the next steps too as long as each is much
 /// shorter than the one before.
 #[derive(Debug)]
-struct Kept {
+struct Factored {
     factors: Factors,
     /// Where they are of.
     basis: TangentBasis,
@@ -112,9 +112,10 @@ impl<'a> Region<'a> {
         self.again(here).unwrap_or_else(|| self.plain(here))
     }
 
-    /// The step by the factors of the step before, in `x` and `v`, where they still serve; its largest rotation of a spin (rad).
+    /// The step by the factors of the step before, in `v`, where they still serve; its largest rotation of a spin (rad).
     fn again(&mut self, here: &Point) -> Option<f64> {
-        let Kept { factors, basis, zeros, rotation: last } = self.kept.as_mut().filter(|k| k.rotation < LAST_DIGITS)?;
+        let Factored { factors, basis, zeros, rotation: last } =
+            self.kept.as_mut().filter(|k| k.rotation < LAST_DIGITS)?;
         here.write_field(&here.slope, &mut self.v);
         basis.write_coordinates(&self.v, &mut self.x);
         slab::scale(&mut self.x, -1.0);
@@ -132,7 +133,7 @@ impl<'a> Region<'a> {
     fn keep(&mut self, here: &Point, factors: Factors, serve: bool) {
         if serve && self.h.has_dear_factors() {
             let (basis, zeros) = (here.basis.clone(), here.zeros.clone());
-            self.kept = Some(Kept { factors, basis, zeros, rotation: f64::INFINITY });
+            self.kept = Some(Factored { factors, basis, zeros, rotation: f64::INFINITY });
         } else {
             self.room = factors.into_memory();
         }
@@ -152,7 +153,8 @@ impl<'a> Region<'a> {
         if let Some(rotation) = self.again(here) {
             here.basis.write_coordinates(&self.v, &mut self.x);
             let (rise_mev, size_mev) = self.promises(here);
-            return Step { negative: 1, rotation, is_newton: true, is_underway: false, rise_mev, size_mev };
+            let negative = self.kept.as_ref().map_or(0, |kept| kept.factors.negatives());
+            return Step { negative, rotation, is_newton: negative == 1, is_underway: false, rise_mev, size_mev };
         }
         here.write_hessian(self.h, 0.0, &mut self.hessian);
         let (negative, leads_on) =

@@ -6,7 +6,7 @@ use crate::path::largest_angle;
 /// Numbers that all points of one trail may have together.
 const MOST_NUMBERS: usize = 24_000_000;
 
-/// States on a way, a quarter radian or more apart; twice as far, and so on, when they become too many to store.
+/// States on a way, a [`STEP`] or more apart; twice as far, and so on, when they become too many to store.
 #[derive(Clone, Debug)]
 pub struct Trail {
     start: Vec<f64>,
