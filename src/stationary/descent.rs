@@ -194,16 +194,17 @@ impl Walk<'_> {
                 rate *= LARGER;
                 continue;
             };
-            let longer =
-                (0.8 * (ERROR / step.error).cbrt()).min(0.9 * STEP / step.rotation).clamp(1.0 / LARGER, LARGER);
-            if !(step.error <= ERROR && step.rotation <= STEP && step.slopes_mev[0] > 0.0) {
-                rate *= if longer < 1.0 { 1.0 / longer } else { LARGER };
+            let [slope, there] = step.slopes_mev;
+            let longer = (0.8 * (ERROR / step.error).cbrt()).min(0.9 * STEP / step.rotation);
+            if !(step.error <= ERROR && step.rotation <= STEP && slope > 0.0) {
+                rate *= if longer < 1.0 { (1.0 / longer).min(LARGER) } else { LARGER };
                 continue;
             }
-            rate = (rate / longer).max(FLAT * scale);
+            // on a slope that grows the next step is as long in less time
+            let longer = longer / (there / slope).max(1.0);
+            rate = (rate / longer.clamp(1.0 / LARGER, LARGER)).max(FLAT * scale);
             swap(&mut self.here, &mut self.next);
             self.trail.pass(&self.here.m);
-            let [slope, there] = step.slopes_mev;
             if step.rotation < LAST_DIGITS && there < slope && self.rest() {
                 return Fall::Arrived;
             }

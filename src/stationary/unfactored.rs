@@ -1,9 +1,9 @@
-//! Newton's equations on the way down from a saddle without factors, where these take very long: by conjugate gradients, until the
-//! noise of what stands in for the Hessian, which knows how sites are numbered, is as small as that of factors. A wall that leaves a
-//! film may tilt to either side, and what tells the sides apart grows on the way.
+//! Newton's equations on the way down from a saddle without factors, where these take very long: by conjugate gradients. What is
+//! left of the residual has the noise of what stands in for the Hessian, which knows how sites are numbered: a wall that leaves a film may
+//! tilt to either side, and what tells the sides apart grows on the way.
 
 use super::point::Point;
-use super::tolerances::{INDEPENDENT, STATIONARY};
+use super::tolerances::INDEPENDENT;
 use crate::energy::Hamiltonian;
 use crate::hessian::{Complement, Place, StandIn};
 use crate::linalg::{orthonormal, slab};
@@ -12,10 +12,9 @@ use crate::linalg::{orthonormal, slab};
 /// 16³. In smaller films a skyrmion that slides to rest between two places of its lattice is held there by factors, and often not without:
 /// its descent then takes more steps than are saved.
 const DEAR: f64 = 60.0;
-/// The part of the residual that is left across a valley. Down the gradient it is that of a stationary state, for what is left grows
-/// along a direction that is negative: so a skyrmion stays between two places of its lattice, to which its slope leads, as it does with
-/// factors.
-const ACROSS: f64 = 1e-8;
+/// The part of the residual that is left: small enough that what grows of it on the way is small beside the 0.01 rad by which a step of
+/// the flow may be wrong.
+const LEFT: f64 = 1e-8;
 
 /// The equations at one point after the other.
 pub struct Unfactored {
@@ -43,7 +42,7 @@ impl Unfactored {
         self.equations.right.clear();
         self.equations.right.extend_from_slice(b);
         let place = Place { h, m: &at.m, g: &at.gradient, shift };
-        self.equations.solve(place, &self.stand_in, if along.is_empty() { STATIONARY } else { ACROSS }).ok()?;
+        self.equations.solve(place, &self.stand_in, LEFT).ok()?;
         Some(&self.equations.x)
     }
 

@@ -258,7 +258,8 @@ impl<'a> Search<'a> {
         if self.axes.len() == 3 {
             list = vec![UNIT, opposite(&UNIT)];
         }
-        let mut distinct: Vec<Matrix> = Vec::new();
+        // the identity is one whatever the energy says, also where that is none any more
+        let mut distinct = vec![UNIT];
         for r in list {
             if !distinct.iter().any(|q| are_alike(&r, q, &self.axes)) {
                 distinct.push(r);

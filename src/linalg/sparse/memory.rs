@@ -8,8 +8,8 @@ use std::mem::take;
 use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Most entries of L in memory that a plan keeps: 32 MB.
-const KEPT: usize = 1 << 22;
+/// Most entries of L in memory that a plan keeps: 1 GB.
+const KEPT: usize = 1 << 27;
 
 /// Factors, and what their computation needs.
 #[derive(Clone, Debug, Default)]
