@@ -311,6 +311,14 @@ fn the_last_digits_of_a_film_take_the_factors_of_one_step_and_rest_as_exactly() 
 }
 
 #[test]
+fn a_descent_that_forks_at_the_end_goes_to_the_place_that_was_given() {
+    for cells in [16, 20, 22] {
+        let found = by_default(skyrmion(cells, 1.0, (cells / 2) as f64));
+        assert!(found.certified && found.saddles.len() == 1, "{cells}: {} saddles", found.saddles.len());
+    }
+}
+
+#[test]
 fn a_descent_ends_at_a_minimum_beside_it_where_it_has_reached_that_and_nowhere_else() {
     let problem = skyrmion(20, 1.0, 10.0);
     let h = &problem.hamiltonian;

@@ -280,8 +280,9 @@ impl Walk<'_> {
         let mut half = vec![0.0; end.m.len()];
         blend(&from.m, &end.m, 0.5, &mut half);
         self.here = Point::at(self.h, half.clone());
-        let falls = self.quench()
-            && largest_angle(&self.here.m, &half) < 0.5 * FAR
+        // along a valley that is all but level its steps do not end, and need not
+        self.quench();
+        let falls = largest_angle(&self.here.m, &half) < 0.5 * FAR
             && from.above_mev(&self.here) > rounding
             && self.here.above_mev(&end) > rounding;
         self.here = end;

@@ -50,7 +50,7 @@ impl Level {
     }
 }
 
-/// Memory of a solution: right-hand sides, solutions and others that these were, of every level.
+/// Memory of a solution: right-hand sides, solutions and residuals of every level.
 #[derive(Clone, Debug, Default)]
 pub struct Room(Vec<[Vec<Wide>; 3]>);
 
@@ -108,14 +108,16 @@ impl Multigrid {
     /// Solves on a level and those below it; `room` is theirs.
     fn cycle(&self, k: usize, room: &mut [[Vec<Wide>; 3]]) {
         let level = &self.levels[k];
-        let ([b, x, other], below) = room.split_first_mut().expect("a room a level");
+        let ([b, x, rest], below) = room.split_first_mut().expect("a room a level");
         match self.coarsening.steps().get(k) {
-            Some(Step { p, .. }) => {
-                rest_below(&level.matrix, &level.damped, b, p, &mut below[0][0]);
+            Some(Step { back, p, .. }) => {
+                first(&level.damped, b, x);
+                residual(&level.matrix, b, x, rest);
+                multiply(back, rest, &mut below[0][0]);
                 self.cycle(k + 1, below);
-                first_and_below(&level.damped, b, p, &below[0][1], x);
-                again(&level.matrix, &level.damped, b, x, other);
-                std::mem::swap(x, other);
+                add_product(p, &below[0][1], x);
+                again(&level.matrix, &level.damped, b, x, rest);
+                std::mem::swap(x, rest);
             }
             None if self.inverse.is_empty() => first(&level.damped, b, x),
             None => invert(&self.inverse, b, x),
@@ -161,22 +163,26 @@ fn invert(inverse: &[f64], b: &[Wide], x: &mut [Wide]) {
     }
 }
 
-/// Pᵀ (b − A ω D⁻¹ b), with no other pass over the unknowns.
 #[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
-fn rest_below(matrix: &Rows, damped: &[f64], b: &[Wide], p: &Rows, below: &mut [Wide]) {
-    below.fill([0.0; 4]);
-    for (i, here) in b.iter().enumerate() {
-        let image = matrix.sum(i, |j| b[j].map(|b| damped[j] * b));
-        p.add(i, std::array::from_fn(|c| here[c] - image[c]), below);
+fn multiply(matrix: &Rows, x: &[Wide], out: &mut [Wide]) {
+    for (i, out) in out.iter_mut().enumerate() {
+        *out = matrix.times(i, x);
     }
 }
 
-/// ω D⁻¹ b + P y.
 #[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
-fn first_and_below(damped: &[f64], b: &[Wide], p: &Rows, y: &[Wide], x: &mut [Wide]) {
-    for (i, x) in x.iter_mut().enumerate() {
-        let below = p.sum(i, |j| y[j]);
-        (0..4).for_each(|c| x[c] = damped[i] * b[i][c] + below[c]);
+fn add_product(matrix: &Rows, x: &[Wide], out: &mut [Wide]) {
+    for (i, out) in out.iter_mut().enumerate() {
+        let here = matrix.times(i, x);
+        (0..4).for_each(|c| out[c] += here[c]);
+    }
+}
+
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
+fn residual(matrix: &Rows, b: &[Wide], x: &[Wide], out: &mut [Wide]) {
+    for (i, (out, b)) in out.iter_mut().zip(b).enumerate() {
+        let here = matrix.times(i, x);
+        (0..4).for_each(|c| out[c] = b[c] - here[c]);
     }
 }
 
@@ -184,7 +190,7 @@ fn first_and_below(damped: &[f64], b: &[Wide], p: &Rows, y: &[Wide], x: &mut [Wi
 #[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn again(matrix: &Rows, damped: &[f64], b: &[Wide], x: &[Wide], out: &mut [Wide]) {
     for (i, out) in out.iter_mut().enumerate() {
-        let here = matrix.sum(i, |j| x[j]);
+        let here = matrix.times(i, x);
         (0..4).for_each(|c| out[c] = x[i][c] + damped[i] * (b[i][c] - here[c]));
     }
 }

@@ -112,26 +112,16 @@ impl Rows {
         sum
     }
 
-    /// Row i times a vector of columns, given one by one.
+    /// Row i times a vector of columns.
     #[inline(always)]
-    pub(super) fn sum(&self, i: usize, x: impl Fn(usize) -> Wide) -> Wide {
+    pub(super) fn times(&self, i: usize, x: &[Wide]) -> Wide {
         let here = self.starts[i] as usize..self.starts[i + 1] as usize;
         let mut sum = [0.0; 4];
         for (j, a) in self.at[here.clone()].iter().zip(&self.entries[here]) {
-            let x = x(*j as usize);
+            let x = &x[*j as usize];
             (0..4).for_each(|c| sum[c] += a * x[c]);
         }
         sum
-    }
-
-    /// Adds row i times a number to a vector of columns.
-    #[inline(always)]
-    pub(super) fn add(&self, i: usize, x: Wide, sums: &mut [Wide]) {
-        let here = self.starts[i] as usize..self.starts[i + 1] as usize;
-        for (j, a) in self.at[here.clone()].iter().zip(&self.entries[here]) {
-            let sum = &mut sums[*j as usize];
-            (0..4).for_each(|c| sum[c] += a * x[c]);
-        }
     }
 
     /// The same with rows and columns exchanged.
@@ -211,6 +201,6 @@ mod tests {
         let a = Rows::new(3, [vec![(2, 1.0), (0, 3.0), (2, 0.5)], vec![]]);
         assert_eq!(a.row(0).collect::<Vec<_>>(), [(0, 3.0), (2, 1.5)]);
         assert_eq!([a.diagonal(0), a.diagonal(1)], [3.0, 0.0]);
-        assert_eq!(a.sum(0, |j| [[1.0; 4], [5.0; 4], [2.0; 4]][j]), [6.0; 4]);
+        assert_eq!(a.times(0, &[[1.0; 4], [5.0; 4], [2.0; 4]]), [6.0; 4]);
     }
 }
