@@ -326,9 +326,7 @@ fn a_descent_ends_at_a_minimum_beside_it_where_it_has_reached_that_and_nowhere_e
     let [skyrmion, up] =
         [&problem.initial, &problem.final_state].map(|end| relax_to_minimum(h.into(), end, tolerance).unwrap().spins);
     let found = by_default(self::skyrmion(20, 1.0, 10.0));
-    // others are those between places of the lattice, some 1e-4 meV above the skyrmion
-    let highest = found.saddles.iter().max_by(|p, q| p.energy_mev.total_cmp(&q.energy_mev)).unwrap();
-    let saddle = State::at(h.into(), highest.spins.as_slice().to_vec());
+    let saddle = State::at(h.into(), found.saddles[0].spins.as_slice().to_vec());
     let valley = saddle.field(&saddle.lowest_mode(h.into()).unwrap().vector);
     for beside in [&[][..], &[&up], &[&skyrmion], &[&skyrmion, &up]] {
         let ends = [-1.0, 1.0].map(|sense| {

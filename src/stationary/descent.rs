@@ -6,8 +6,8 @@
 //! of rest a few of Newton's steps end it. Where the forces vanish but a direction is still negative, the descent goes on along that
 //! direction, and ends only where the inertia counts none. Where a direction across a slope that is next to none is about to fall, the
 //! flow's steps become short: the valley is followed again. From a minimum that parts nothing the descent goes on along the valley
-//! (`stroll`). Where factors are dear, gradients alone are tried first, from a step along
-//! the valley to where the slope ends.
+//! (`stroll`). Where factors are dear, gradients alone are tried first, from a step along the valley to where the slope ends; where it
+//! ends between two places of the lattice, the descent goes to the minimum beside it that was given.
 
 use super::flow::{D, flow};
 use super::pinned::Pinned;
