@@ -86,7 +86,7 @@ pub fn descend(h: Evaluator, saddle: &State, valley: &[f64], to: Downhill) -> De
         // where a state that came to rest is left, with no minimum beside it, the fall may be of 1e-9 meV, less than the noise without factors
         unfactored: match beside {
             [] if !h.forgoes_factors() => None,
-            _ => Unfactored::below(&h, &saddle.point, c),
+            _ => h.has_dear_factors().then(|| Unfactored::about(&h, &saddle.point, c)),
         },
     };
     let arrived = h.has_dear_factors() && walk.roll() || walk.down();

@@ -3,14 +3,15 @@
 //! ```text
 //! A = H + 1/(d Δt),  f(v) = −g at the end of v,  d = 1/(2 + √2)
 //! A u₁ = f(0)/d,  A (u₂ − u₁) = f(u₁/2)/d − u₁/(d Δt)                                             the step is u₂
-//! A u₃ = (f(u₂) + e f(u₁/2) + 2 f(0))/d − (e u₂ + 2 u₁)/(d Δt),  e = 6 + √2      its error (u₁ − 2 u₂ + u₃)/6
+//! A w = (f(u₂) + (e − 2) f(u₁/2) + f(0))/d − e u₂/(d Δt),  e = 6 + √2                             its error w/6
 //! ```
 //! A Rosenbrock method of second order, L-stable, with three solutions by one factor (ode23s: L. F. Shampine, M. W. Reichelt, SIAM J. Sci.
-//! Comput. 18, 1 (1997), doi:10.1137/S1064827594276424), in the tangent space of the step's start. As Δt grows it becomes Newton's.
+//! Comput. 18, 1 (1997), doi:10.1137/S1064827594276424; w is u₁ − 2 u₂ + u₃ of their third stage, solved for at once, as where no
+//! factors are it need be right only roughly), in the tangent space of the step's start. As Δt grows it becomes Newton's.
 
 use super::point::Point;
-use super::tolerances::STEP;
-use super::unfactored::Unfactored;
+use super::tolerances::{ROUGHLY, STEP};
+use super::unfactored::{LEFT, Unfactored};
 use crate::energy::Evaluator;
 use crate::linalg::{Factors, Matrix, remove, slab};
 use crate::sphere::rotation_of;
@@ -55,7 +56,7 @@ pub fn flow(
 fn step(h: Evaluator, here: &Point, next: &mut Point, rate: f64, equations: &mut Equations) -> Option<Flown> {
     let mut v = Vec::new();
     let f0 = force(here, here);
-    let u1 = equations.solve(here, sum(&[(1.0 / D, &f0)]))?;
+    let u1 = equations.solve(here, sum(&[(1.0 / D, &f0)]), LEFT)?;
     here.write_field(&u1, &mut v);
     // it is half of this that the next force is taken at, and what comes of it is the shorter by d
     let is_near_pole = slab::dot(&u1, &f0) < 0.5 * D * rate * slab::dot(&u1, &u1);
@@ -65,17 +66,16 @@ fn step(h: Evaluator, here: &Point, next: &mut Point, rate: f64, equations: &mut
     slab::scale(&mut v, 0.5);
     next.go(h, here, &v);
     let f1 = force(here, next);
-    let mut u2 = equations.solve(here, sum(&[(1.0 / D, &f1), (-rate, &u1)]))?;
+    let mut u2 = equations.solve(here, sum(&[(1.0 / D, &f1), (-rate, &u1)]), LEFT)?;
     slab::add_scaled(&mut u2, 1.0, &u1);
     here.write_field(&u2, &mut v);
     next.go(h, here, &v);
     let f2 = force(here, next);
-    let right = [(1.0 / D, &f2), (E / D, &f1), (2.0 / D, &f0), (-E * rate, &u2), (-2.0 * rate, &u1)];
-    let u3 = equations.solve(here, sum(&right))?;
-    let wrong = sum(&[(1.0 / 6.0, &u1), (-1.0 / 3.0, &u2), (1.0 / 6.0, &u3)]);
+    let w = sum(&[(1.0 / D, &f2), ((E - 2.0) / D, &f1), (1.0 / D, &f0), (-E * rate, &u2)]);
+    let w = equations.solve(here, w, ROUGHLY)?;
     let length = slab::norm(&u2);
     let slopes_mev = [&f0, &f2].map(|f| slab::dot(&u2, f) / length);
-    Some(Flown { rotation: rotation_of(&v), error: rotation_of(&here.field(&wrong)), slopes_mev, v })
+    Some(Flown { rotation: rotation_of(&v), error: rotation_of(&here.field(&w)) / 6.0, slopes_mev, v })
 }
 
 /// The force at a point, in the tangent coordinates of another one.
@@ -118,11 +118,12 @@ impl<'a, 'b> Equations<'a, 'b> {
         Some(Equations::Factors(Box::new(factors)))
     }
 
-    fn solve(&mut self, here: &Point, mut b: Vec<f64>) -> Option<Vec<f64>> {
+    /// Solves; without factors, until a part `left` of the residual is left.
+    fn solve(&mut self, here: &Point, mut b: Vec<f64>, left: f64) -> Option<Vec<f64>> {
         match self {
             Equations::Factors(factors) => factors.solve(&mut b, 1),
             Equations::Without(h, rate, unfactored) => {
-                let x = unfactored.solve(h, here, *rate, &[], &here.field(&b))?;
+                let x = unfactored.solve_until(left, h, here, *rate, &[], &here.field(&b))?;
                 here.basis.write_coordinates(x, &mut b);
             }
         }

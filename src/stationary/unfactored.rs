@@ -1,4 +1,4 @@
-//! Newton's equations on the way down from a saddle without factors, where these take very long: by conjugate gradients. What is
+//! Newton's equations on the way down from a saddle without factors, where these are dear: by conjugate gradients. What is
 //! left of the residual has the noise of what stands in for the Hessian, which knows how sites are numbered: a wall that leaves a film may
 //! tilt to either side, and what tells the sides apart grows on the way.
 
@@ -8,13 +8,9 @@ use crate::energy::Hamiltonian;
 use crate::hessian::{Complement, Place, StandIn};
 use crate::linalg::{orthonormal, slab};
 
-/// Factors that take the arithmetic of so many solutions by them are not made on the way: in films of some 300² sites and more, cubes of
-/// 16³. In smaller films a skyrmion that slides to rest between two places of its lattice is held there by factors, and often not without:
-/// its descent then takes more steps than are saved.
-const DEAR: f64 = 60.0;
 /// The part of the residual that is left: small enough that what grows of it on the way is small beside the 0.01 rad by which a step of
 /// the flow may be wrong.
-const LEFT: f64 = 1e-8;
+pub const LEFT: f64 = 1e-6;
 
 /// The equations at one point after the other.
 pub struct Unfactored {
@@ -28,21 +24,29 @@ impl Unfactored {
         Unfactored { stand_in: StandIn::about(h, &from.m, &from.gradient, c), equations: Complement::default() }
     }
 
-    /// The same for points below one; none where factors are quicker.
-    pub fn below(h: &Hamiltonian, from: &Point, c: f64) -> Option<Unfactored> {
-        (h.solutions_a_factor() > DEAR || h.forgoes_factors()).then(|| Unfactored::about(h, from, c))
-    }
-
     /// Solves P (H + shift) P x = P b for tangent fields (3N), P without zero modes and, across valleys, the directions `along` them; |b|
     /// may be of any size. None where a direction of negative curvature is met.
     pub fn solve(&mut self, h: &Hamiltonian, at: &Point, shift: f64, along: &[&[f64]], b: &[f64]) -> Option<&[f64]> {
+        self.solve_until(LEFT, h, at, shift, along, b)
+    }
+
+    /// The same, until a part `left` of the residual is left.
+    pub fn solve_until(
+        &mut self,
+        left: f64,
+        h: &Hamiltonian,
+        at: &Point,
+        shift: f64,
+        along: &[&[f64]],
+        b: &[f64],
+    ) -> Option<&[f64]> {
         let zeros = at.zeros.iter().map(|z| at.field(z));
         let border = zeros.chain(along.iter().map(|t| t.to_vec())).collect();
         self.equations.border = orthonormal(border, INDEPENDENT);
         self.equations.right.clear();
         self.equations.right.extend_from_slice(b);
         let place = Place { h, m: &at.m, g: &at.gradient, shift };
-        self.equations.solve(place, &self.stand_in, LEFT).ok()?;
+        self.equations.solve(place, &self.stand_in, left).ok()?;
         Some(&self.equations.x)
     }
 
