@@ -22,10 +22,6 @@ pub const LOOSE: f64 = 5e-3;
 /// Evaluations in which a band is relaxed so, and those in which one is tightly: a band that needs more has minima on its way.
 pub const LOOSELY: usize = 24;
 pub const TIGHTLY: usize = 60;
-/// The same for ways between minima.
-const WAYS: usize = 30;
-/// And for stretches between a saddle and a minimum, which have none.
-const STRETCHES: usize = 100;
 /// Evaluations without progress that end a relaxation.
 const PATIENCE: usize = 80;
 /// Methods that follow forces take so many times as many evaluations as the sweep.
@@ -82,11 +78,11 @@ impl Tools<'_> {
 
 impl Bands for Tools<'_> {
     fn loosely(&self, band: &mut Band) -> Result<()> {
-        self.relax(band, Goal::Loose, WAYS)
+        self.relax(band, Goal::Loose, LOOSELY)
     }
 
     fn tightly(&self, band: &mut Band) -> Result<()> {
-        self.relax(band, Goal::Tight, STRETCHES)
+        self.relax(band, Goal::Tight, TIGHTLY)
     }
 }
 

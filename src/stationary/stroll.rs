@@ -6,7 +6,7 @@ use super::descent::{STEEP, STEPS, Walk};
 use super::point::Point;
 use super::state::State;
 use super::tolerances::{LARGER, LAST_DIGITS, STEP};
-use super::valley::{GROWTH, LONGEST, SHORTEST};
+use super::valley::{GROWTH, SHORTEST};
 use crate::linalg::slab;
 use crate::path::{largest_angle, turned, turns};
 use crate::spins::Spins;
@@ -90,7 +90,7 @@ impl Walk<'_> {
                 return End::Nowhere;
             }
             is_away |= far > LARGER * STEP;
-            step = (GROWTH * step).min(LONGEST);
+            step = (GROWTH * step).min(STEP);
         }
         End::Nowhere
     }

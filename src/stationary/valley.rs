@@ -2,15 +2,14 @@
 
 use super::descent::{NOISE, Room, Walk};
 use super::pinned::Pinned;
-use super::tolerances::{LARGER, LAST_DIGITS, MANY, STEP};
+use super::tolerances::{LARGER, LAST_DIGITS, MANY, ROUGHLY, STEP};
 use crate::field::project;
 use crate::linalg::slab;
 use crate::sphere::rotation_of;
 use std::mem::swap;
 
-/// The longest step along a valley, and how fast they grow (rad, any spin). Between two soft modes the first one may be shorter, down to
-/// the shortest.
-pub(super) const LONGEST: f64 = 0.4;
+/// How fast steps along a valley grow. Between two soft modes the first one may be shorter than others (rad, any spin), down to the
+/// shortest.
 pub(super) const GROWTH: f64 = 1.4;
 pub(super) const SHORTEST: f64 = 1e-4;
 /// Most Newton steps across a valley after each step along it, which end when one is less than this part of that step; and most that
@@ -19,8 +18,6 @@ const CORRECTIONS: usize = 3;
 const ON_THE_WAY: f64 = 0.1;
 /// What is added to the Hessian across the valley, in parts of the stiffness scale.
 const SHIFT: f64 = 1e-6;
-/// A step that ends by a correction larger than this part of it may have left its valley for the next: a shorter one is taken.
-const ASTRAY: f64 = 0.5;
 /// Slopes below this part of the stiffness (a radian) may be rounding error.
 const FLAT: f64 = LARGER * NOISE;
 /// A slope below this part of the torque is not the valley's, but of what is left across it.
@@ -58,7 +55,7 @@ impl Walk<'_> {
             if slope > enough || slope < -flat {
                 break;
             }
-            step = (GROWTH * step).min(LONGEST);
+            step = (GROWTH * step).min(STEP);
         }
         moved
     }
@@ -90,7 +87,8 @@ impl Walk<'_> {
     pub(super) fn cross(&mut self, step: f64) -> bool {
         for _ in 0..CORRECTIONS {
             let Some(rotation) = self.correct() else { return false };
-            if rotation > ASTRAY * step {
+            // it may have left its valley for the next
+            if rotation > ROUGHLY * step {
                 return false;
             }
             if rotation < ON_THE_WAY * step {

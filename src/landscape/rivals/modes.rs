@@ -5,12 +5,9 @@ use crate::energy::Evaluator;
 use crate::landscape::pass::SOFTEST;
 use crate::linalg::slab;
 use crate::sphere::rotation_of;
-use crate::stationary::{FAR, State};
+use crate::stationary::{FAR, FEW, State};
 use rand_chacha::ChaCha8Rng;
 use std::collections::{BTreeSet, VecDeque};
-
-/// In how many steps.
-const STEPS: usize = 10;
 
 /// Which orbits were left, and the starts that wait.
 #[derive(Debug, Default)]
@@ -37,13 +34,13 @@ impl Rival for Modes {
     }
 }
 
-/// Where the energy is highest on the way along a field from a state, or how far that is followed.
+/// Where the energy is highest, in a few steps, on the way along a field from a state, or how far that is followed.
 fn top(h: Evaluator, state: &State, along: &[f64], sense: f64) -> Vec<f64> {
     let size = rotation_of(along);
     let (mut highest, mut there) = (f64::NEG_INFINITY, state.m.clone());
-    for k in 1..=STEPS {
+    for k in 1..=FEW {
         let mut turn = along.to_vec();
-        slab::scale(&mut turn, sense * FAR * k as f64 / (STEPS as f64 * size));
+        slab::scale(&mut turn, sense * FAR * k as f64 / (FEW as f64 * size));
         let next = state.moved(&h, &turn);
         let height = h.difference_mev(&next, &state.m);
         if height < highest {

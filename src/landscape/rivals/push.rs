@@ -11,9 +11,8 @@ use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-/// How often one site is turned, and how often a minimum that is joined with an end.
+/// How often one site is turned, and no block.
 const ONE_SITE: f64 = 0.4;
-const NEAR_AN_END: f64 = 0.7;
 /// By how much at most (rad); at least by a stride.
 const MOST: f64 = 2.5;
 
@@ -41,10 +40,10 @@ impl Rival for Push {
 }
 
 impl Push {
-    /// One of the minima that were pushed least, those joined with an end first.
+    /// One of the minima that were pushed least, as often of those joined with an end as of the others.
     fn least_pushed(&mut self, cut: &Cut, random: &mut ChaCha8Rng) -> Option<usize> {
         let (near, far): (Vec<usize>, Vec<usize>) = cut.starts().partition(|k| cut.is_near_an_end(*k));
-        let pool = if far.is_empty() || random.random_bool(NEAR_AN_END) { near } else { far };
+        let pool = if far.is_empty() || random.random_bool(0.5) { near } else { far };
         let mut best: Option<(f64, usize)> = None;
         for k in pool {
             let count = self.pushed.get(&k).copied().unwrap_or(0) as f64 + random.random_range(0.0..1.0);
