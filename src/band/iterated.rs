@@ -2,20 +2,22 @@
 //! modes:
 //!
 //! ```text
-//! P A P x = P (F⊥ + σ y_u − A d τ),   P = 1 − C Cᵀ,   A = H + (σ + μ)·1,   y = d τ + x
+//! P A P x = P (F⊥ + σ y_u − A d τ),   P = 1 − C Cᵀ,   A = H + σ m·m_u + μ,   y = d τ + x
 //! ```
-//! (see [`Complement`]), until 3 % of the residual are left, or a tenth where the band is only to be looked at: the next evaluation changes
+//! (see `upwind` and [`Complement`]), until 3 % of the residual are left, or a tenth where the band is only to be looked at: the next evaluation changes
 //! the right-hand side by more. A direction of negative curvature on the way makes μ grow, as a negative pivot does where there are factors.
 //! (T. Steihaug, SIAM J. Numer. Anal. 20, 626 (1983), doi:10.1137/0720042, for conjugate gradients that end so; R. S. Dembo, S. C.
 //! Eisenstat, T. Steihaug, SIAM J. Numer. Anal. 19, 400 (1982), doi:10.1137/0719025, for how far they are to go.)
 
 use super::Band;
-use super::linearised::{LEAST, Move, SHIFT_TRIES, first_shift, upwind_rate};
+use super::linearised::{LEAST, Move, SHIFT_TRIES, first_shift};
+use super::upwind::{pulled, upwind_rate};
 use crate::energy::magnetostatics::DENSE;
 use crate::field::Components;
 use crate::geometry::{Vector, vector};
 use crate::hessian::{Complement, Place, StandIn};
 use crate::linalg::{orthonormal, slab};
+use std::mem::take;
 use std::sync::Arc;
 
 /// The residual that is left, and where a band is only to be looked at.
@@ -31,13 +33,16 @@ pub struct Iterated {
     equations: Complement,
     sigma: f64,
     shift: f64,
+    /// g − σ m_u.
+    pulled: Vec<f64>,
     image: Vec<f64>,
 }
 
 impl Iterated {
     /// Nothing yet, but for M, and for the residual that is to be left.
     pub fn by(stand_in: Arc<StandIn>, tolerance: f64) -> Iterated {
-        Iterated { stand_in, tolerance, equations: Complement::default(), sigma: 0.0, shift: 0.0, image: Vec::new() }
+        let (equations, pulled, image) = (Complement::default(), Vec::new(), Vec::new());
+        Iterated { stand_in, tolerance, equations, sigma: 0.0, shift: 0.0, pulled, image }
     }
 
     /// M for the images of a band, where factors of their Hessians take long: of blocks whose fronts are large, and of all pairs of more
@@ -70,10 +75,12 @@ impl Iterated {
     /// uphill neighbour, if that moves.
     pub fn relax(&mut self, band: &Band, k: usize, uphill: Option<&[f64]>, y: &mut [f64]) -> Move {
         self.equations.products = 0;
-        self.set_right_side(band, k, uphill);
+        let mut room = take(&mut self.pulled);
+        let g = pulled(band, k, self.sigma, &mut room);
+        self.set_right_side(band, k, g, uphill);
         for _ in 1..SHIFT_TRIES {
-            let (h, m, g) = (band.hamiltonian(), band.path().image(k), band.gradient(k));
-            let place = Place { h, m, g, shift: self.sigma + self.shift };
+            let (h, m) = (band.hamiltonian(), band.path().image(k));
+            let place = Place { h, m, g, shift: self.shift, pull: self.sigma };
             let Err(negative) = self.equations.solve(place, &self.stand_in, self.tolerance) else { break };
             // as much as it takes and as the force asks for: a mode that is all but free is left soon where it is not held
             let enough = (2.0 * negative).max(band.force(k).min(self.stand_in.c));
@@ -82,11 +89,13 @@ impl Iterated {
         let x = &self.equations.x;
         y.copy_from_slice(x);
         slab::add_scaled(y, band.local_shift(k), band.tangent(k));
-        Move { rotation: longest(x), shift: self.shift, factorisations: 0, products: self.equations.products }
+        let rotation = longest(x);
+        self.pulled = room;
+        Move { rotation, shift: self.shift, factorisations: 0, products: self.equations.products }
     }
 
     /// F⊥ + σ y_u − A d τ.
-    fn set_right_side(&mut self, band: &Band, k: usize, uphill: Option<&[f64]>) {
+    fn set_right_side(&mut self, band: &Band, k: usize, g: &[f64], uphill: Option<&[f64]>) {
         let right = &mut self.equations.right;
         right.clear();
         right.extend_from_slice(band.perpendicular(k));
@@ -97,12 +106,7 @@ impl Iterated {
         if along != 0.0 {
             // what A adds to H d τ is along τ
             self.image.resize(right.len(), 0.0);
-            band.hamiltonian().hessian_product(
-                band.path().image(k),
-                band.gradient(k),
-                band.tangent(k),
-                &mut self.image,
-            );
+            band.hamiltonian().hessian_product(band.path().image(k), g, band.tangent(k), &mut self.image);
             slab::add_scaled(right, -along, &self.image);
         }
     }
@@ -195,7 +199,8 @@ mod tests {
                     room.prepare(&band, k, h.symmetry_axes(), 0.0);
                     let done = room.relax(&band, k, Some(&uphill), &mut y);
                     (tried, shifted) = (tried + 1, shifted + usize::from(done.shift > 0.1));
-                    let (m, g) = (band.path().image(k), band.gradient(k));
+                    let (m, mut pull) = (band.path().image(k), Vec::new());
+                    let g = pulled(&band, k, room.sigma, &mut pull);
                     assert!((slab::dot(&y, band.tangent(k)) - band.local_shift(k)).abs() < 1e-12);
                     assert!(room.equations.border[1..].iter().all(|z| slab::dot(z, &y).abs() < 1e-12));
                     let mut x = y.clone();
@@ -203,7 +208,7 @@ mod tests {
                     assert!((longest(&x) - done.rotation).abs() < 1e-12);
                     let mut rest = vec![0.0; x.len()];
                     h.hessian_product(m, g, &x, &mut rest);
-                    slab::add_scaled(&mut rest, room.sigma + done.shift, &x);
+                    slab::add_scaled(&mut rest, done.shift, &x);
                     slab::add_scaled(&mut rest, -1.0, &room.equations.right);
                     remove(&mut rest, &room.equations.border);
                     let part = slab::norm(&rest) / slab::norm(&room.equations.right);

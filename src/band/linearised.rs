@@ -2,6 +2,7 @@
 //! used again for the next image.
 
 use super::Band;
+use super::upwind::straight_rate;
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::Vector;
 use crate::hessian::{Assembly, TangentBasis};
@@ -55,7 +56,7 @@ pub struct Move {
 impl Linearised {
     /// Factorises image k, with symmetry axes `axes`, the stiffness scale c and the shift μ of its last visit (meV).
     pub fn prepare(&mut self, band: &Band, k: usize, axes: &[Vector], c: f64, old: f64) {
-        self.sigma = upwind_rate(band, k);
+        self.sigma = straight_rate(band, k);
         self.shift = first_shift(band, k, c, old);
         self.tries = 1;
         self.factor_anew(band, k, axes);
@@ -232,11 +233,6 @@ impl Linearised {
 pub fn first_shift(band: &Band, k: usize, c: f64, old: f64) -> f64 {
     let floor = shift_floor(band, k, c);
     if old < 0.26 * c { floor } else { (old / 4.0).max(floor) }
-}
-
-/// σ = |F·τ|/|m_u − m| (meV), 0 at extrema.
-pub fn upwind_rate(band: &Band, k: usize) -> f64 {
-    if band.uphill(k).is_some() { band.along(k).abs() / band.chord(k).max(1e-12) } else { 0.0 }
 }
 
 /// The least μ of an image (meV). A row has no soft mode but the path's own; any other lattice has modes across the path that are

@@ -19,14 +19,17 @@ mod split;
 mod springs;
 mod sweep;
 mod tangent;
+mod upwind;
 
 pub use laplacian::Laplacian;
 pub use profile::{Extremum, Profile};
 pub use sweep::{Sweep, SweepStep};
 
 use crate::energy::{Evaluator, Hamiltonian};
+use crate::field::Components;
 use crate::geometry::Vector;
 use crate::path::Path;
+use crate::sphere::angles_between;
 use crate::threads::{MADE, READ, apiece};
 use rayon::prelude::*;
 use split::Split;
@@ -44,10 +47,11 @@ pub struct Band<'h> {
     tangent: Vec<f64>,
     perpendicular: Vec<f64>,
     along: Vec<f64>,
-    chord: Vec<f64>,
+    chord: Vec<[f64; 2]>,
     largest: Vec<f64>,
     uphill: Vec<Option<usize>>,
     spacing: Vec<f64>,
+    widest: Vec<f64>,
     held: Vec<bool>,
     /// Those of them that symmetry rotations leave as they are, too.
     fixed: Vec<bool>,
@@ -68,10 +72,11 @@ impl<'h> Band<'h> {
             tangent: Vec::new(),
             perpendicular: Vec::new(),
             along: vec![0.0; images],
-            chord: vec![0.0; images],
+            chord: vec![[0.0; 2]; images],
             largest: vec![0.0; images],
             uphill: vec![None; images],
             spacing: vec![0.0; images - 1],
+            widest: vec![0.0; images - 1],
             held: vec![false; images],
             fixed: vec![false; images],
             evaluations: 0,
@@ -156,10 +161,11 @@ impl<'h> Band<'h> {
                 split::image(&h, [k - 1, k, k + 1].map(|k| path.image(k)), tangent::weights(energy, k), gradient, t, f)
             })
             .collect();
-        self.spacing[0] = crate::path::distance(path.image(0), path.image(1));
+        let (squares, widest) = angles_between(Components::new(path.image(0)), Components::new(path.image(1)));
+        (self.spacing[0], self.widest[0]) = (squares.sqrt(), widest);
         for (k, s) in split.iter().enumerate() {
-            (self.along[k + 1], self.largest[k + 1], self.spacing[k + 1]) = (s.along, s.largest, s.after);
-            self.chord[k + 1] = s.chord;
+            (self.along[k + 1], self.largest[k + 1], self.chord[k + 1]) = (s.along, s.largest, s.chord);
+            (self.spacing[k + 1], self.widest[k + 1]) = s.after;
         }
         for k in (1..last).filter(|&k| held[k]) {
             self.perpendicular[k * slab..(k + 1) * slab].fill(0.0);
@@ -254,8 +260,8 @@ impl<'h> Band<'h> {
         self.along[k]
     }
 
-    /// Straight distance (rad) from image k on a slope to its neighbour uphill.
-    pub fn chord(&self, k: usize) -> f64 {
+    /// |m_u − m| and |P (m_u − m)| of image k on a slope and its neighbour uphill: the straight distance, and √Σ sin² of the angles.
+    pub fn chord(&self, k: usize) -> [f64; 2] {
         self.chord[k]
     }
 
@@ -267,6 +273,11 @@ impl<'h> Band<'h> {
     /// Distances between neighbours (rad).
     pub fn spacings(&self) -> &[f64] {
         &self.spacing
+    }
+
+    /// The largest rotation of a spin from image k to the next (rad).
+    pub fn widest(&self, k: usize) -> f64 {
+        self.widest[k]
     }
 
     /// Evaluations of the whole band so far.

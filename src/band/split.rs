@@ -13,10 +13,11 @@ pub struct Split {
     pub along: f64,
     /// The largest component of the force across (meV); NaN if one is not finite.
     pub largest: f64,
-    /// Distance to the next image (rad).
-    pub after: f64,
-    /// |τ| before it is projected and scaled: on a slope the straight distance to the neighbour uphill.
-    pub chord: f64,
+    /// Distance to the next image, and the largest rotation of a spin to there (rad).
+    pub after: (f64, f64),
+    /// |τ| before it is projected and scaled, and after it is projected: on a slope the straight distance to the neighbour uphill, and √Σ sin²
+    /// of the angles to there.
+    pub chord: [f64; 2],
 }
 
 /// Writes the unit tangent `t` and the force across it `f` of the image in the middle of `images`, where the Euclidean
@@ -31,7 +32,7 @@ pub fn image(
 ) -> Split {
     let [before, here, after] = images.map(Components::new);
     let g = Components::new(g);
-    let (mut tt, mut ft, mut squares, mut raw) = (0.0, 0.0, 0.0, 0.0);
+    let (mut tt, mut ft, mut squares, mut widest, mut raw) = (0.0, 0.0, 0.0, 0.0f64, 0.0);
     for ((first, mut t), (_, mut f)) in tiles(t).zip(tiles(f)) {
         let range = first..first + t.x.len();
         let [before, here, after] = [before, here, after].map(|m| m.range(range.clone()));
@@ -45,12 +46,14 @@ pub fn image(
         h.force_row(first, here, g, f.reborrow());
         tt += slab::dot(t.x, t.x) + slab::dot(t.y, t.y) + slab::dot(t.z, t.z);
         ft += slab::dot(f.x, t.x) + slab::dot(f.y, t.y) + slab::dot(f.z, t.z);
-        squares += angles_between(here, after).0;
+        let (sum, largest) = angles_between(here, after);
+        squares += sum;
+        widest = widest.max(largest);
     }
     let shrink = 1.0 / tt.sqrt().max(f64::MIN_POSITIVE);
     let along = ft * shrink;
     let largest = take_apart(t, f, shrink, along);
-    Split { along, largest, after: squares.sqrt(), chord: raw.sqrt() }
+    Split { along, largest, after: (squares.sqrt(), widest), chord: [raw.sqrt(), tt.sqrt()] }
 }
 
 /// t = w⁺ (after − here) + w⁻ (here − before), one component.

@@ -5,13 +5,14 @@
 //!
 //! ```text
 //! for images a by descending energy:
-//!   σ = |F·τ|/|m_u − m_a| (0 at extrema),   A = H + (σ + μ) 1,   C = [τ, zero modes]
+//!   σ = |F·τ|/|m_u − m_a| (0 at extrema),   A = H + σ + μ,   C = [τ, zero modes]
 //!   [A  C ] [x]   [F⊥ + σ P y_u − A x₀]
 //!   [Cᵀ 0 ] [·] = [0                  ],    x₀ = d τ,    y_a = x₀ + x
 //! ```
 //! H is the Riemannian Hessian of the image. μ starts at a small part of the stiffness scale c and grows while A has a negative
 //! direction in the complement of C. In chains and small lattices of short reach, where factors are cheap, the count of those is exact
-//! (inertia of the bordered matrix, see `linearised`); in others x is found by iteration, with those that it meets (see `iterated`).
+//! (inertia of the bordered matrix, see `linearised`). In others x is found by iteration, with those that it meets (see `iterated`), and
+//! A is the derivative of F⊥ (see `upwind`), so that the last sweeps are Newton's.
 //!
 //! Images that wait for none go first, side by side; the slopes that hang on them after that, each from its top down.
 

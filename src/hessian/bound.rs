@@ -41,7 +41,7 @@ pub struct Bound {
 /// The bound for H + s in the complement of `border` (orthonormal tangent fields of 3N numbers); none where a direction there is
 /// negative, or where it is to `stop`.
 pub fn bound(at: Place, border: &[Vec<f64>], stand_in: &StandIn, stop: &dyn Fn() -> bool) -> Option<Bound> {
-    let Place { h, m, g, shift } = at;
+    let Place { h, m, g, shift, .. } = at;
     let mut room = multigrid::Room::default();
     let clean = |v: &mut Vec<f64>| {
         project(m, v);
@@ -175,8 +175,10 @@ mod tests {
                 basis.field(&modes[k].vector, &mut v);
                 v
             };
-            let (at, stand_in) =
-                (Place { h: &h, m: m.as_slice(), g: &g, shift: 0.0 }, StandIn::about(&h, m.as_slice(), &g, 0.01));
+            let (at, stand_in) = (
+                Place { h: &h, m: m.as_slice(), g: &g, shift: 0.0, pull: 0.0 },
+                StandIn::about(&h, m.as_slice(), &g, 0.01),
+            );
             for known in 0..=negative {
                 let border: Vec<Vec<f64>> = (0..known).map(field).collect();
                 let found = bound(at, &border, &stand_in, &|| false);

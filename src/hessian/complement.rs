@@ -28,6 +28,8 @@ pub struct Place<'a> {
     pub g: &'a [f64],
     /// s (meV).
     pub shift: f64,
+    /// σ (meV), where g is the gradient of the energy with a pull to a configuration m_u near m, −σ Σ m·m_u; 0 where there is none.
+    pub pull: f64,
 }
 
 /// The equations, with room for their solution: fields of 3N numbers.
@@ -53,7 +55,7 @@ impl Complement {
     /// Solves for x, until a part `tolerance` of the residual is left. Where a direction of negative curvature is met, says how
     /// negative it is (meV): −vᵀ(H + s)v/|v|².
     pub fn solve(&mut self, at: Place, stand_in: &StandIn, tolerance: f64) -> Result<(), f64> {
-        let Place { h, m, g, shift } = at;
+        let Place { h, m, g, shift, .. } = at;
         for field in [&mut self.x, &mut self.towards, &mut self.direction, &mut self.image] {
             field.resize(m.len(), 0.0);
         }
@@ -95,8 +97,15 @@ impl Complement {
         Ok(())
     }
 
+    /// q ← M⁻¹ q, nearly.
+    pub fn apply_stand_in(&mut self, stand_in: &StandIn, q: &mut [f64]) {
+        self.residual.clear();
+        self.residual.extend_from_slice(q);
+        stand_in.solve(0.0, &self.residual, q, &mut self.room);
+    }
+
     fn precondition(&mut self, at: Place, stand_in: &StandIn) {
-        stand_in.solve(at.shift, &self.residual, &mut self.towards, &mut self.room);
+        stand_in.solve(at.shift + at.pull, &self.residual, &mut self.towards, &mut self.room);
         project(at.m, &mut self.towards);
         remove(&mut self.towards, &self.border);
     }

@@ -33,18 +33,24 @@ impl Secants {
     /// q ← H⁻¹ q; whether anything is remembered that tells of H. Where nothing is, q stays.
     pub fn apply(&self, q: &mut [f64]) -> bool {
         let Some((last, change)) = self.pairs.back() else { return false };
+        let scale = slab::dot(last, change) / slab::dot(change, change);
+        self.apply_beside(q, |q| slab::scale(q, scale))
+    }
+
+    /// The same, where `nearly` makes H⁻¹q of q for all that is not remembered.
+    pub fn apply_beside(&self, q: &mut [f64], nearly: impl FnOnce(&mut [f64])) -> bool {
         let mut weights = Vec::new();
         for (s, y) in self.pairs.iter().rev() {
             let a = slab::dot(s, q) / slab::dot(s, y);
             slab::add_scaled(q, -a, y);
             weights.push(a);
         }
-        slab::scale(q, slab::dot(last, change) / slab::dot(change, change));
+        nearly(q);
         for ((s, y), a) in self.pairs.iter().zip(weights.iter().rev()) {
             let b = slab::dot(y, q) / slab::dot(s, y);
             slab::add_scaled(q, a - b, s);
         }
-        true
+        !self.pairs.is_empty()
     }
 
     /// What is remembered, oldest first.
@@ -77,6 +83,13 @@ mod tests {
         for (x, stiffness) in q.iter().zip(diagonal) {
             assert!((x - 2.0 / stiffness).abs() < 1e-15, "{q:?}");
         }
+        // of two of the three directions the rest is told by what is nearly the inverse
+        let mut two = Secants::of(2);
+        two.remember(secants.pairs().skip(1).cloned());
+        let mut q = vec![2.0, 2.0, 2.0];
+        assert!(two.apply_beside(&mut q, |q| slab::scale(q, 0.9)));
+        assert!((q[0] - 1.8).abs() < 1e-15 && (q[1] - 0.5).abs() < 1e-15 && (q[2] - 2.0 / 9.0).abs() < 1e-15, "{q:?}");
+        assert!(!Secants::of(2).apply_beside(&mut q, |q| q.fill(1.0)) && q == [1.0; 3]);
         secants.learn(vec![1.0, 0.0, 0.0], vec![-1.0, 0.0, 0.0]);
         let mut q = vec![1.0, 0.0, 0.0];
         assert!(!secants.apply(&mut q) && q == [1.0, 0.0, 0.0], "a negative curvature is forgotten with all else");

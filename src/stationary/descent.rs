@@ -6,8 +6,9 @@
 //! of rest a few of Newton's steps end it. Where the forces vanish but a direction is still negative, the descent goes on along that
 //! direction, and ends only where the inertia counts none. Where a direction across a slope that is next to none is about to fall, the
 //! flow's steps become short: the valley is followed again. From a minimum that parts nothing the descent goes on along the valley
-//! (`stroll`). Where factors are dear, gradients alone are tried first, from a step along the valley to where the slope ends; where it
-//! ends between two places of the lattice, the descent goes to the minimum beside it that was given.
+//! (`stroll`). Where factors are dear, gradients alone are tried first, from a step along the valley to where the slope ends: with what
+//! stands in for the Hessian, to a minimum beside it that was given, else without, to any; where that ends between two places of the
+//! lattice, the descent goes to the minimum beside it that was given.
 
 use super::flow::{D, flow};
 use super::pinned::Pinned;
@@ -89,7 +90,8 @@ pub fn descend(h: Evaluator, saddle: &State, valley: &[f64], to: Downhill) -> De
             _ => h.has_dear_factors().then(|| Unfactored::about(&h, &saddle.point, c)),
         },
     };
-    let arrived = h.has_dear_factors() && walk.roll() || walk.down();
+    let nearly = walk.unfactored.is_some() && !beside.is_empty();
+    let arrived = h.has_dear_factors() && (nearly && walk.roll(true) || walk.roll(false)) || walk.down();
     Descent { fallen_mev: saddle.above_mev(&walk.here), arrived, m: walk.here.m, way: walk.trail.into_points() }
 }
 
@@ -230,24 +232,27 @@ impl Walk<'_> {
     }
 
     /// A step along the valley, and down by gradients alone from there; whether that leads to a minimum. Where it does not, the descent
-    /// is back where it began.
-    fn roll(&mut self) -> bool {
+    /// is back where it began. With what stands in for the Hessian it is one that was given: where a slope forks by symmetry, the descent
+    /// ends anywhere between two of them.
+    fn roll(&mut self, nearly: bool) -> bool {
         let (from, tau, trail) = (self.here.clone(), self.tau.clone(), self.trail.clone());
         self.room.v.clone_from(&self.tau);
         slab::scale(&mut self.room.v, LAST_DIGITS / rotation_of(&self.tau));
         self.here.go(self.h, &from, &self.room.v);
-        let arrived = self.quench()
+        let arrived = self.quench(nearly)
             && from.above_mev(&self.here) > self.h.rounding_mev()
-            && (self.join() || matches!(self.fall(), Fall::Arrived) && (self.has_none_softer(0.0) || self.fork()));
+            && (self.join()
+                || !nearly && matches!(self.fall(), Fall::Arrived) && (self.has_none_softer(0.0) || self.fork()));
         if !arrived {
             (self.here, self.tau, self.trail) = (from, tau, trail);
         }
         arrived
     }
 
-    /// Down by gradients alone; whether to where the slope ends.
-    fn quench(&mut self) -> bool {
-        quench(self.h, &mut self.here, &mut self.next, &mut self.trail)
+    /// Down by gradients alone, with what stands in for the Hessian or without; whether to where the slope ends.
+    fn quench(&mut self, nearly: bool) -> bool {
+        let nearly = self.unfactored.as_mut().filter(|_| nearly);
+        quench(self.h, &mut self.here, &mut self.next, &mut self.trail, nearly)
     }
 
     /// To a state beside the descent that is all but reached; whether there is one.
@@ -281,7 +286,7 @@ impl Walk<'_> {
         blend(&from.m, &end.m, 0.5, &mut half);
         self.here = Point::at(self.h, half.clone());
         // along a valley that is all but level its steps do not end, and need not
-        self.quench();
+        self.quench(false);
         let falls = largest_angle(&self.here.m, &half) < 0.5 * FAR
             && from.above_mev(&self.here) > rounding
             && self.here.above_mev(&end) > rounding;

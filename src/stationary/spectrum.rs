@@ -86,7 +86,7 @@ impl Spectrum {
     /// The counts without factors: negative directions are looked for until the rest is bounded.
     fn bounded(h: Evaluator, state: &State, norm_mev: f64, floor_mev: f64) -> (Spectrum, Option<Vec<f64>>) {
         let stand_in = StandIn::about(&h, &state.m, &state.gradient, h.longest_wave_mev());
-        let at = Place { h: &h, m: &state.m, g: &state.gradient, shift: 0.0 };
+        let at = Place { h: &h, m: &state.m, g: &state.gradient, shift: 0.0, pull: 0.0 };
         let zeros: Vec<Vec<f64>> = state.zeros.iter().map(|z| state.field(z)).collect();
         let mut falling: Vec<Vec<f64>> = Vec::new();
         let bound = loop {

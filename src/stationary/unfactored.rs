@@ -5,6 +5,7 @@
 use super::point::Point;
 use super::tolerances::INDEPENDENT;
 use crate::energy::Hamiltonian;
+use crate::field::project;
 use crate::hessian::{Complement, Place, StandIn};
 use crate::linalg::{orthonormal, slab};
 
@@ -45,9 +46,16 @@ impl Unfactored {
         self.equations.border = orthonormal(border, INDEPENDENT);
         self.equations.right.clear();
         self.equations.right.extend_from_slice(b);
-        let place = Place { h, m: &at.m, g: &at.gradient, shift };
+        let place = Place { h, m: &at.m, g: &at.gradient, shift, pull: 0.0 };
         self.equations.solve(place, &self.stand_in, left).ok()?;
         Some(&self.equations.x)
+    }
+
+    /// q ← P M⁻¹ q of a tangent field: roughly the step that a force q asks for.
+    pub fn step(&mut self, h: &Hamiltonian, at: &Point, q: &mut [f64]) {
+        self.equations.apply_stand_in(&self.stand_in, q);
+        project(&at.m, q);
+        h.hold_frozen(q);
     }
 
     /// The direction of the valley at a point near it, t the one so far (unit, tangent, 3N): t + y, P H (t + y) = 0. None where it has
@@ -66,7 +74,6 @@ impl Unfactored {
 mod tests {
     use super::*;
     use crate::energy::test_terms::{hamiltonian, lattice};
-    use crate::field::project;
     use crate::geometry::Direction;
     use crate::linalg::Matrix;
     use crate::sphere::move_points;
