@@ -6,7 +6,7 @@
 //! ```
 //! (m·m_u is told spin by spin.) H + σ m·m_u is the Hessian of E − σ Σ m·m_u: a Newton step of an image is one towards the least of
 //! E + ½ σ |m − m_u|², implicit Euler's step of length 1/σ from its neighbour. With σ alone in its place the error of soft modes falls to
-//! 0.4 a step, of images 1 rad apart. Where a spin turns by more the derivative tells little: σ alone holds the image, with |m_u − m| for |v|.
+//! 0.4 a step, of images 1 rad apart. Where a spin turns by more the derivative tells little, and σ alone holds the image.
 
 use super::Band;
 use crate::path::RESOLVED;
@@ -14,30 +14,27 @@ use crate::path::RESOLVED;
 /// A neighbour is not nearer than this.
 const LEAST: f64 = 1e-12;
 
-/// The neighbour uphill, and whether it is so near that δF⊥ tells of the way to it.
-fn neighbour(band: &Band, k: usize) -> Option<(usize, bool)> {
-    band.uphill(k).map(|u| (u, band.widest(k.min(u)) <= RESOLVED))
-}
-
 /// σ (meV), 0 at extrema.
 pub fn upwind_rate(band: &Band, k: usize) -> f64 {
-    match neighbour(band, k) {
-        Some((_, true)) => band.along(k).abs() / band.chord(k)[1].max(LEAST),
-        _ => straight_rate(band, k),
-    }
+    rate(band, k, 1)
 }
 
 /// σ with |m_u − m| for |v| (meV), 0 at extrema: what images are held by whose Hessians are factorised, whatever the
 /// distance. (With the derivative some rings take 7 evaluations for 11, but hard chains lost their lowest barriers.)
 pub fn straight_rate(band: &Band, k: usize) -> f64 {
-    if band.uphill(k).is_some() { band.along(k).abs() / band.chord(k)[0].max(LEAST) } else { 0.0 }
+    rate(band, k, 0)
+}
+
+fn rate(band: &Band, k: usize, chord: usize) -> f64 {
+    if band.uphill(k).is_some() { band.along(k).abs() / band.chord(k)[chord].max(LEAST) } else { 0.0 }
 }
 
 /// The gradient (meV) of the energy with the pull, of which a Hessian is made: g − σ m_u, or g − σ m where m_u is far; g where nothing
 /// pulls. `room` is memory.
 pub fn pulled<'a>(band: &'a Band, k: usize, sigma: f64, room: &'a mut Vec<f64>) -> &'a [f64] {
     let g = band.gradient(k);
-    let Some((u, is_near)) = neighbour(band, k) else { return g };
+    let Some(u) = band.uphill(k) else { return g };
+    let is_near = band.widest(k.min(u)) <= RESOLVED;
     let to = band.path().image(if is_near { u } else { k });
     room.clear();
     room.extend(g.iter().zip(to).map(|(g, m)| g - sigma * m));
