@@ -9,8 +9,8 @@
 //! Processes that share a search make batches as many times as large, each its part of every batch; what is found depends on how
 //! many shares there are, not on who makes them.
 //!
-//! Where all passes below an energy are looked for, T is that, every new saddle is news, and the number of searches without any
-//! grows with the number of passes known: of n that are found equally often, q searches miss one with a chance of e^(−q/n).
+//! The number of searches without any grows with the number of saddles found: of n that are found equally often, q searches miss one
+//! with a chance of e^(−q/n). Where all passes below an energy are looked for, T is that, and every new saddle is news.
 
 use super::rivals::{Cut, Rival, rivals, scouts, vanguard};
 use super::{Landscape, Pass, Saddle, Sides};
@@ -37,7 +37,7 @@ pub enum Effort {
     None,
     /// Until 8 searches in a row brought no news.
     Quick,
-    /// Until 24 searches in a row brought no news, 40 once a saddle was found; on films and crystals 100.
+    /// Until 24 searches in a row brought no news, and 16 more for each saddle that was found, up to 100.
     #[default]
     Normal,
     /// Until 400 searches in a row brought no news: on soft films one in sixty leads lower.
@@ -45,21 +45,19 @@ pub enum Effort {
 }
 
 impl Effort {
-    /// So many searches in a row without news end a search; a lattice that is no row has more ways out of a minimum than a row has.
-    fn quiet(self, found: bool, is_row: bool) -> usize {
-        match (self, found, is_row) {
-            (Effort::None, ..) => 0,
-            (Effort::Quick, ..) => 8,
-            (Effort::Normal, _, false) => 100,
-            (Effort::Normal, false, true) => 24,
-            (Effort::Normal, true, true) => 40,
-            (Effort::Thorough, ..) => 400,
+    /// So many searches in a row without news end a search that found so many saddles: where there are many, more may be missing.
+    fn quiet(self, found: usize) -> usize {
+        match self {
+            Effort::None => 0,
+            Effort::Quick => 8,
+            Effort::Normal => (24 + 16 * found).min(100),
+            Effort::Thorough => 400,
         }
     }
 
     /// As many times as much work may it do as `normal` as it waits longer for news, or as much.
     pub fn works(self) -> usize {
-        (self.quiet(true, true) / Effort::Normal.quiet(true, true)).max(1)
+        (self.quiet(1) / Effort::Normal.quiet(1)).max(1)
     }
 
     /// And so many for each pass that is known, where all are looked for.
@@ -107,11 +105,11 @@ impl Aim {
         }
     }
 
-    /// So many searches in a row without news end the search.
-    fn quiet(self, effort: Effort, found: bool, land: &Landscape) -> usize {
+    /// So many searches in a row without news end the search, which brought news so often.
+    fn quiet(self, effort: Effort, found: usize, land: &Landscape) -> usize {
         match self {
-            Aim::Route(..) => effort.quiet(found, land.evaluator().lattice().is_row()),
-            Aim::All(_) => effort.quiet(true, true).max(effort.a_pass() * land.passes_below(self.top_mev(land))),
+            Aim::Route(..) => effort.quiet(found),
+            Aim::All(_) => effort.quiet(1).max(effort.a_pass() * land.passes_below(self.top_mev(land))),
         }
     }
 }
@@ -173,15 +171,14 @@ pub fn search(
         Aim::Route(..) => Turns::of(None, rivals(h.lattice())),
         Aim::All(_) => Turns::of(Some(vanguard()), scouts()),
     };
-    let passes = land.edges().len();
-    let mut lowest = f64::INFINITY;
+    let (mut lowest, mut found) = (f64::INFINITY, 0);
     let before = h.evaluated();
     loop {
         let top_mev = aim.top_mev(land);
         if top_mev < lowest - land.tolerance_mev(top_mev) {
             (lowest, done.quiet) = (top_mev, 0);
         }
-        let wanted = aim.quiet(settings.effort, land.edges().len() > passes, land);
+        let wanted = aim.quiet(settings.effort, found, land);
         let worked = h.evaluated().since(before);
         let spent = worked.part_of(settings.most).max(land.kinds() as f64 / settings.most_kinds as f64);
         // what comes to its own stop has not missed the work that it has used up
@@ -209,6 +206,7 @@ pub fn search(
         for (pass, counts) in caught.into_iter().zip(count_as_quiet) {
             let news = pass.is_some_and(|pass| bring(land, pass, below, aim));
             done.searches += 1;
+            found += usize::from(news);
             done.quiet = if news { 0 } else { done.quiet + usize::from(counts) };
         }
     }

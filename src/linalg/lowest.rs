@@ -15,7 +15,7 @@ const BLOCKS: [usize; 2] = [2, 4];
 const QUOTIENTS: usize = 3;
 const SLOW: f64 = 0.2;
 /// Most vectors from the factors of the matrix itself, whose modes may be far from zero.
-const MOST_AS_IT_IS: usize = 60;
+const MOST_AS_IT_IS: usize = 32;
 
 /// The `count` lowest modes of `matrix` in the space orthogonal to `known` (orthonormal vectors, invariant under it),
 /// ascending. Fewer where the space is smaller. Deterministic.

@@ -4,9 +4,10 @@
 //! s = −Σ_k ± (g_k/|λ_k|) u_k      up (−) along the lowest mode, down along all others
 //! ```
 //! This is Newton's step −H⁻¹g with its parts along the wrong modes reversed: one factorisation where one direction is negative,
-//! and the modes in question where more are or none is. Where very many are, the step goes down: s = −(H + μ)⁻¹g. A step is cut to
-//! the trust radius, which follows how well the model told the energy. Along a mode that is all but flat, as a wall's that slides, it
-//! has a part only once what is left to turn across that mode can no longer change its curvature, and none where that is rounding.
+//! and the modes in question where more are or none is. Where many are, or a few solutions by the factors do not tell them, the step
+//! goes down: s = −(H + μ)⁻¹g. A step is cut to the trust radius, which follows how well the model told the energy. Along a mode that
+//! is all but flat, as a wall's that slides, it has a part only once what is left to turn across that mode can no longer change its
+//! curvature, and none where that is rounding.
 //! (Cerjan, Miller, J. Chem. Phys. 75, 2800 (1981), doi:10.1063/1.442352; Wales, J. Chem. Phys. 101, 3750 (1994),
 //! doi:10.1063/1.467559.)
 
@@ -188,14 +189,14 @@ impl<'a> Region<'a> {
             Soft::Kept => (all, all == 0),
             Soft::Frozen { falls, is_flat } => ((all - usize::from(falls)).max(1), !is_flat),
         };
-        match negative {
+        let is_told = match negative {
             0 => self.reverse(here, &factors, 0..1),
-            // more are not reversed one by one: the step goes down
+            1 => true,
             2..=FEW => self.reverse(here, &factors, 1..negative),
-            _ => {}
-        }
+            _ => false,
+        };
         self.keep(here, factors, all == 1 && soft.is_none());
-        if negative > FEW {
+        if !is_told {
             self.shifted(here);
         }
         (negative, leads_on)
@@ -271,8 +272,9 @@ impl<'a> Region<'a> {
         factors
     }
 
-    /// Reverses the parts of `x`, Newton's step, along some of the lowest modes, which are told by its factors.
-    fn reverse(&mut self, here: &Point, factors: &Factors, which: Range<usize>) {
+    /// Reverses the parts of `x`, Newton's step, along some of the lowest modes, which are told by its factors; not where these do not
+    /// tell several soon. Whether it did.
+    fn reverse(&mut self, here: &Point, factors: &Factors, which: Range<usize>) -> bool {
         let mut start = self.x.clone();
         slab::stir(&mut start, 0.1 * slab::norm(&self.x));
         let mut before = Vec::new();
@@ -280,14 +282,15 @@ impl<'a> Region<'a> {
             here.basis.write_coordinates(mode, &mut before);
             slab::add_scaled(&mut start, slab::norm(&self.x), &before);
         }
-        let modes = modes_by_factors(factors, &here.zeros, vec![start], ROUGHLY).unwrap_or_else(|| {
-            lowest_modes(&self.hessian, which.end, &here.zeros).into_iter().map(|mode| mode.vector).collect()
-        });
+        let lowest = || lowest_modes(&self.hessian, 1, &here.zeros).into_iter().map(|mode| mode.vector).collect();
+        let found = modes_by_factors(factors, &here.zeros, vec![start], ROUGHLY);
+        let Some(modes) = found.or_else(|| (which.start == 0).then(lowest)) else { return false };
         for u in modes.get(which).unwrap_or_default() {
             let along = slab::dot(u, &self.x);
             slab::add_scaled(&mut self.x, -2.0 * along, u);
         }
         self.modes = modes.iter().map(|u| here.field(u)).collect();
+        true
     }
 
     /// The step of the least shift, in fours, that makes the Hessian positive definite.
