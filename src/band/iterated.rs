@@ -4,8 +4,9 @@
 //! ```text
 //! P A P x = P (F⊥ + σ y_u − A d τ),   P = 1 − C Cᵀ,   A = H + σ m·m_u + μ,   y = d τ + x
 //! ```
-//! (see `upwind` and [`Complement`]), until 3 % of the residual are left, or a tenth where the band is only to be looked at: the next evaluation changes
-//! the right-hand side by more. A direction of negative curvature on the way makes μ grow, as a negative pivot does where there are factors.
+//! (see `upwind` and [`Complement`]), until 3 % of the residual are left, or a tenth where the band is only to be looked at: the next
+//! evaluation changes the right-hand side by more. A direction of negative curvature on the way makes μ grow, as a negative pivot does
+//! where there are factors.
 //! (T. Steihaug, SIAM J. Numer. Anal. 20, 626 (1983), doi:10.1137/0720042, for conjugate gradients that end so; R. S. Dembo, S. C.
 //! Eisenstat, T. Steihaug, SIAM J. Numer. Anal. 19, 400 (1982), doi:10.1137/0719025, for how far they are to go.)
 

@@ -12,7 +12,7 @@ use super::Band;
 use crate::path::RESOLVED;
 
 /// A neighbour is not nearer than this.
-const LEAST: f64 = 1e-12;
+const NEAREST: f64 = 1e-12;
 
 /// σ (meV), 0 at extrema.
 pub fn upwind_rate(band: &Band, k: usize) -> f64 {
@@ -26,7 +26,7 @@ pub fn straight_rate(band: &Band, k: usize) -> f64 {
 }
 
 fn rate(band: &Band, k: usize, chord: usize) -> f64 {
-    if band.uphill(k).is_some() { band.along(k).abs() / band.chord(k)[chord].max(LEAST) } else { 0.0 }
+    if band.uphill(k).is_some() { band.along(k).abs() / band.chord(k)[chord].max(NEAREST) } else { 0.0 }
 }
 
 /// The gradient (meV) of the energy with the pull, of which a Hessian is made: g − σ m_u, or g − σ m where m_u is far; g where nothing

@@ -14,7 +14,8 @@ const BLOCKS: [usize; 2] = [2, 4];
 /// Most Rayleigh quotients at which a matrix is factorised, and what a step leaves of the residual at least where another is due.
 const QUOTIENTS: usize = 3;
 const SLOW: f64 = 0.2;
-/// Most vectors from the factors of the matrix itself, whose modes may be far from zero.
+/// Most vectors from the factors of the matrix itself, whose modes may be far from zero. (Of 24 a survey of an 18 × 10 film finds a
+/// fifth of its saddles, of 32 what it finds of 60.)
 const MOST_AS_IT_IS: usize = 32;
 
 /// The `count` lowest modes of `matrix` in the space orthogonal to `known` (orthonormal vectors, invariant under it),

@@ -4,7 +4,7 @@
 //! s = −Σ_k ± (g_k/|λ_k|) u_k      up (−) along the lowest mode, down along all others
 //! ```
 //! This is Newton's step −H⁻¹g with its parts along the wrong modes reversed: one factorisation where one direction is negative,
-//! and the modes in question where more are or none is. Where many are, or a few solutions by the factors do not tell them, the step
+//! and the modes in question where more are or none is. Where many are, or Lanczos by the factors does not tell them soon, the step
 //! goes down: s = −(H + μ)⁻¹g. A step is cut to the trust radius, which follows how well the model told the energy. Along a mode that
 //! is all but flat, as a wall's that slides, it has a part only once what is left to turn across that mode can no longer change its
 //! curvature, and none where that is rounding.
