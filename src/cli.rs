@@ -431,7 +431,7 @@ pub(crate) enum Looking {
     None,
     /// Until 8 searches in a row brought no news
     Quick,
-    /// Until 24 searches in a row brought no news, 40 once something was found (100 on films and crystals)
+    /// Until 24 searches in a row brought no news, and 16 more for each saddle found, up to 100
     Normal,
     /// Until 400 searches in a row brought no news
     Thorough,

@@ -8,7 +8,16 @@ use crate::stationary::{ALIKE, Point, Relaxed, Spectrum, WayDown};
 /// An end that stays as it is.
 pub fn kept(spins: &Spins, max_torque_mev: f64, spectrum: Option<Spectrum>) -> Relaxed {
     let spins = spins.clone();
-    Relaxed { spins, max_torque_mev, steps: 0, largest_rotation_rad: 0.0, left: None, converged: true, spectrum }
+    Relaxed {
+        spins,
+        max_torque_mev,
+        steps: 0,
+        largest_rotation_rad: 0.0,
+        left: None,
+        converged: true,
+        spectrum,
+        stiffness_mev: None,
+    }
 }
 
 /// The largest component of the force on a state (meV).

@@ -19,7 +19,7 @@ use crate::rates::LEAST_BARRIER;
 use crate::record::Count;
 use crate::sphere::SAME;
 use crate::spins::Spins;
-use crate::stationary::{ALIKE, LOWER, RELAXED, Relaxed, both_by_factors, relax_to_minimum};
+use crate::stationary::{ALIKE, LOWER, RELAXED, Relaxed, both_by_factors, relax_end};
 use crate::units::K_B;
 use std::sync::Arc;
 use std::time::Instant;
@@ -98,7 +98,7 @@ impl<'a, 'o> Run<'a, 'o> {
             );
         }
         let (a, b) = (ends[0].spins.as_slice(), ends[1].spins.as_slice());
-        let scales = recorded(h, "scales", &[a, b], || Ok(Scales::of_ends(h, a, b)))?;
+        let scales = recorded(h, "scales", &[a, b], || Ok(Scales::of_ends(h, &ends)))?;
         let axes = h.symmetry_axes_at(a);
         let laplacian =
             needs_laplacian(&problem.neb.optimiser).then(|| Arc::new(Laplacian::new(&h, scales.stiffness_mev)));
@@ -273,7 +273,7 @@ impl<'a, 'o> Run<'a, 'o> {
 
 /// The minima that two states relax to.
 fn relaxed_ends(h: Evaluator, given: [&Spins; 2]) -> Result<[Relaxed; 2]> {
-    let relax = |spins: &Spins| relax_to_minimum(h, spins, RELAXED * h.stiffness_mev());
+    let relax = |spins: &Spins| relax_end(h, spins, RELAXED * h.stiffness_mev());
     let (a, b) = both_by_factors(&h, || relax(given[0]), || relax(given[1]));
     Ok([a?, b?])
 }

@@ -5,7 +5,7 @@ use crate::field::Components;
 use crate::lattice::{BondFamily, Lattice};
 use crate::linalg::{eigenvalues_symmetric, orthonormal, slab};
 use crate::state::StateContext;
-use crate::stationary::{ALIKE, INDEPENDENT, State};
+use crate::stationary::{ALIKE, INDEPENDENT, Relaxed, State};
 use crate::threads::both;
 use serde::{Deserialize, Serialize};
 
@@ -30,8 +30,9 @@ impl Scales {
     }
 
     /// From two relaxed ends.
-    pub fn of_ends(h: Evaluator, a: &[f64], b: &[f64]) -> Scales {
-        let (of_a, of_b) = both(a.len(), || softest_mode(h, a), || softest_mode(h, b));
+    pub fn of_ends(h: Evaluator, [a, b]: &[Relaxed; 2]) -> Scales {
+        let softest = |end: &Relaxed| end.stiffness_mev.unwrap_or_else(|| softest_mode(h, end.spins.as_slice()));
+        let (of_a, of_b) = both(3 * h.sites(), || softest(a), || softest(b));
         let softest = of_a.max(of_b);
         Scales::new(&h, if softest > ALIKE * h.stiffness_mev() { softest } else { on_site_gap(&h) })
     }

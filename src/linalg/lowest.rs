@@ -4,16 +4,13 @@
 use super::krylov::{Krylov, MOST, Modes};
 use super::ritz::{Mode, none_is_missed, rayleigh_ritz};
 use super::slices::sliced;
-use super::together::{quotient, together};
-use super::{Factors, Matrix, Wanted, slab};
+use super::together::together;
+use super::{Factors, Matrix, Wanted};
 
 /// A vector with |A⁻¹v − θv| ≤ this part of θ is an eigenvector.
 const SHARP: f64 = 1e-8;
 /// Vectors in a block: as many as modes are often degenerate, and for the rare case in which that was too few.
 const BLOCKS: [usize; 2] = [2, 4];
-/// Most Rayleigh quotients at which a matrix is factorised, and what a step leaves of the residual at least where another is due.
-const QUOTIENTS: usize = 3;
-const SLOW: f64 = 0.2;
 /// Most vectors from the factors of the matrix itself, whose modes may be far from zero. (Of 24 a survey of an 18 × 10 film finds a
 /// fifth of its saddles, of 32 what it finds of 60.)
 const MOST_AS_IT_IS: usize = 32;
@@ -36,18 +33,20 @@ pub fn lowest_modes_beside(
     known: &[Vec<f64>],
     (wanted, given): (Wanted, &[Vec<f64>]),
 ) -> Vec<Mode> {
-    those_below(matrix, Modes { count, below: f64::INFINITY, part: residual(wanted) }, known, given)
+    those_below(matrix, Modes { count, below: f64::INFINITY, part: wanted.residual() }, known, given)
 }
 
 /// The modes among the `count` lowest that are below a limit, but one at least; as [`lowest_modes`], without the time that the
 /// modes above the limit take, which on long chains are close together.
 pub fn soft_modes(matrix: &Matrix, count: usize, known: &[Vec<f64>], below: f64) -> Vec<Mode> {
-    those_below(matrix, Modes { count, below, part: residual(Wanted::Values) }, known, &[])
+    those_below(matrix, Modes { count, below, part: Wanted::Values.residual() }, known, &[])
 }
 
-/// What |A⁻¹v − θv| may be in parts of θ: the eigenvalue is right to the square of it.
-fn residual(wanted: Wanted) -> f64 {
-    wanted.part().sqrt().max(SHARP)
+impl Wanted {
+    /// What |A⁻¹v − θv| may be in parts of θ: the eigenvalue is right to the square of it.
+    pub fn residual(self) -> f64 {
+        self.part().sqrt().max(SHARP)
+    }
 }
 
 fn those_below(matrix: &Matrix, wanted: Modes, known: &[Vec<f64>], given: &[Vec<f64>]) -> Vec<Mode> {
@@ -92,36 +91,6 @@ pub fn modes_by_factors(
             look += look / 2;
         }
     }
-}
-
-/// The negative mode of a sparse matrix that has no other in the space orthogonal to `known` (orthonormal, invariant), from a vector
-/// that is roughly it, by inverse iteration at its Rayleigh quotient. Nothing where that leads elsewhere, or of other matrices.
-pub fn lone_negative(matrix: &Matrix, known: &[Vec<f64>], roughly: &[f64]) -> Option<Mode> {
-    let Matrix::Sparse(_) = matrix else { return None };
-    let mut memory = Matrix::default();
-    let mut v = roughly.to_vec();
-    let (mut theta, mut rest) = quotient(matrix, &v, known);
-    for _ in 0..QUOTIENTS {
-        memory.copy_from(matrix);
-        memory.shift(-theta);
-        let factors = memory.factor();
-        loop {
-            let before = rest;
-            factors.solve(&mut v, 1);
-            slab::without(&mut v, known);
-            slab::normalise(&mut v);
-            (theta, rest) = quotient(matrix, &v, known);
-            if rest <= SHARP * theta.abs() {
-                return rayleigh_ritz(matrix, &[v]).pop().filter(|mode| mode.value < 0.0);
-            }
-            // a nearer quotient is worth its factors, or it is no number
-            if rest > SLOW * before || rest.is_nan() {
-                break;
-            }
-        }
-        memory = factors.into_memory();
-    }
-    None
 }
 
 /// Some of the `count` lowest modes, at least one, by block Lanczos.
@@ -181,6 +150,7 @@ fn shift_below(matrix: &Matrix, scale: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::linalg::Banded;
+    use crate::linalg::slab;
     use crate::linalg::sparse::samples::Lattice;
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
@@ -188,7 +158,7 @@ mod tests {
     /// By slices and by Lanczos, far from the modes and near them, with and without the other's help.
     fn all_ways(matrix: &Matrix, count: usize, known: &[Vec<f64>]) -> [Vec<Mode>; 4] {
         let slices = sliced(matrix, count, known, f64::INFINITY).expect("slices converge");
-        let all = Modes { count, below: f64::INFINITY, part: residual(Wanted::Values) };
+        let all = Modes { count, below: f64::INFINITY, part: Wanted::Values.residual() };
         let (near, complete) = together(matrix, known, &[], all);
         assert!(complete);
         [slices, lanczos(matrix, all, known), near, lowest_modes(matrix, count, known)]
@@ -270,25 +240,24 @@ mod tests {
     }
 
     #[test]
-    fn a_lone_negative_mode_is_found_from_what_is_roughly_it() {
+    fn factors_tell_a_lone_negative_mode_and_the_lowest_where_none_is_negative() {
         let mut r = ChaCha8Rng::seed_from_u64(23);
         let lattice = Lattice::grid([12, 10, 1], [true, false, false], 1.0, &mut r);
-        let mut sparse = lattice.random(&mut r);
-        let modes = lowest_modes(&Matrix::Sparse(sparse.clone()), 3, &[]);
-        sparse.shift(-0.5 * (modes[0].value + modes[1].value));
-        let a = Matrix::Sparse(sparse);
-        let exact = lowest_modes(&a, 2, &[]);
-        assert!(exact[0].value < 0.0 && exact[1].value > 0.0);
-        for part in [0.3, 0.01, 0.0] {
-            let mut roughly = exact[0].vector.clone();
-            slab::add_scaled(&mut roughly, part, &exact[1].vector);
-            slab::normalise(&mut roughly);
-            let found = lone_negative(&a, &[], &roughly).expect("a negative mode");
-            assert!((found.value - exact[0].value).abs() < 1e-12);
-            assert!((slab::dot(&found.vector, &exact[0].vector) - 1.0).abs() < 1e-12);
+        let sparse = lattice.random(&mut r);
+        let exact = lowest_modes(&Matrix::Sparse(sparse.clone()), 2, &[]);
+        for shift in [-0.5 * (exact[0].value + exact[1].value), 0.1 - exact[0].value] {
+            let mut matrix = sparse.clone();
+            matrix.shift(shift);
+            let factors = Matrix::Sparse(matrix).factor();
+            let found = |wanted: Wanted| {
+                let modes = modes_by_factors(&factors, &[], Vec::new(), wanted.residual()).expect("it is told");
+                assert_eq!(modes.len(), 1);
+                slab::dot(&modes[0], &exact[0].vector).abs()
+            };
+            assert!(found(Wanted::Vectors) > 1.0 - 1e-12);
+            let roughly = found(Wanted::Size);
+            assert!((0.99..1.0 - 1e-12).contains(&roughly), "{roughly}");
         }
-        assert!(lone_negative(&a, &[], &exact[1].vector).is_none());
-        assert!(lone_negative(&a, &[exact[0].vector.clone()], &exact[1].vector).is_none());
     }
 
     #[test]

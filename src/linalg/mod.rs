@@ -44,7 +44,7 @@ pub use gmres::gmres;
 pub use layout::{Layout, Places};
 pub use ldl::Ldl;
 pub use logarithms::log_sum;
-pub use lowest::{lone_negative, lowest_modes, lowest_modes_beside, modes_by_factors, soft_modes};
+pub use lowest::{lowest_modes, lowest_modes_beside, modes_by_factors, soft_modes};
 pub use matrix::Matrix;
 pub use multigrid::{Coarsening, Multigrid, Rows};
 pub use orthonormal::{orthonormal, remove};

@@ -72,6 +72,8 @@ pub(super) fn together(matrix: &Matrix, known: &[Vec<f64>], given: &[Vec<f64>], 
             continue;
         }
         (low, went_far) = (shift, false);
+        // where all others lie below s, the lowest above it alone cannot be missed
+        let is_last = wanted.count == sure + 1 && modes[..sure].iter().all(|mode| mode.value < shift);
         let mut krylov = Krylov::new(&factors, &apart, SPARE + modes.len() - sure);
         krylov.starts = modes[sure..].iter().map(|mode| mode.vector.clone()).collect();
         let rest = Modes { count: wanted.count - sure, below: wanted.below - low, ..wanted };
@@ -79,7 +81,7 @@ pub(super) fn together(matrix: &Matrix, known: &[Vec<f64>], given: &[Vec<f64>], 
         loop {
             let (space, settled) = krylov.largest(rest, most);
             modes = rayleigh_ritz(matrix, &[&apart[known.len()..], &space].concat());
-            let complete = settled && none_is_missed(matrix, &modes, known, scale);
+            let complete = settled && (is_last || none_is_missed(matrix, &modes, known, scale));
             if complete || krylov.is_full(MOST) || modes.len() <= sure {
                 // the first of those beside the ones found may lie above the limit
                 let within = modes.iter().skip(1).take_while(|mode| mode.value < wanted.below).count();

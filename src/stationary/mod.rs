@@ -33,7 +33,7 @@ pub use descent::{Descent, Downhill, descend};
 pub use pinned::Pinned;
 pub use point::{Point, move_free};
 pub use refine::{Refined, refine};
-pub use relax::{Relaxed, WayDown, relax_to_minimum};
+pub use relax::{Relaxed, WayDown, relax_end, relax_to_minimum};
 pub use search::{Climb, GaveUp, Limits, STEPS, Saddle, climb};
 pub use spectrum::{Spectrum, lowest_eigenvalues_mev};
 pub use state::{State, both_by_factors, is_very_dear};

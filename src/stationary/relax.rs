@@ -37,6 +37,8 @@ pub struct Relaxed {
     pub converged: bool,
     /// The signs of its modes, if they were counted.
     pub spectrum: Option<Spectrum>,
+    /// Its lowest eigenvalue (meV), roughly, if that came with them.
+    pub stiffness_mev: Option<f64>,
 }
 
 /// How a saddle was left for a minimum.
@@ -53,30 +55,44 @@ pub struct WayDown {
 /// The minimum that `start` relaxes to, with every force component below `tolerance_mev`. Stationary states on the way that are
 /// no minima are left, however many, as long as the energy falls.
 pub fn relax_to_minimum(h: Evaluator, start: &Spins, tolerance_mev: f64) -> Result<Relaxed> {
+    relax(h, start, tolerance_mev, |state| (Spectrum::of(h, state, 0), None))
+}
+
+/// The same, and how stiff that minimum is.
+pub fn relax_end(h: Evaluator, start: &Spins, tolerance_mev: f64) -> Result<Relaxed> {
+    relax(h, start, tolerance_mev, |state| Spectrum::of_minimum(h, state))
+}
+
+fn relax(
+    h: Evaluator,
+    start: &Spins,
+    tolerance_mev: f64,
+    look: impl Fn(&State) -> (Spectrum, Option<f64>),
+) -> Result<Relaxed> {
     let mut p = Point::at(h, start.as_slice().to_vec());
     let mut left = None;
     let mut steps = 0;
     let mut memory = Matrix::default();
-    let mut spectrum;
-    loop {
+    let (spectrum, stiffness_mev) = loop {
         p = stationary(h, p, tolerance_mev, &mut steps, &mut memory)?;
         let state = State::of(h, p);
-        let here = Spectrum::of(h, &state, 0);
+        let seen = look(&state);
+        let here = &seen.0;
         let (is_saddle, rests) = (here.negative > 0, state.max_torque_mev() <= NEARLY * tolerance_mev);
         let down = if is_saddle || !rests { way_down(h, &state, rests) } else { None };
-        spectrum = here;
         let Some((below, way)) = down.filter(|(_, way)| way.fallen_mev > 0.0) else {
             p = state.point;
-            break;
+            break seen;
         };
         if is_saddle {
             left.get_or_insert(way);
         }
         steps += 1;
         p = below;
-    }
+    };
     Ok(Relaxed {
         spectrum: Some(spectrum),
+        stiffness_mev,
         max_torque_mev: p.max_torque_mev(),
         steps,
         largest_rotation_rad: largest_angle(start.as_slice(), &p.m),

@@ -6,10 +6,10 @@
 use super::border::pin_all;
 use super::point::Point;
 use super::state::State;
-use super::tolerances::{FEW, INDEPENDENT, ROUGHLY, STATIONARY};
+use super::tolerances::{FEW, INDEPENDENT, STATIONARY};
 use crate::energy::Evaluator;
 use crate::hessian::{Bound, Place, StandIn, bound};
-use crate::linalg::{Factors, Matrix, modes_by_factors, orthonormal};
+use crate::linalg::{Factors, Matrix, Wanted, orthonormal};
 use serde::{Deserialize, Serialize};
 use std::mem::take;
 
@@ -47,12 +47,23 @@ impl Spectrum {
     /// counts, by one factorisation.
     pub fn of_saddle(h: Evaluator, state: &State) -> (Spectrum, Option<Vec<f64>>) {
         Spectrum::counted(h, state, |factors| {
-            let roughly = modes_by_factors(factors, &state.zeros, Vec::new(), ROUGHLY).unwrap_or_default();
-            state.lone_mode(h, &roughly)
+            if factors.negatives() != 1 {
+                return None;
+            }
+            let at_hand = state.mode_at_hand(factors, Wanted::Vectors);
+            at_hand.or_else(|| state.lowest_mode(h).map(|mode| mode.vector))
         })
     }
 
-    /// The counts, and what `lone` makes of factors with one negative direction.
+    /// Of what may be a minimum, without eigenvalues but for the lowest (meV), roughly, where the factors that count the signs tell it.
+    pub fn of_minimum(h: Evaluator, state: &State) -> (Spectrum, Option<f64>) {
+        let (spectrum, softest) = Spectrum::counted(h, state, |factors| {
+            if factors.negatives() == 0 { state.mode_at_hand(factors, Wanted::Size) } else { None }
+        });
+        (spectrum, softest.map(|v| state.curvature_mev(&v)))
+    }
+
+    /// The counts, and what `lone` makes of factors with one negative direction or none.
     fn counted(
         h: Evaluator,
         state: &State,
@@ -63,7 +74,6 @@ impl Spectrum {
         if h.forgoes_factors() {
             return Spectrum::bounded(h, state, norm_mev, floor_mev);
         }
-        let lone = |factors: &Factors| if factors.negatives() == 1 { lone(factors) } else { None };
         let falls = |v: &Vec<f64>| state.curvature_mev(v) < -floor_mev;
         let mut factors = pinned(h, state.hessian.clone(), &state.zeros, -floor_mev);
         let below_floor = factors.negatives();

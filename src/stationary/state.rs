@@ -3,14 +3,16 @@
 use super::point::{Point, move_free};
 use crate::energy::{Evaluator, Hamiltonian};
 use crate::hessian::Resolvent;
-use crate::linalg::{Asked, Matrix, Mode, Wanted, lone_negative, lowest_modes_beside, slab, softest};
+use crate::linalg::{
+    Asked, Factors, Matrix, Mode, Wanted, lowest_modes_beside, modes_by_factors, remove, slab, softest,
+};
 use crate::threads::both;
 use serde::{Deserialize, Serialize};
 use std::ops::Deref;
 
-/// Factors are very dear where they take the arithmetic of so many solutions by them: in films of some 130² sites and more, cubes of
-/// 12³.
-const DEAR: f64 = 30.0;
+/// Factors are very dear where they take the arithmetic of so many solutions by them: in films of some 170² sites and more, cubes of
+/// 15³.
+const DEAR: f64 = 60.0;
 
 /// Whether factors of a Hessian take so long that modes are found sooner without.
 pub fn is_very_dear(h: &Hamiltonian) -> bool {
@@ -69,11 +71,16 @@ impl State {
         self.modes(h, count, Wanted::Vectors, roughly)
     }
 
-    /// The vector of its negative mode, of which it has one alone, where that is known roughly.
-    pub fn lone_mode(&self, h: Evaluator, roughly: &[Vec<f64>]) -> Option<Vec<f64>> {
-        let sharply = |v: &Vec<f64>| lone_negative(&self.hessian, &self.zeros, v);
-        let sharp = roughly.first().filter(|_| !is_very_dear(&h)).and_then(sharply);
-        sharp.or_else(|| self.lowest_modes_beside(h, 1, roughly).into_iter().next()).map(|mode| mode.vector)
+    /// The vector of its negative mode by factors of the Hessian that are at hand, if it has one alone, or of its lowest if it has none;
+    /// nothing where those do not tell it soon, or where new factors are as cheap as solutions.
+    pub fn mode_at_hand(&self, factors: &Factors, wanted: Wanted) -> Option<Vec<f64>> {
+        let Matrix::Sparse(_) = self.hessian else { return None };
+        let mut v = modes_by_factors(factors, &self.zeros, Vec::new(), wanted.residual())?.pop()?;
+        // one solution more: what is left of stiff modes would show in vᵀHv
+        factors.solve(&mut v, 1);
+        remove(&mut v, &self.zeros);
+        slab::normalise(&mut v);
+        Some(v)
     }
 
     /// Their eigenvalues (meV) alone; `known` are the vectors of the lowest, as far as these are known.
