@@ -22,6 +22,11 @@ const SVG_SIZE_PER_EM: f64 = 1.24;
 const DPI: f64 = 300.0;
 /// A PNG is drawn so many times larger.
 const OVERSAMPLING: usize = 4;
+/// How a figure is packed: in a twentieth of the time that the smallest file takes (the default without a filter), which it exceeds by a
+/// third to a whole.
+const QUICKLY: (png::Compression, png::FilterType) = (png::Compression::Fast, png::FilterType::Paeth);
+/// How a raster within an SVG is packed, whose rows repeat.
+const SMALL: (png::Compression, png::FilterType) = (png::Compression::Default, png::FilterType::Up);
 /// How every SVG begins.
 const SVG_START: &str = "<svg xmlns=\"http://www.w3.org/2000/svg\"";
 /// What is around the description in an SVG.
@@ -58,8 +63,7 @@ impl Canvas {
         let mut pen = Pen { backend: &mut backend, scale, kind: Kind::Pixels };
         self.shapes.iter().try_for_each(|shape| pen.draw(shape))?;
         drop(backend);
-        // measured on line plots: without a filter the files are smallest
-        encode_png(&averaged(&pixels, width), (width, height), png::FilterType::NoFilter, &self.description)
+        encode_png(&averaged(&pixels, width), (width, height), QUICKLY, &self.description)
     }
 
     /// The root in millimetres, a white ground, the rasters beneath the shapes, and the font by name.
@@ -273,14 +277,18 @@ fn paint(pixels: &mut [u8], (wide, high): (usize, usize), raster: &Raster, scale
         let f = ((p as f64 + 0.5) / scale - start) / length;
         (0.0..1.0).contains(&f).then(|| ((f * cells as f64) as usize).min(cells.saturating_sub(1)))
     };
-    let columns: Vec<_> = (0..wide).map(|p| cell(p, r.x0, r.width(), raster.columns)).collect();
-    for y in 0..high {
-        let Some(row) = cell(y, r.y0, r.height(), raster.rows) else { continue };
-        for (x, column) in columns.iter().enumerate() {
-            if let Some(column) = column {
-                let from = 3 * (row * raster.columns + column);
-                pixels[3 * (y * wide + x)..][..3].copy_from_slice(&raster.rgb[from..from + 3]);
-            }
+    let inside = |along: usize, start: f64, length: f64, cells: usize| -> Vec<(usize, usize)> {
+        (0..along).filter_map(|p| Some((p, cell(p, start, length, cells)?))).collect()
+    };
+    let columns = inside(wide, r.x0, r.width(), raster.columns);
+    let Some(first) = columns.first().map(|(x, _)| *x) else { return };
+    let mut line: Vec<u8> = Vec::with_capacity(3 * columns.len());
+    for same in inside(high, r.y0, r.height(), raster.rows).chunk_by(|a, b| a.1 == b.1) {
+        let row = &raster.rgb[3 * same[0].1 * raster.columns..][..3 * raster.columns];
+        line.clear();
+        columns.iter().for_each(|(_, column)| line.extend_from_slice(&row[3 * column..3 * column + 3]));
+        for (y, _) in same {
+            pixels[3 * (y * wide + first)..][..line.len()].copy_from_slice(&line);
         }
     }
 }
@@ -290,17 +298,20 @@ fn averaged(pixels: &[u8], width: usize) -> Vec<u8> {
     const BLOCK: u16 = (OVERSAMPLING * OVERSAMPLING) as u16;
     let row_bytes = 3 * width * OVERSAMPLING;
     let mut out = Vec::with_capacity(pixels.len() / (OVERSAMPLING * OVERSAMPLING));
-    let mut sums = vec![[0u16; 3]; width];
+    let mut sums = vec![0u16; row_bytes];
     for block in pixels.chunks_exact(row_bytes * OVERSAMPLING) {
-        sums.fill([0; 3]);
+        // whole rows first, which is quick
+        sums.fill(0);
         for row in block.chunks_exact(row_bytes) {
-            for (sum, cell) in sums.iter_mut().zip(row.chunks_exact(3 * OVERSAMPLING)) {
-                for rgb in cell.chunks_exact(3) {
-                    (0..3).for_each(|c| sum[c] += u16::from(rgb[c]));
-                }
-            }
+            sums.iter_mut().zip(row).for_each(|(sum, byte)| *sum += u16::from(*byte));
         }
-        out.extend(sums.iter().flatten().map(|s| ((s + BLOCK / 2) / BLOCK) as u8));
+        for cell in sums.chunks_exact(3 * OVERSAMPLING) {
+            let mut sum = [BLOCK / 2; 3];
+            for rgb in cell.chunks_exact(3) {
+                (0..3).for_each(|c| sum[c] += rgb[c]);
+            }
+            out.extend_from_slice(&sum.map(|s| (s / BLOCK) as u8));
+        }
     }
     out
 }
@@ -309,14 +320,14 @@ fn averaged(pixels: &[u8], width: usize) -> Vec<u8> {
 fn encode_png(
     rgb: &[u8],
     (width, height): (usize, usize),
-    filter: png::FilterType,
+    (compression, filter): (png::Compression, png::FilterType),
     description: &str,
 ) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width as u32, height as u32);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_compression(png::Compression::Default);
+    encoder.set_compression(compression);
     encoder.set_filter(filter);
     if !description.is_empty() {
         encoder.add_itxt_chunk(KEYWORD.into(), description.into()).map_err(refused)?;
@@ -330,8 +341,7 @@ fn encode_png(
 /// A raster as an SVG element that carries its pixels.
 fn image_element(raster: &Raster) -> Result<String> {
     let r = raster.rect;
-    // rows repeat
-    let data = base64(&encode_png(&raster.rgb, (raster.columns, raster.rows), png::FilterType::Up, "")?);
+    let data = base64(&encode_png(&raster.rgb, (raster.columns, raster.rows), SMALL, "")?);
     let unit = |v: f64| (v * SVG_UNITS).round();
     Ok(format!(
         "<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\" \
