@@ -59,6 +59,8 @@ fn rotate(a: &mut [f64], v: &mut [f64], n: usize, p: usize, q: usize) {
     for k in 0..n {
         turn(a, p * n + k, q * n + k);
     }
+    // but for rounding, which would be turned about for ever
+    (a[p * n + q], a[q * n + p]) = (0.0, 0.0);
 }
 
 /// Solves A x = b (A row by row) by Gaussian elimination with partial pivoting; `None` if A is singular.
