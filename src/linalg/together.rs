@@ -126,7 +126,7 @@ fn nearer(modes: &[Mode], k: usize, (theta, rest): (f64, f64), low: f64, scale: 
 }
 
 /// uᵀAu and the size of what else Au has, known vectors apart.
-pub(super) fn quotient(matrix: &Matrix, u: &[f64], known: &[Vec<f64>]) -> (f64, f64) {
+fn quotient(matrix: &Matrix, u: &[f64], known: &[Vec<f64>]) -> (f64, f64) {
     let mut image = vec![0.0; u.len()];
     matrix.multiply(u, &mut image);
     let theta = slab::dot(u, &image);

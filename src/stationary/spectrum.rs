@@ -63,11 +63,11 @@ impl Spectrum {
         (spectrum, softest.map(|v| state.curvature_mev(&v)))
     }
 
-    /// The counts, and what `lone` makes of factors with one negative direction or none.
+    /// The counts, and the mode that `tell` finds by the factors that give them.
     fn counted(
         h: Evaluator,
         state: &State,
-        lone: impl Fn(&Factors) -> Option<Vec<f64>>,
+        tell: impl Fn(&Factors) -> Option<Vec<f64>>,
     ) -> (Spectrum, Option<Vec<f64>>) {
         let norm_mev = state.hessian.norm1();
         let floor_mev = floor_mev(h, norm_mev);
@@ -77,7 +77,7 @@ impl Spectrum {
         let falls = |v: &Vec<f64>| state.curvature_mev(v) < -floor_mev;
         let mut factors = pinned(h, state.hessian.clone(), &state.zeros, -floor_mev);
         let below_floor = factors.negatives();
-        let mut mode = lone(&factors);
+        let mut mode = tell(&factors);
         // most states that are looked at are minima, and need no more
         let negative = if below_floor == 0 || mode.as_ref().is_some_and(falls) {
             below_floor
@@ -85,7 +85,7 @@ impl Spectrum {
             let mut matrix = factors.into_memory();
             matrix.copy_from(&state.hessian);
             factors = pinned(h, matrix, &state.zeros, floor_mev);
-            mode = lone(&factors).filter(falls).or(mode.filter(|_| factors.negatives() == 0));
+            mode = tell(&factors).filter(falls).or(mode.filter(|_| factors.negatives() == 0));
             factors.negatives()
         };
         let flat = below_floor.saturating_sub(negative);
