@@ -149,9 +149,8 @@ fn shift_below(matrix: &Matrix, scale: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linalg::Banded;
-    use crate::linalg::slab;
     use crate::linalg::sparse::samples::Lattice;
+    use crate::linalg::{Banded, slab};
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 

@@ -273,12 +273,11 @@ fn rgb(Colour(r, g, b): Colour) -> RGBColor {
 /// The raster's cells on the pixels they cover.
 fn paint(pixels: &mut [u8], (wide, high): (usize, usize), raster: &Raster, scale: f64) {
     let r = raster.rect;
-    let cell = |p: usize, start: f64, length: f64, cells: usize| {
-        let f = ((p as f64 + 0.5) / scale - start) / length;
-        (0.0..1.0).contains(&f).then(|| ((f * cells as f64) as usize).min(cells.saturating_sub(1)))
-    };
-    let inside = |along: usize, start: f64, length: f64, cells: usize| -> Vec<(usize, usize)> {
-        (0..along).filter_map(|p| Some((p, cell(p, start, length, cells)?))).collect()
+    // pixels within the raster, and which of its cells each is in
+    let inside = |pixels: usize, start: f64, length: f64, cells: usize| -> Vec<(usize, usize)> {
+        let along = (0..pixels).map(|p| (p, ((p as f64 + 0.5) / scale - start) / length));
+        let cell = |f: f64| ((f * cells as f64) as usize).min(cells.saturating_sub(1));
+        along.filter(|(_, f)| (0.0..1.0).contains(f)).map(|(p, f)| (p, cell(f))).collect()
     };
     let columns = inside(wide, r.x0, r.width(), raster.columns);
     let Some(first) = columns.first().map(|(x, _)| *x) else { return };
