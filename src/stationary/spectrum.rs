@@ -168,23 +168,18 @@ pub fn floor_mev(h: Evaluator, norm_mev: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::energy::Hamiltonian;
     use crate::energy::test_terms::{hamiltonian, lattice};
     use crate::geometry::Direction;
     use crate::spins::Spins;
     use crate::stationary::relax_end;
 
-    fn film() -> Hamiltonian {
+    #[test]
+    fn an_end_of_a_film_comes_with_its_stiffness() {
         let lattice = lattice(r#"{"square": {"cells": [14, 9]}}"#);
         let easy = r#"{"anisotropy": {"K": "0.1 meV", "axis": [0, 0, 1]}}"#;
         let canted = r#"{"dmi": {"D": "0.1 meV", "kind": "interfacial"}}"#;
         let oblique = r#"{"anisotropy": {"K": "0.02 meV", "axis": [1, 2, 1]}}"#;
-        hamiltonian(&lattice, &[r#"{"exchange": {"J": ["1 meV"]}}"#, easy, canted, oblique])
-    }
-
-    #[test]
-    fn an_end_of_a_film_comes_with_its_stiffness() {
-        let h = film();
+        let h = hamiltonian(&lattice, &[r#"{"exchange": {"J": ["1 meV"]}}"#, easy, canted, oblique]);
         let start = Spins::uniform(h.sites(), Direction::Z);
         let end = relax_end((&h).into(), &start, 1e-13 * h.stiffness_mev()).expect("it relaxes");
         let state = State::at((&h).into(), end.spins.as_slice().to_vec());
