@@ -16,10 +16,9 @@ use crate::stationary::{ALIKE, FEW};
 
 /// Evaluations after which first paths are compared.
 const TRIAL: usize = 8;
-/// On a film, where saddles are found from farther away, if no lower pass is looked for: to the search a first path that is more
-/// relaxed is worth its work (of 100 disordered films in eight forms each those of 4 differ with half the evaluations, of these none with
-/// all).
-const BRIEF_TRIAL: usize = 4;
+/// On a film, where saddles are found from farther away, if no lower pass is looked for: of 460 films as many are not the lowest after 2
+/// as after 4, with 10 % fewer evaluations. To the search a first path that is more relaxed is worth its work.
+const BRIEF_TRIAL: usize = 2;
 
 /// Rounds of leaving a saddle of higher index.
 const ESCAPES: usize = 3;

@@ -1,6 +1,6 @@
 //! Which unknowns stay on the next level, and how the others follow from them.
 
-use super::{FEW, Rows};
+use super::{Eliminated, FEW, Rows, Runs, Wide};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -9,49 +9,136 @@ const STRONG: f64 = 0.25;
 /// Fewer unknowns are not gained by a level that leaves more than this part of them.
 const GAIN: f64 = 0.9;
 
-/// How the unknowns of every level follow from those of the next, for all matrices that couple them alike.
+/// How the unknowns of every level follow from those of the next, for all matrices that differ in their diagonals alone.
 #[derive(Debug)]
-pub struct Coarsening(Vec<Step>);
-
-/// From one level to the next.
-#[derive(Debug)]
-pub(super) struct Step {
-    /// P.
-    pub p: Rows,
-    /// Pᵀ.
-    pub back: Rows,
-    /// What the unit matrix of the first level is on the next.
-    pub square: Rows,
+pub struct Coarsening {
+    /// Where those of the first level that follow hang on the others alone.
+    pub(super) eliminated: Option<Eliminated>,
+    pub(super) steps: Vec<Step>,
+    /// What the unit matrix of the first level is on the last.
+    pub(super) square: Rows,
 }
 
 impl Coarsening {
     /// Of a symmetric positive semidefinite matrix, every row with an entry of its own.
     pub fn of(matrix: &Rows) -> Coarsening {
-        let mut steps: Vec<Step> = Vec::new();
-        let mut next: Option<Rows> = None;
-        loop {
-            let matrix = next.as_ref().unwrap_or(matrix);
-            if matrix.order() <= FEW {
-                break;
-            }
-            let p = interpolation(matrix);
-            if p.columns() == 0 || p.columns() as f64 >= GAIN * matrix.order() as f64 {
-                break;
-            }
-            let back = p.transposed();
-            let square = match steps.last() {
-                None => back.product(&p),
-                Some(before) => back.product(&before.square).product(&p),
-            };
-            next = Some(back.product(matrix).product(&p));
-            steps.push(Step { p, back, square });
+        let unit = Rows::new(matrix.order(), (0..matrix.order()).map(|i| vec![(i, 1.0)]));
+        let eliminated = Parted::of(matrix).and_then(|parted| Eliminated::of(matrix, parted));
+        let mut here = match &eliminated {
+            Some(first) => [matrix, &unit].map(|m| first.parted.on_the_next(m)),
+            None => [matrix.clone(), unit],
+        };
+        let mut steps = Vec::new();
+        while let Some(parted) = Parted::of(&here[0]) {
+            let [matrix, square] = &here;
+            let step = Step::of(matrix, square, parted);
+            here = here.each_ref().map(|m| step.parted.on_the_next(m));
+            steps.push(step);
         }
-        Coarsening(steps)
+        let [_, square] = here;
+        Coarsening { eliminated, steps, square }
+    }
+}
+
+/// The unknowns of a level: those that stay on the next, and those that follow from these.
+#[derive(Debug)]
+pub(super) struct Parted {
+    pub stay: Vec<u32>,
+    /// Those first that follow from as many that lie alike: so the rows of a matrix between the two make long runs.
+    pub follow: Vec<u32>,
+    /// P.
+    pub p: Rows,
+    /// Pᵀ.
+    back: Rows,
+}
+
+impl Parted {
+    /// Where a level is gained.
+    fn of(matrix: &Rows) -> Option<Parted> {
+        if matrix.order() <= FEW {
+            return None;
+        }
+        let (p, kinds) = interpolation(matrix);
+        let gains = p.columns() > 0 && (p.columns() as f64) < GAIN * matrix.order() as f64;
+        gains.then(|| {
+            let those = |stay: bool| -> Vec<u32> {
+                (0..kinds.len()).filter(|i| (kinds[*i] == Kind::Stays) == stay).map(|i| i as u32).collect()
+            };
+            let lie = |i: &u32| {
+                let columns: Vec<usize> = p.row(*i as usize).map(|(j, _)| j).collect();
+                columns.iter().map(|j| j - columns[0]).collect::<Vec<_>>()
+            };
+            let [stay, mut follow] = [true, false].map(those);
+            follow.sort_by_cached_key(lie);
+            Parted { stay, follow, back: p.transposed(), p }
+        })
     }
 
-    pub(super) fn steps(&self) -> &[Step] {
-        &self.0
+    /// Pᵀ A P.
+    pub fn on_the_next(&self, matrix: &Rows) -> Rows {
+        self.back.product(matrix).product(&self.p)
     }
+}
+
+/// From one level to the next.
+#[derive(Debug)]
+pub(super) struct Step {
+    pub parted: Parted,
+    /// The rows of P of those that follow, and their transposes.
+    w: Runs,
+    back_w: Runs,
+    /// The matrix, and what the unit matrix of the first level is here.
+    matrix: Runs,
+    pub square: Runs,
+}
+
+impl Step {
+    fn of(matrix: &Rows, square: &Rows, parted: Parted) -> Step {
+        let next: Vec<u32> = (0..parted.stay.len() as u32).collect();
+        let runs = Runs::of(matrix);
+        Step {
+            w: Runs::of(&block(&parted.p, &parted.follow, &next)),
+            back_w: Runs::of(&block(&parted.back, &next, &parted.follow)),
+            square: runs.with(square),
+            matrix: runs,
+            parted,
+        }
+    }
+
+    /// A matrix of this level.
+    pub fn runs(&self, matrix: &Rows) -> Runs {
+        self.matrix.with(matrix)
+    }
+
+    /// out ← Pᵀ v; `room` is for those that follow.
+    pub fn down(&self, v: &[Wide], room: &mut [Wide], out: &mut [Wide]) {
+        gather(&self.parted.stay, v, out);
+        gather(&self.parted.follow, v, room);
+        self.back_w.add(1.0, room, out);
+    }
+
+    /// out ← out + P v; `room` is for those that follow.
+    pub fn up(&self, v: &[Wide], room: &mut [Wide], out: &mut [Wide]) {
+        room.fill([0.0; 4]);
+        self.w.add(1.0, v, room);
+        for (those, v) in [(&self.parted.stay, v), (&self.parted.follow, room)] {
+            those.iter().zip(v).for_each(|(i, v)| (0..4).for_each(|c| out[*i as usize][c] += v[c]));
+        }
+    }
+}
+
+/// The entries of a matrix in these rows and columns, by places among them.
+pub(super) fn block(matrix: &Rows, rows: &[u32], columns: &[u32]) -> Rows {
+    let mut place = vec![None; matrix.columns()];
+    columns.iter().enumerate().for_each(|(p, j)| place[*j as usize] = Some(p));
+    Rows::filled(rows.len(), columns.len(), |p, row| {
+        row.extend(matrix.row(rows[p] as usize).filter_map(|(j, a)| Some((place[j]?, a))));
+    })
+}
+
+/// out ← those of v.
+fn gather(those: &[u32], v: &[Wide], out: &mut [Wide]) {
+    out.iter_mut().zip(those).for_each(|(out, i)| *out = v[*i as usize]);
 }
 
 /// What an unknown is to the next level.
@@ -69,7 +156,7 @@ enum Kind {
 /// follows   P_ij = −α A_ij / A_ii,   α = Σ_k A_ik / Σ_j A_ij over entries of the sign of A_ij, all of them and those that stay and
 ///                                    couple strongly; where none of a sign does, entries of this sign count for A_ii
 /// ```
-fn interpolation(matrix: &Rows) -> Rows {
+fn interpolation(matrix: &Rows) -> (Rows, Vec<Kind>) {
     let strong = strong(matrix);
     let kinds = split(&strong);
     let mut number = vec![0; kinds.len()];
@@ -78,14 +165,15 @@ fn interpolation(matrix: &Rows) -> Rows {
         *number = columns;
         columns += 1;
     }
-    Rows::filled(kinds.len(), columns, |i, row| match kinds[i] {
+    let p = Rows::filled(kinds.len(), columns, |i, row| match kinds[i] {
         Kind::Stays => row.push((number[i], 1.0)),
         _ => {
             let stays = |j: usize| kinds[j] == Kind::Stays && strong.row(i).any(|(k, _)| k == j);
             follow(matrix, i, stays, row);
             row.iter_mut().for_each(|(j, _)| *j = number[*j]);
         }
-    })
+    });
+    (p, kinds)
 }
 
 /// The strong entries.
@@ -158,7 +246,7 @@ mod tests {
                 let own = next.len() as f64;
                 next.into_iter().chain([(i, own)]).collect()
             };
-            let p = interpolation(&Rows::new(9, (0..9).map(row)));
+            let (p, _) = interpolation(&Rows::new(9, (0..9).map(row)));
             assert!((4..=5).contains(&p.columns()));
             // from a constant, or one that changes sign from site to site
             let kept: Vec<usize> = (0..9).filter(|i| p.row(*i).eq([(p.row(*i).next().unwrap().0, 1.0)])).collect();

@@ -1,7 +1,5 @@
 //! Sparse matrices row by row.
 
-use super::Wide;
-
 /// Entries by row, columns ascending in each.
 #[derive(Clone, Debug, Default)]
 pub struct Rows {
@@ -82,6 +80,7 @@ impl Rows {
     }
 
     /// The same with `s` added to every entry (i, i), which must be there.
+    #[cfg(test)]
     pub fn shifted(&self, s: f64) -> Rows {
         let mut shifted = self.clone();
         for i in 0..self.order() {
@@ -108,18 +107,6 @@ impl Rows {
                 let place = places.find(|place| self.at[*place] as usize == j);
                 sum.entries[place.expect("an entry there")] += s * a;
             }
-        }
-        sum
-    }
-
-    /// Row i times a vector of columns.
-    #[inline(always)]
-    pub(super) fn times(&self, i: usize, x: &[Wide]) -> Wide {
-        let here = self.starts[i] as usize..self.starts[i + 1] as usize;
-        let mut sum = [0.0; 4];
-        for (j, a) in self.at[here.clone()].iter().zip(&self.entries[here]) {
-            let x = &x[*j as usize];
-            (0..4).for_each(|c| sum[c] += a * x[c]);
         }
         sum
     }
@@ -201,6 +188,5 @@ mod tests {
         let a = Rows::new(3, [vec![(2, 1.0), (0, 3.0), (2, 0.5)], vec![]]);
         assert_eq!(a.row(0).collect::<Vec<_>>(), [(0, 3.0), (2, 1.5)]);
         assert_eq!([a.diagonal(0), a.diagonal(1)], [3.0, 0.0]);
-        assert_eq!(a.times(0, &[[1.0; 4], [5.0; 4], [2.0; 4]]), [6.0; 4]);
     }
 }
