@@ -3,6 +3,7 @@
 
 use super::flat::flat_way;
 use super::pass::{Pass, Sides};
+use super::search::QUIET;
 use super::ways::{WAYS, way};
 use super::zoom::zoomed;
 use super::{Doubt, Landscape, Peak, Saddle, highest, peaks, turned, turns};
@@ -10,6 +11,7 @@ use crate::band::Band;
 use crate::error::Result;
 use crate::path::guess::GuessContext;
 use crate::path::{COARSE, Path, distance};
+use crate::sphere::SAME;
 use crate::spins::Spins;
 use crate::stationary::FEW;
 
@@ -49,11 +51,12 @@ impl Connector<'_> {
             return Ok(None);
         }
         land.unfold();
-        let mut tried = 0;
+        let (mut tried, mut nearest, mut quiet) = (0, f64::INFINITY, 0);
         while !is_done(land) {
             let left = self.evaluations.saturating_sub(land.evaluator().evaluated().evaluations);
             let next = if left > 0 { land.next_pair(ends, self.below_mev, WAYS / 2) } else { None };
-            let Some(pair) = next else { return Ok(Some(Doubt::NoRoute(tried))) };
+            let Some((pair, far)) = next.filter(|_| quiet < QUIET) else { return Ok(Some(Doubt::NoRoute(tried))) };
+            (nearest, quiet) = if far < (1.0 - SAME) * nearest { (far, 0) } else { (nearest, quiet + 1) };
             let k = land.try_once_more(pair);
             let along = self.part_between(land, pair);
             let way = match (along, k) {
@@ -128,5 +131,64 @@ impl Connector<'_> {
             land.add(pass);
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::energy::{Anisotropy, EnergyTerm, Exchange, Hamiltonian};
+    use crate::geometry::Direction;
+    use crate::landscape::Minimum;
+    use crate::lattice::Chain;
+    use crate::state::StateContext;
+
+    /// Leaves bands as they are.
+    pub struct AsTheyAre;
+
+    impl Bands for AsTheyAre {
+        fn loosely(&self, _: &mut Band) -> Result<()> {
+            Ok(())
+        }
+
+        fn tightly(&self, _: &mut Band) -> Result<()> {
+            Ok(())
+        }
+    }
+
+    /// An open chain that holds a narrow wall at any of its sites.
+    pub fn firm_chain(sites: usize) -> Hamiltonian {
+        let lattice = Chain::open(sites).resolve().unwrap();
+        let easy = Anisotropy::uniform(sites, 2.5, Direction::Z);
+        let terms: Vec<Box<dyn EnergyTerm>> = vec![Box::new(Exchange::uniform(&lattice, &[10.0])), Box::new(easy)];
+        Hamiltonian::new(&lattice, terms).unwrap()
+    }
+
+    /// A wall in it, nearly relaxed.
+    pub fn wall(sites: usize, center: f64) -> Spins {
+        let angle = |i: usize| 2.0 * ((i as f64 - center) / 1.4).exp().atan();
+        let spins: Vec<_> = (0..sites).map(|i| [angle(i).sin(), 0.0, angle(i).cos()]).collect();
+        Spins::from_vectors(&spins).unwrap()
+    }
+
+    #[test]
+    fn joins_that_bring_two_minima_no_nearer_end() {
+        let h = firm_chain(80);
+        let path = Path::new(&[20.5, 60.5].map(|center| wall(80, center)));
+        let mut land = Landscape::new((&h).into(), path.image(0));
+        let minima = (0..=40).map(|k| Minimum::examine((&h).into(), &wall(80, 20.5 + f64::from(k))));
+        let walls: Vec<usize> = minima.map(|minimum| land.add_minimum(&minimum)).collect();
+        let connector = Connector {
+            bands: &AsTheyAre,
+            path: &path,
+            // nothing leads on so low
+            below_mev: 1e-6,
+            evaluations: usize::MAX,
+            sides: Sides { c: 10.0, level_mev: 0.0, beside: &[] },
+            context: GuessContext { states: StateContext::new(h.lattice(), 1.4), default_axis: Direction::Y },
+        };
+        let doubt = connector.connect(&mut land, [walls[0], walls[40]]).unwrap();
+        // forty pairs, each of which may be tried three times
+        assert!(matches!(doubt, Some(Doubt::NoRoute(tried)) if (QUIET..40).contains(&tried)), "{doubt:?}");
     }
 }

@@ -118,9 +118,10 @@ pub fn flat_way(bands: &dyn Bands, band: &Band, c: f64, level_mev: f64) -> Resul
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::energy::{Anisotropy, EnergyTerm, Exchange, Hamiltonian};
+    use crate::energy::{Anisotropy, EnergyTerm, Hamiltonian};
     use crate::geometry::Direction;
     use crate::landscape::Minimum;
+    use crate::landscape::connect::tests::{AsTheyAre, firm_chain, wall};
     use crate::lattice::Chain;
     use crate::stationary::relax_to_minimum;
 
@@ -145,31 +146,11 @@ mod tests {
         assert!(flat_ways(&land, &a, &a).is_empty());
     }
 
-    /// Leaves bands as they are.
-    struct AsTheyAre;
-
-    impl Bands for AsTheyAre {
-        fn loosely(&self, _: &mut Band) -> Result<()> {
-            Ok(())
-        }
-
-        fn tightly(&self, _: &mut Band) -> Result<()> {
-            Ok(())
-        }
-    }
-
     #[test]
     fn images_that_all_lie_in_minima_are_no_flat_way() {
-        let lattice = Chain::open(60).resolve().unwrap();
-        let easy = Anisotropy::uniform(60, 2.5, Direction::Z);
-        let terms: Vec<Box<dyn EnergyTerm>> = vec![Box::new(Exchange::uniform(&lattice, &[10.0])), Box::new(easy)];
-        let hamiltonian = Hamiltonian::new(&lattice, terms).unwrap();
+        let hamiltonian = firm_chain(60);
         let h = (&hamiltonian).into();
-        let wall = |center: f64| {
-            let angle = |i: usize| 2.0 * ((i as f64 - center) / 1.4).exp().atan();
-            let spins: Vec<_> = (0..60).map(|i| [angle(i).sin(), 0.0, angle(i).cos()]).collect();
-            relax_to_minimum(h, &Spins::from_vectors(&spins).unwrap(), 1e-12).unwrap().spins
-        };
+        let wall = |center: f64| relax_to_minimum(h, &wall(60, center), 1e-12).unwrap().spins;
         let path = Path::new(&[28.5, 29.5, 30.5].map(wall));
         assert!(path.largest_rotation() > 0.5 && path.is_resolved());
         let mut band = Band::new(h, path);

@@ -3,8 +3,8 @@
 //! ```text
 //! Landscape    minima (nodes), passes (edges), and their images by symmetry
 //! route(a, b)  the way from a to b whose highest saddle is lowest; T is its height
-//! connect      while no route:  the next pair, the nearest that leads on;  a band between the two, relaxed a little;
-//!              its peaks refined to saddles;  descents to their two minima;  add
+//! connect      while no route, and joins bring the ends nearer:  the next pair, the nearest that leads on;  a band between the two,
+//!              relaxed a little;  its peaks refined to saddles;  descents to their two minima;  add
 //! search       while there is news:  a rival names a start;  climb to a saddle below T;  descents to its two minima;  add
 //! assemble     the stretches from saddles down to minima along a route, each relaxed, put together to one path
 //! ```

@@ -64,9 +64,9 @@ impl Landscape<'_> {
         ([a.min(b), a.max(b)], (squared / SAME).round() as i64)
     }
 
-    /// The pair to try next on the way from one minimum to another over passes below a height (meV); none if all that lead on were
-    /// tried so many times.
-    pub fn next_pair(&mut self, [from, to]: [usize; 2], below_mev: f64, tries: usize) -> Option<[usize; 2]> {
+    /// The pair to try next on the way from one minimum to another over passes below a height (meV), and how far that way is, the sum
+    /// of squared distances; none if all that lead on were tried so many times.
+    pub fn next_pair(&mut self, [from, to]: [usize; 2], below_mev: f64, tries: usize) -> Option<([usize; 2], f64)> {
         let [from, to] = [from, to].map(|k| self.standing_for(k));
         let part = self.parts_below(below_mev);
         let is_node = |k: usize| self.standing_for(k) == k && (self.heights_mev()[k] < below_mev || k == to);
@@ -104,6 +104,6 @@ impl Landscape<'_> {
             }
             here = before[here];
         }
-        pair
+        pair.map(|pair| (pair, far[to]))
     }
 }

@@ -28,6 +28,8 @@ use serde::{Deserialize, Serialize};
 pub const KINDS: usize = 1000;
 /// The seed of everything random in a search.
 const SEED: u64 = 0x5ea2c4;
+/// Searches in a row without news that end a search which found nothing, and joins that bring two minima no nearer to each other.
+pub(super) const QUIET: usize = 24;
 
 /// How long lower passes are looked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -50,7 +52,7 @@ impl Effort {
         match self {
             Effort::None => 0,
             Effort::Quick => 8,
-            Effort::Normal => (24 + 16 * found).min(100),
+            Effort::Normal => (QUIET + 16 * found).min(100),
             Effort::Thorough => 400,
         }
     }
