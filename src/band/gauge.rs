@@ -1,5 +1,5 @@
 //! The rotation gauge: images of a system with a symmetry axis may turn freely about it; each is turned to lie as near to
-//! its predecessor as possible.
+//! a neighbour as possible.
 //!
 //! Without it a start with azimuthal noise does not relax, at any length. Where the energy has no axis
 //! at all (full rotation symmetry) the three axes are treated in turn, a few times.

@@ -209,7 +209,7 @@ impl<'h> Band<'h> {
         self.fixed[k] = true;
     }
 
-    /// Turns every image between the ends about the given symmetry axes towards the image before it.
+    /// Turns every image between the ends about the given symmetry axes towards a neighbour.
     pub fn align(&mut self, axes: &[Vector]) {
         gauge::align_rotations(&mut self.path, axes, &self.fixed);
     }
