@@ -13,6 +13,7 @@
 use super::Band;
 use super::linearised::{LEAST, Move, SHIFT_TRIES, first_shift};
 use super::upwind::{pulled, upwind_rate};
+use crate::energy::Hamiltonian;
 use crate::energy::magnetostatics::DENSE;
 use crate::field::Components;
 use crate::geometry::{Vector, vector};
@@ -46,14 +47,12 @@ impl Iterated {
         Iterated { stand_in, tolerance, equations, sigma: 0.0, shift: 0.0, pulled, image }
     }
 
-    /// M for the images of a band, where factors of their Hessians take long: of blocks whose fronts are large, and of all pairs of more
-    /// than a few sites. (Of fewer sites too they take half as long; but conjugate gradients do not see that a symmetric path is a ridge,
-    /// and of 102 random chains and rings two lost their lowest barriers so.)
-    pub fn stand_in(band: &Band, c: f64) -> Option<StandIn> {
-        let h = band.hamiltonian();
-        let end = |k: usize| (band.path().image(k), band.gradient(k));
+    /// M for images between two states, given with their gradients, where factors of their Hessians take long: of blocks whose fronts
+    /// are large, and of all pairs of more than a few sites. (Of fewer sites too they take half as long; but conjugate gradients do not
+    /// see that a symmetric path is a ridge, and of 102 random chains and rings two lost their lowest barriers so.)
+    pub fn stand_in(h: &Hamiltonian, ends: [(&[f64], &[f64]); 2], c: f64) -> Option<StandIn> {
         let is_far = h.coupling().pairs().is_some() && h.sites() > DENSE;
-        (h.has_dear_factors() || is_far).then(|| StandIn::between(h, &[end(0), end(band.images() - 1)], c))
+        (h.has_dear_factors() || is_far).then(|| StandIn::between(h, &ends, c))
     }
 
     /// For image k, with symmetry axes `axes` and the shift μ of its last visit (meV).
@@ -89,7 +88,7 @@ impl Iterated {
         }
         let x = &self.equations.x;
         y.copy_from_slice(x);
-        slab::add_scaled(y, band.local_shift(k), band.tangent(k));
+        slab::add_scaled(y, band.resolving_shift(k), band.tangent(k));
         let rotation = longest(x);
         self.pulled = room;
         Move { rotation, shift: self.shift, factorisations: 0, products: self.equations.products }
@@ -103,7 +102,7 @@ impl Iterated {
         if let Some(uphill) = uphill {
             slab::add_scaled(right, self.sigma, uphill);
         }
-        let along = band.local_shift(k);
+        let along = band.resolving_shift(k);
         if along != 0.0 {
             // what A adds to H d τ is along τ
             self.image.resize(right.len(), 0.0);
@@ -164,7 +163,8 @@ mod tests {
         });
         let mut band = Band::new(&h, Path::new(&images));
         band.evaluate();
-        let mut room = Iterated::by(Arc::new(Iterated::stand_in(&band, 0.16).expect("factors are dear")), TOLERANCE);
+        let mut room =
+            Iterated::by(Arc::new(Iterated::stand_in(&h, band.ends(), 0.16).expect("factors are dear")), TOLERANCE);
         let mut y = vec![0.0; 3 * h.sites()];
         for k in 1..5 {
             room.prepare(&band, k, h.symmetry_axes(), 0.0);
@@ -192,8 +192,10 @@ mod tests {
                 let h = hamiltonian(&lattice, terms);
                 let mut band = Band::new(&h, walls(&lattice, noise));
                 band.evaluate();
-                let mut room =
-                    Iterated::by(Arc::new(Iterated::stand_in(&band, 0.16).expect("factors are dear")), TOLERANCE);
+                let mut room = Iterated::by(
+                    Arc::new(Iterated::stand_in(&h, band.ends(), 0.16).expect("factors are dear")),
+                    TOLERANCE,
+                );
                 let mut y = vec![0.0; 3 * h.sites()];
                 for k in 1..4 {
                     let uphill = y.clone();
@@ -202,10 +204,10 @@ mod tests {
                     (tried, shifted) = (tried + 1, shifted + usize::from(done.shift > 0.1));
                     let (m, mut pull) = (band.path().image(k), Vec::new());
                     let g = pulled(&band, k, room.sigma, &mut pull);
-                    assert!((slab::dot(&y, band.tangent(k)) - band.local_shift(k)).abs() < 1e-12);
+                    assert!((slab::dot(&y, band.tangent(k)) - band.resolving_shift(k)).abs() < 1e-12);
                     assert!(room.equations.border[1..].iter().all(|z| slab::dot(z, &y).abs() < 1e-12));
                     let mut x = y.clone();
-                    slab::add_scaled(&mut x, -band.local_shift(k), band.tangent(k));
+                    slab::add_scaled(&mut x, -band.resolving_shift(k), band.tangent(k));
                     assert!((longest(&x) - done.rotation).abs() < 1e-12);
                     let mut rest = vec![0.0; x.len()];
                     h.hessian_product(m, g, &x, &mut rest);

@@ -245,6 +245,11 @@ impl<'h> Band<'h> {
         self.slab(&self.gradient, k)
     }
 
+    /// The two ends with their gradients (meV).
+    fn ends(&self) -> [(&[f64], &[f64]); 2] {
+        [0, self.images() - 1].map(|k| (self.path.image(k), self.gradient(k)))
+    }
+
     /// Tangent of image k, of unit length over all 3N components.
     pub fn tangent(&self, k: usize) -> &[f64] {
         self.slab(&self.tangent, k)

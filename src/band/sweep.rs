@@ -19,6 +19,7 @@
 use super::Band;
 use super::iterated::{Iterated, ROUGH, TOLERANCE};
 use super::linearised::{Linearised, Move, SHIFT_FLOOR};
+use crate::energy::Hamiltonian;
 use crate::geometry::Vector;
 use crate::hessian::StandIn;
 use crate::threads::MADE;
@@ -34,7 +35,7 @@ pub struct Sweep {
     tolerance: f64,
     shifts: Vec<f64>,
     rooms: Rooms,
-    /// For the images of the first band, if those are found by iteration.
+    /// For images that are found by iteration, if they are.
     stand_in: OnceLock<Option<Arc<StandIn>>>,
 }
 
@@ -181,6 +182,17 @@ impl Sweep {
         Sweep { tolerance: ROUGH, ..self }
     }
 
+    /// With what stands in for the Hessians of all bands of a run, instead of one made for the first band; None where there are factors.
+    pub fn sharing(self, stand_in: Option<Arc<StandIn>>) -> Sweep {
+        Sweep { stand_in: OnceLock::from(stand_in), ..self }
+    }
+
+    /// What stands in for the Hessians of bands between two states, given with their gradients, where factors take long; c is the
+    /// stiffness scale (meV).
+    pub fn stand_in(h: &Hamiltonian, ends: [(&[f64], &[f64]); 2], c: f64) -> Option<Arc<StandIn>> {
+        Iterated::stand_in(h, ends, c).map(Arc::new)
+    }
+
     /// The shift μ of every image (meV), all that one evaluation tells the next; empty before the first.
     pub fn shifts(&self) -> &[f64] {
         &self.shifts
@@ -199,7 +211,8 @@ impl Sweep {
         slabs.iter_mut().enumerate().filter(|(k, _)| band.is_held(k + 1)).for_each(|(_, y)| y.fill(0.0));
         let threads = if small { 1 } else { rayon::current_num_threads() };
         let (shifts, rooms) = (&self.shifts[..], &self.rooms);
-        let stand_in = self.stand_in.get_or_init(|| Iterated::stand_in(band, self.stiffness).map(Arc::new)).as_ref();
+        let make = || Sweep::stand_in(band.hamiltonian(), band.ends(), self.stiffness);
+        let stand_in = self.stand_in.get_or_init(make).as_ref();
         let (stiffness, tolerance) = (self.stiffness, self.tolerance);
         let task = Task { band, axes, stiffness, shifts, rooms, stand_in, tolerance, threads };
         let (tops, slopes) = tops_and_slopes(band);

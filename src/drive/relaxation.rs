@@ -6,6 +6,7 @@ use crate::band::{Band, Laplacian, Sweep};
 use crate::energy::{Evaluator, Stored};
 use crate::error::Result;
 use crate::geometry::Vector;
+use crate::hessian::StandIn;
 use crate::landscape::{Bands, are_counts, are_finite};
 use crate::linalg::slab;
 use crate::optimise::{Follows, Optimiser, OptimiserSpec};
@@ -63,6 +64,8 @@ pub struct Tools<'a> {
     pub axes: Vec<Vector>,
     /// The preconditioner, for methods that follow no sweep.
     pub laplacian: Option<Arc<Laplacian>>,
+    /// What stands in for Hessians, for sweeps where factors take long.
+    pub stand_in: Option<Arc<StandIn>>,
 }
 
 impl Tools<'_> {
@@ -161,7 +164,7 @@ impl Relaxation<'_> {
 
     fn start(&self, h: Evaluator, goal: Goal) -> Iterate {
         let method = self.tools.settings.optimiser.member();
-        let sweep = Sweep::new(self.tools.scales.stiffness_mev);
+        let sweep = Sweep::new(self.tools.scales.stiffness_mev).sharing(self.tools.stand_in.clone());
         Iterate {
             optimiser: method.start(h.stiffness_mev()),
             sweep: if goal == Goal::Tight { sweep } else { sweep.roughly() },

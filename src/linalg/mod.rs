@@ -50,7 +50,7 @@ pub use multigrid::{Coarsening, Multigrid, Rows};
 pub use orthonormal::{orthonormal, remove};
 pub use ritz::{Mode, combination, rayleigh_ritz};
 pub use secants::Secants;
-pub use small::{eigen_symmetric, eigenvalues_symmetric, solve_dense};
+pub use small::{eigen_symmetric, eigenvalues_symmetric, invert_dense, solve_dense};
 pub use softest::{Asked, Wanted, softest};
 pub use sparse::{Graph, SparseLdl, SparseMatrix, Symbolic, nested_dissection};
 pub use tail::{Decays, Tail, TailedBand};

@@ -65,8 +65,18 @@ fn rotate(a: &mut [f64], v: &mut [f64], n: usize, p: usize, q: usize) {
 
 /// Solves A x = b (A row by row) by Gaussian elimination with partial pivoting; `None` if A is singular.
 pub fn solve_dense(matrix: &[f64], b: &[f64], n: usize) -> Option<Vec<f64>> {
+    solve_dense_all(matrix, b.to_vec(), n)
+}
+
+/// A⁻¹, row after row; `None` if A is singular.
+pub fn invert_dense(matrix: &[f64], n: usize) -> Option<Vec<f64>> {
+    solve_dense_all(matrix, (0..n * n).map(|k| f64::from(u8::from(k / n == k % n))).collect(), n)
+}
+
+/// Solves A X = B, both row by row.
+fn solve_dense_all(matrix: &[f64], mut x: Vec<f64>, n: usize) -> Option<Vec<f64>> {
     let mut a = matrix.to_vec();
-    let mut x = b.to_vec();
+    let columns = x.len() / n.max(1);
     for j in 0..n {
         let p = (j..n).max_by(|&r, &s| a[r * n + j].abs().total_cmp(&a[s * n + j].abs()))?;
         if a[p * n + j] == 0.0 || !a[p * n + j].is_finite() {
@@ -75,18 +85,24 @@ pub fn solve_dense(matrix: &[f64], b: &[f64], n: usize) -> Option<Vec<f64>> {
         for k in 0..n {
             a.swap(j * n + k, p * n + k);
         }
-        x.swap(j, p);
+        for c in 0..columns {
+            x.swap(j * columns + c, p * columns + c);
+        }
         for i in j + 1..n {
             let l = a[i * n + j] / a[j * n + j];
             for k in j..n {
                 a[i * n + k] -= l * a[j * n + k];
             }
-            x[i] -= l * x[j];
+            for c in 0..columns {
+                x[i * columns + c] -= l * x[j * columns + c];
+            }
         }
     }
     for i in (0..n).rev() {
-        let sum: f64 = (i + 1..n).map(|k| a[i * n + k] * x[k]).sum();
-        x[i] = (x[i] - sum) / a[i * n + i];
+        for c in 0..columns {
+            let sum: f64 = (i + 1..n).map(|k| a[i * n + k] * x[k * columns + c]).sum();
+            x[i * columns + c] = (x[i * columns + c] - sum) / a[i * n + i];
+        }
     }
     Some(x)
 }
@@ -95,6 +111,20 @@ pub fn solve_dense(matrix: &[f64], b: &[f64], n: usize) -> Option<Vec<f64>> {
 mod tests {
     use super::*;
     use rand::{RngExt, SeedableRng};
+
+    #[test]
+    fn a_matrix_times_its_inverse_is_one() {
+        let mut r = rand_chacha::ChaCha8Rng::seed_from_u64(6);
+        for n in [1, 2, 7, 40] {
+            let a: Vec<f64> = (0..n * n).map(|_| r.random_range(-1.0..1.0)).collect();
+            let inverse = invert_dense(&a, n).unwrap();
+            for k in 0..n * n {
+                let entry: f64 = (0..n).map(|l| a[k / n * n + l] * inverse[l * n + k % n]).sum();
+                assert!((entry - f64::from(u8::from(k / n == k % n))).abs() < 1e-10, "{n}: {entry}");
+            }
+        }
+        assert_eq!(invert_dense(&[1.0, 2.0, 2.0, 4.0], 2), None);
+    }
 
     #[test]
     fn eigenvectors_are_orthonormal_and_make_the_matrix_again() {

@@ -20,7 +20,7 @@ mod runs;
 pub use coarse::Coarsening;
 pub use rows::Rows;
 
-use super::solve_dense;
+use super::invert_dense;
 use eliminated::Eliminated;
 use multiversion::multiversion;
 use runs::Runs;
@@ -185,9 +185,7 @@ fn inverse(matrix: &Rows) -> Vec<f64> {
     }
     let mut full = vec![0.0; n * n];
     (0..n).for_each(|i| matrix.row(i).for_each(|(j, a)| full[i * n + j] = a));
-    let unit = |k: usize| (0..n).map(|i| f64::from(u8::from(i == k))).collect::<Vec<f64>>();
-    let columns: Option<Vec<Vec<f64>>> = (0..n).map(|k| solve_dense(&full, &unit(k), n)).collect();
-    columns.unwrap_or_default().concat()
+    invert_dense(&full, n).unwrap_or_default()
 }
 
 /// The first room, with so many unknowns each, and the others.
