@@ -43,3 +43,23 @@ impl Band<'_> {
         shift
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::band::Band;
+    use crate::energy::test_terms::{hamiltonian, lattice};
+    use crate::path::Path;
+    use crate::spins::Spins;
+
+    #[test]
+    fn an_image_beside_a_gap_that_is_not_resolved_moves_towards_it() {
+        let h = hamiltonian(&lattice(r#"{"square": {"cells": [4, 4]}}"#), &[r#"{"exchange": {"J": ["1 meV"]}}"#]);
+        let turned = |angle: f64| Spins::from_vectors(&[[angle.sin(), 0.0, angle.cos()]; 16]).unwrap();
+        // steps of 0.8, 0.9, 1.2, 1.3 and 0.6 rad, of four times as much in all 16 spins together; the last but one is uneven
+        let mut band = Band::new(&h, Path::new(&[0.0, 0.8, 1.7, 2.9, 4.2, 4.8].map(turned)));
+        band.evaluate();
+        let shifts = |shift: &dyn Fn(usize) -> f64| [1, 2, 3, 4].map(|k| (1e9 * shift(k)).round() / 1e9);
+        assert_eq!(shifts(&|k| band.resolving_shift(k)), [0.0, 0.6, 0.0, -1.4]);
+        assert_eq!(shifts(&|k| band.local_shift(k)), [0.0, 0.0, 0.0, -1.4]);
+    }
+}
