@@ -7,7 +7,8 @@
 //! and the modes in question where more are or none is. Where many are, or Lanczos by the factors does not tell them soon, the step
 //! goes down: s = −(H + μ)⁻¹g. A step is cut to the trust radius, which follows how well the model told the energy. Along a mode that
 //! is all but flat, as a wall's that slides, it has a part only once what is left to turn across that mode can no longer change its
-//! curvature, and none where that is rounding.
+//! curvature, and none where that is rounding. Such a mode is not flat beside its valley, which bends: once one was met, a part that
+//! leads further off the valley than the step is to lead back waits too.
 //! (Cerjan, Miller, J. Chem. Phys. 75, 2800 (1981), doi:10.1063/1.442352; Wales, J. Chem. Phys. 101, 3750 (1994),
 //! doi:10.1063/1.467559.)
 
@@ -33,6 +34,8 @@ pub struct Region<'a> {
     pub(super) hessian: Matrix,
     room: Matrix,
     kept: Option<Factored>,
+    /// Whether a mode was all but flat at any point so far.
+    met_flat: bool,
     /// The lowest modes when they were last needed (3N each).
     pub(super) modes: Vec<Vec<f64>>,
     pub(super) x: Vec<f64>,
@@ -90,7 +93,7 @@ impl<'a> Region<'a> {
     pub fn new(h: Evaluator<'a>, radius: f64) -> Region<'a> {
         let [hessian, room] = [(); 2].map(|()| Matrix::default());
         let (modes, x, v) = (Vec::new(), Vec::new(), Vec::new());
-        Region { h, radius, largest: radius, hessian, room, kept: None, modes, x, v }
+        Region { h, radius, largest: radius, hessian, room, kept: None, met_flat: false, modes, x, v }
     }
 
     /// Newton's step from a point, in `v`, wherever it leads (without factors, [`step`](Self::step)'s); its largest rotation of a spin (rad).
@@ -153,7 +156,11 @@ impl<'a> Region<'a> {
     pub fn step(&mut self, here: &Point) -> Step {
         if let Some(rotation) = self.again(here) {
             here.basis.write_coordinates(&self.v, &mut self.x);
-            let (rise_mev, size_mev) = self.promises(here);
+            // the Hessian at hand is that of another point, in its basis
+            let mut image = vec![0.0; self.v.len()];
+            self.h.hessian_product(&here.m, &here.gradient, &self.v, &mut image);
+            let rise_mev = slab::dot(&here.slope, &self.x) + 0.5 * slab::dot(&self.v, &image);
+            let size_mev = self.size_mev(here);
             let negative = self.kept.as_ref().map_or(0, |kept| kept.factors.negatives());
             return Step { negative, rotation, is_newton: negative == 1, is_underway: false, rise_mev, size_mev };
         }
@@ -168,14 +175,14 @@ impl<'a> Region<'a> {
             slab::scale(&mut self.x, self.radius / rotation);
             slab::scale(&mut self.v, self.radius / rotation);
         }
-        let (rise_mev, size_mev) = self.promises(here);
+        let (rise_mev, size_mev) = (here.predicted_mev(&self.hessian, &self.x), self.size_mev(here));
         let (is_newton, is_underway) = (whole && negative == 1, leads_on || rotation > LAST_DIGITS);
         Step { negative, rotation: rotation.min(self.radius), is_newton, is_underway, rise_mev, size_mev }
     }
 
-    /// What the step `x` promises: by how much the energy rises, and |g||s| (meV).
-    fn promises(&self, here: &Point) -> (f64, f64) {
-        (here.predicted_mev(&self.hessian, &self.x), slab::norm(&self.x) * slab::norm(&here.slope))
+    /// |g||s| (meV).
+    fn size_mev(&self, here: &Point) -> f64 {
+        slab::norm(&self.x) * slab::norm(&here.slope)
     }
 
     /// Writes the step to `x`; how many directions are negative, and whether the step leads along a mode that is all but flat, or is to be
@@ -239,12 +246,16 @@ impl<'a> Region<'a> {
     }
 
     /// Takes the part along a mode out of `x`, Newton's step, where nothing tells how long that is: the mode is flat to rounding, or all
-    /// but flat while its curvature may still change by more than that is, with what is left to turn across it.
+    /// but flat, here or in its valley, while its curvature may still change by more than that is, with what is left to turn across it.
     fn freeze(&mut self, here: &Point, factors: &Factors) -> Soft {
         let scale = self.h.stiffness_mev();
         let along = slab::norm(&self.x);
         let curvature = slab::dot(&self.x, &here.slope).abs() / (along * along);
-        if curvature >= ALIKE * scale || curvature.is_nan() {
+        let is_soft = curvature < ALIKE * scale;
+        self.met_flat |= is_soft;
+        // what may lead so far off a valley that what is left across is less, and changes the curvature
+        let may_bend = || self.met_flat && curvature < scale * slab::max_abs(&self.x).powi(2).min(LAST_DIGITS);
+        if !is_soft && !may_bend() {
             return Soft::None;
         }
         let mut soft = self.x.clone();
@@ -252,13 +263,15 @@ impl<'a> Region<'a> {
         factors.solve(&mut soft, 1);
         remove(&mut soft, &here.zeros);
         let size = slab::normalise(&mut soft);
-        let inverse = slab::dot(&soft, &self.x) / along * size;
+        let part = slab::dot(&soft, &self.x);
+        let inverse = part / along * size;
         let mut across = self.x.clone();
         remove(&mut across, std::slice::from_ref(&soft));
-        let floor = floor_mev(self.h, self.hessian.norm1());
-        let unknown = (scale * slab::max_abs(&across)).max(floor);
-        if inverse.abs() * unknown < 1.0 {
-            return Soft::Kept;
+        let (floor, left) = (floor_mev(self.h, self.hessian.norm1()), slab::max_abs(&across));
+        let is_told = inverse.abs() * (scale * left).max(floor) < 1.0;
+        let bends = left < LAST_DIGITS && left < (part * slab::max_abs(&soft)).powi(2);
+        if is_told || !is_soft && !bends {
+            return if is_soft { Soft::Kept } else { Soft::None };
         }
         self.x = across;
         Soft::Frozen { falls: inverse < 0.0, is_flat: inverse.abs() * floor >= 1.0 }
@@ -309,5 +322,43 @@ impl<'a> Region<'a> {
             }
             shift *= LARGER;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::energy::test_terms::{hamiltonian, lattice};
+    use crate::geometry::Vector;
+    use crate::spins::Spins;
+    use crate::stationary::STEP;
+    use rand::{RngExt, SeedableRng};
+
+    #[test]
+    fn a_step_by_the_factors_of_the_one_before_tells_what_the_energy_does_too() {
+        let easy = r#"{"anisotropy": {"K": "0.001 meV", "axis": [0, 0, 1]}}"#;
+        let film = lattice(r#"{"square": {"cells": [40, 40]}}"#);
+        let h = hamiltonian(&film, &[r#"{"exchange": {"J": ["1 meV"]}}"#, easy]);
+        assert!(h.has_dear_factors());
+        // beside the film across its axis, which falls if all its spins turn together alone
+        let mut r = rand_chacha::ChaCha8Rng::seed_from_u64(7);
+        let vectors: Vec<Vector> =
+            (0..h.sites()).map(|_| [1.0, 0.2, 0.02].map(|c| c + r.random_range(-0.01..0.01))).collect();
+        let start: Vec<f64> = (0..3).flat_map(|c| vectors.iter().map(move |v| v[c])).collect();
+        let h = Evaluator::from(&h);
+        let mut here = Point::at(h, Spins::from_components(&start).unwrap().as_slice().to_vec());
+        let (mut region, mut next, mut again) = (Region::new(h, STEP), Point::default(), 0);
+        while here.max_torque_mev() > 1e-6 {
+            let before = region.hessian.norm1();
+            let step = region.step(&here);
+            next.go(h, &here, &region.v);
+            if region.hessian.norm1() == before {
+                let risen = next.above_mev(&here);
+                assert!((risen / step.rise_mev - 1.0).abs() < 1e-3, "{risen:e} {:e}", step.rise_mev);
+                again += 1;
+            }
+            std::mem::swap(&mut here, &mut next);
+        }
+        assert!(again > 0);
     }
 }
