@@ -101,6 +101,13 @@ def test_vectors_that_are_none_are_named(chain, reversal):
     # the file that passes them on is no business of the user's
     with pytest.raises(sn.ConfigError, match="^path.guess: the array has 10 spins, but the chain has 20 sites"):
         sn.barrier(chain, *ends, guess=reversal.spins[:, :10])
+    # what numpy would make numbers of without a word
+    half_masked = np.ma.masked_array(broken[0], mask=[[k < 10] * 3 for k in range(20)])
+    with pytest.raises(ValueError, match="^initial: found an array of which some numbers are masked"):
+        sn.barrier(chain, half_masked, ends[1])
+    for kind in ("complex128", "bool", "<U1"):
+        with pytest.raises(TypeError, match=f"^state: found an array of {kind}, expected vectors"):
+            sn.relax(chain, np.zeros((20, 3), dtype=kind))
     for nothing in ("left", sn.sweep, [[1, 2], [1, 2, 3]]):
         with pytest.raises(TypeError, match="^guess: found .*expected vectors"):
             sn.barrier(chain, *ends, guess=nothing)

@@ -176,13 +176,19 @@ def path(value: ArrayLike, what: str) -> NDArray[np.float64]:
 
 
 def numbers(value: ArrayLike, what: str) -> NDArray[np.float64]:
-    """An array, or an error that says what would be one."""
+    """An array of real numbers, or an error that says what would be one."""
+    # numpy would take what lies under a mask, real parts, and the numbers of words and truths
+    if np.ma.is_masked(value):
+        raise ValueError(f"{what}: found an array of which some numbers are masked: fill them first")
     try:
-        return np.asarray(value, dtype=np.float64)
+        found = np.asarray(value)
+        if found.dtype.kind in "iufO":
+            return found.astype(np.float64, copy=False)
+        shown = f"an array of {found.dtype}" if found.ndim else repr(value)
     except (TypeError, ValueError):
-        found = repr(value)
-        found = found if len(found) <= 60 else f"{found[:57]}..."
-        raise TypeError(f"{what}: found {found}, expected vectors, or what a builder such as uniform(…) or sweep(…) makes") from None
+        shown = repr(value)
+    shown = shown if len(shown) <= 60 else f"{shown[:57]}..."
+    raise TypeError(f"{what}: found {shown}, expected vectors, or what a builder such as uniform(…) or sweep(…) makes")
 
 
 def finite(m: NDArray[np.float64], what: str) -> NDArray[np.float64]:
