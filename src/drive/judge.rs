@@ -3,10 +3,11 @@
 use super::first_path::FirstPath;
 use super::outcome::{Barrier, SaddlePoint};
 use super::relaxation::height;
+use super::settle::slack;
 use super::{Problem, Verdict};
 use crate::band::Band;
 use crate::landscape::{Doubt, Minimum, PathEnd};
-use crate::stationary::{ALIKE, LOWER};
+use crate::stationary::ALIKE;
 
 /// What a path shows.
 pub struct Seen<'a> {
@@ -40,7 +41,7 @@ impl Seen<'_> {
         }
         let mut highest = self.saddles.iter().map(|s| s.above_initial_mev).fold(f64::NEG_INFINITY, f64::max);
         let (seen, ends, height) = (c.top_mev(), self.above_final.max(0.0), height(&c.band));
-        if seen > highest + LOWER * height && seen > ends + ALIKE * height {
+        if seen > highest + slack(&c.band) && seen > ends + ALIKE * height {
             highest = seen;
             doubts.extend(self.problem.seeks_saddles().then_some(Doubt::HigherImage));
         }

@@ -36,9 +36,9 @@ fn level_mev(band: &Band) -> f64 {
     (FLAT * band.hamiltonian().stiffness_mev()).max(ALIKE * height(band))
 }
 
-/// Heights of a band that differ by less are one (meV).
-fn slack(band: &Band) -> f64 {
-    LOWER * height(band)
+/// Heights of a band that differ by less are one (meV): by rounding, or by what changes no digit of its barrier that is told.
+pub fn slack(band: &Band) -> f64 {
+    (LOWER * height(band)).max(band.hamiltonian().rounding_mev())
 }
 
 impl<'a> Run<'a, '_> {

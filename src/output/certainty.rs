@@ -51,6 +51,8 @@ impl Certainty {
     pub fn barrier_words(&self, barrier: Option<Barrier>) -> String {
         let proof = if self.is_certified() { "certified" } else { "not certified" };
         let number = |mev: f64| match self.unknown_mev {
+            // six decimals, of which a pinned wall may have none
+            None if mev.abs() < 1e-3 && mev != 0.0 => significant(mev, 4),
             None => format!("{mev:.6}"),
             Some(unknown) => known_digits(mev, unknown),
         };
@@ -139,6 +141,8 @@ mod tests {
         let (certified, open) = (Certainty::default(), Certainty::new(Some(2e-3), [None; 2]));
         let words = "barrier 0.170009 meV forward, 0.250000 meV backward, certified";
         assert_eq!(certified.barrier_words(barrier), words);
+        let small = Some(Barrier { forward_mev: 6.600376e-8, backward_mev: 0.0 });
+        assert_eq!(certified.barrier_words(small), "barrier 6.600×10⁻⁸ meV forward, 0.000000 meV backward, certified");
         assert_eq!(open.barrier_words(barrier), "barrier about 0.17 meV forward, 0.25 meV backward, not certified");
         assert_eq!(open.barrier_words(None), "no barrier, not certified");
         assert_eq!((certified.notes(), open.notes()), (vec![], vec!["not certified".to_string()]));
