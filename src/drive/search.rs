@@ -3,6 +3,7 @@
 use super::Silent;
 use super::ends::kept;
 use super::explore::turning_axis;
+use super::first_paths::BRIEF_TRIAL;
 use super::outcome::{RejectedPath, SearchReport};
 use super::relaxation::height;
 use super::report::Proof;
@@ -166,8 +167,8 @@ impl<'a> Run<'a, '_> {
             most_evaluations: self.most_evaluations,
         };
         run.axis = turning_axis(run.problem, &run.ends[0].spins, &run.ends[1].spins, &run.context());
-        if let Some(best) = run.natural()?.into_iter().next() {
-            run.settle(best, below_mev)?;
+        if let Some(best) = run.natural(BRIEF_TRIAL)?.into_iter().next() {
+            run.put_in(best, below_mev)?;
         }
         self.land = run.land;
         Ok(())

@@ -48,16 +48,14 @@ impl<'a> Run<'a, '_> {
         let proves = self.problem.certify && self.problem.seeks_saddles();
         if proves && !self.problem.hamiltonian.lattice().is_row() {
             // away from its tops a band of a film relaxes slowly, and the descents from its saddles are the path
-            let found = self.all_saddles(&c)?;
-            let proof = self.prove(&c, &found, below_mev)?;
+            let (found, proof) = self.examined(&c, below_mev)?;
             if self.lead_over(&mut c, &proof)? {
                 return Ok(Settled { first: c, found, proof });
             }
         }
         if proves {
             self.relax_resolved(&mut c, TIGHTLY)?;
-            let found = self.all_saddles(&c)?;
-            let proof = self.prove(&c, &found, below_mev)?;
+            let (found, proof) = self.examined(&c, below_mev)?;
             if self.needs_leading(&c, &found, &proof) && self.lead_over(&mut c, &proof)? {
                 return Ok(Settled { first: c, found, proof });
             }
@@ -74,6 +72,25 @@ impl<'a> Run<'a, '_> {
             self.lead_over(&mut c, &proof)?;
         }
         Ok(Settled { first: c, found, proof })
+    }
+
+    /// Puts the passes of a path into the landscape, until they join its ends below a height (meV above the initial state): what a path
+    /// is worth that is not told itself.
+    pub(super) fn put_in(&mut self, mut c: FirstPath<'a>, below_mev: f64) -> Result<()> {
+        c.band.wake();
+        let (_, proof) = self.examined(&c, below_mev)?;
+        if !proof.doubts.is_empty() {
+            self.relax_resolved(&mut c, TIGHTLY)?;
+            self.examined(&c, below_mev)?;
+        }
+        Ok(())
+    }
+
+    /// The saddles of a path, and what they prove below a height (meV above the initial state).
+    fn examined(&mut self, c: &FirstPath<'a>, below_mev: f64) -> Result<(Vec<Saddle>, Proof)> {
+        let found = self.all_saddles(c)?;
+        let proof = self.prove(c, &found, below_mev)?;
+        Ok((found, proof))
     }
 
     /// Relaxes tightly with as many images as it takes, each time with at most `more` evaluations.
