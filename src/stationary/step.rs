@@ -348,11 +348,12 @@ mod tests {
         let h = Evaluator::from(&h);
         let mut here = Point::at(h, Spins::from_components(&start).unwrap().as_slice().to_vec());
         let (mut region, mut next, mut again) = (Region::new(h, STEP), Point::default(), 0);
-        while here.max_torque_mev() > 1e-6 {
+        for _ in 0..12 {
             let before = region.hessian.norm1();
             let step = region.step(&here);
             next.go(h, &here, &region.v);
-            if region.hessian.norm1() == before {
+            // at the last digits differences are rounding
+            if region.hessian.norm1() == before && here.max_torque_mev() > 1e-6 {
                 let risen = next.above_mev(&here);
                 assert!((risen / step.rise_mev - 1.0).abs() < 1e-3, "{risen:e} {:e}", step.rise_mev);
                 again += 1;
