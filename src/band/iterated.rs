@@ -47,12 +47,19 @@ impl Iterated {
         Iterated { stand_in, tolerance, equations, sigma: 0.0, shift: 0.0, pulled, image }
     }
 
-    /// M for images between two states, given with their gradients, where factors of their Hessians take long: of blocks whose fronts
-    /// are large, and of all pairs of more than a few sites. (Of fewer sites too they take half as long; but conjugate gradients do not
-    /// see that a symmetric path is a ridge, and of 102 random chains and rings two lost their lowest barriers so.)
-    pub fn stand_in(h: &Hamiltonian, ends: [(&[f64], &[f64]); 2], c: f64) -> Option<StandIn> {
+    /// M for images between two states, where factors of their Hessians take long: of blocks whose fronts are large, and of all pairs of
+    /// more than a few sites. (Of fewer sites too they take half as long; but conjugate gradients do not see that a symmetric path is a
+    /// ridge, and of 102 random chains and rings two lost their lowest barriers so.)
+    pub fn stand_in(h: &Hamiltonian, ends: [&[f64]; 2], c: f64) -> Option<StandIn> {
         let is_far = h.coupling().pairs().is_some() && h.sites() > DENSE;
-        (h.has_dear_factors() || is_far).then(|| StandIn::between(h, &ends, c))
+        (h.has_dear_factors() || is_far).then(|| {
+            let gradients = ends.map(|m| {
+                let mut gradient = vec![0.0; m.len()];
+                h.energy_gradient(m, &mut gradient);
+                gradient
+            });
+            StandIn::between(h, &[0, 1].map(|k| (ends[k], &gradients[k][..])), c)
+        })
     }
 
     /// For image k, with symmetry axes `axes` and the shift μ of its last visit (meV).

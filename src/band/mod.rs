@@ -245,9 +245,9 @@ impl<'h> Band<'h> {
         self.slab(&self.gradient, k)
     }
 
-    /// The two ends with their gradients (meV).
-    fn ends(&self) -> [(&[f64], &[f64]); 2] {
-        [0, self.images() - 1].map(|k| (self.path.image(k), self.gradient(k)))
+    /// The two ends.
+    fn ends(&self) -> [&[f64]; 2] {
+        [0, self.images() - 1].map(|k| self.path.image(k))
     }
 
     /// Tangent of image k, of unit length over all 3N components.

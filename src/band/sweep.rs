@@ -187,9 +187,8 @@ impl Sweep {
         Sweep { stand_in: OnceLock::from(stand_in), ..self }
     }
 
-    /// What stands in for the Hessians of bands between two states, given with their gradients, where factors take long; c is the
-    /// stiffness scale (meV).
-    pub fn stand_in(h: &Hamiltonian, ends: [(&[f64], &[f64]); 2], c: f64) -> Option<Arc<StandIn>> {
+    /// What stands in for the Hessians of bands between two states, where factors take long; c is the stiffness scale (meV).
+    pub fn stand_in(h: &Hamiltonian, ends: [&[f64]; 2], c: f64) -> Option<Arc<StandIn>> {
         Iterated::stand_in(h, ends, c).map(Arc::new)
     }
 

@@ -9,10 +9,9 @@ use super::report::{self, Proof};
 use super::settled::Settled;
 use super::{Observer, Problem, Scales, Stop};
 use crate::band::{Band, Laplacian, Sweep};
-use crate::energy::{Evaluator, Hamiltonian, recorded};
+use crate::energy::{Evaluator, recorded};
 use crate::error::{Error, Result};
 use crate::geometry::Direction;
-use crate::hessian::StandIn;
 use crate::landscape::{Doubt, Landscape, Minimum, Pass};
 use crate::path::guess::{FirstGuess, GuessContext, Rotation};
 use crate::path::is_within;
@@ -103,7 +102,7 @@ impl<'a, 'o> Run<'a, 'o> {
         let axes = h.symmetry_axes_at(a);
         let laplacian =
             needs_laplacian(&problem.neb.optimiser).then(|| Arc::new(Laplacian::new(&h, scales.stiffness_mev)));
-        let stand_in = if laplacian.is_none() { stand_in(&h, [a, b], scales.stiffness_mev) } else { None };
+        let stand_in = if laplacian.is_none() { Sweep::stand_in(&h, [a, b], scales.stiffness_mev) } else { None };
         let mut land = Landscape::new(h, a);
         let examined = Minimum::of_both(h, &ends);
         problem.control.check()?;
@@ -278,14 +277,4 @@ fn relaxed_ends(h: Evaluator, given: [&Spins; 2]) -> Result<[Relaxed; 2]> {
     let relax = |spins: &Spins| relax_end(h, spins, RELAXED * h.stiffness_mev());
     let (a, b) = both_by_factors(&h, || relax(given[0]), || relax(given[1]));
     Ok([a?, b?])
-}
-
-/// What stands in for the Hessians of all bands of a run between these ends, where factors take long.
-fn stand_in(h: &Hamiltonian, ends: [&[f64]; 2], c: f64) -> Option<Arc<StandIn>> {
-    let gradients = ends.map(|m| {
-        let mut gradient = vec![0.0; m.len()];
-        h.energy_gradient(m, &mut gradient);
-        gradient
-    });
-    Sweep::stand_in(h, [0, 1].map(|k| (ends[k], &gradients[k][..])), c)
 }
