@@ -1,10 +1,10 @@
 //! A canvas as a file: SVG and PNG, both through plotters' backends.
 //!
 //! The backends know whole pixels only. So an SVG is drawn with many units a point and its root says how large it is,
-//! and a PNG is drawn larger and box-averaged.
+//! and a PNG is drawn larger and box-averaged, band by band.
 
 use super::palette::{Colour, WHITE};
-use super::shapes::{Align, Canvas, Point, Raster, Shape, Text};
+use super::shapes::{Align, Canvas, Point, Raster, Shape, Text, heights};
 use crate::base64::base64;
 use crate::error::{Error, Result};
 use crate::output::font::{glyphs, named};
@@ -13,6 +13,7 @@ use plotters::prelude::RGBColor;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, FontTransform, TextStyle};
 use std::fmt::Write;
+use std::ops::Range;
 
 /// SVG units a point.
 const SVG_UNITS: f64 = 20.0;
@@ -22,6 +23,8 @@ const SVG_SIZE_PER_EM: f64 = 1.24;
 const DPI: f64 = 300.0;
 /// A PNG is drawn so many times larger.
 const OVERSAMPLING: usize = 4;
+/// Rows of a PNG that are drawn at once: few enough that what is drawn stays near the processor.
+const BAND: usize = 64;
 /// How a figure is packed: in a twentieth of the time that the smallest file takes (the default without a filter), which it exceeds by a
 /// third to a whole.
 const QUICKLY: (png::Compression, png::FilterType) = (png::Compression::Fast, png::FilterType::Paeth);
@@ -43,7 +46,7 @@ impl Canvas {
         let size = ((self.width() * SVG_UNITS).round() as u32, (self.height() * SVG_UNITS).round() as u32);
         let mut text = String::new();
         let mut backend = SVGBackend::with_string(&mut text, size);
-        let mut pen = Pen { backend: &mut backend, scale: SVG_UNITS, kind: Kind::Svg };
+        let mut pen = Pen { backend: &mut backend, scale: SVG_UNITS, kind: Kind::Svg, rows: 0..size.1 as i32 };
         self.shapes.iter().try_for_each(|shape| pen.draw(shape))?;
         backend.present().map_err(refused)?;
         drop(backend);
@@ -53,17 +56,37 @@ impl Canvas {
     /// The figure as PNG, 300 pixels an inch.
     pub fn png(&self) -> Result<Vec<u8>> {
         let scale = self.style.zoom() * DPI / 72.0;
-        let (width, height) = ((self.width() * scale).round() as usize, (self.height() * scale).round() as usize);
-        let (wide, high) = (width * OVERSAMPLING, height * OVERSAMPLING);
+        let size = ((self.width() * scale).round() as usize, (self.height() * scale).round() as usize);
+        encode_png(&self.pixels(size, scale, BAND)?, size, QUICKLY, &self.description)
+    }
+
+    /// Its pixels (red, green, blue), `scale` of them a point, drawn so many rows at a time.
+    fn pixels(&self, (width, height): (usize, usize), scale: f64, band: usize) -> Result<Vec<u8>> {
+        let wide = width * OVERSAMPLING;
         let Colour(r, g, b) = self.style.colour(WHITE);
-        let mut pixels = [r, g, b].repeat(wide * high);
+        let ground = [r, g, b].repeat(wide);
         let scale = scale * OVERSAMPLING as f64;
-        self.rasters.iter().for_each(|r| paint(&mut pixels, (wide, high), r, scale));
-        let mut backend = BitMapBackend::with_buffer(&mut pixels, (wide as u32, high as u32));
-        let mut pen = Pen { backend: &mut backend, scale, kind: Kind::Pixels };
-        self.shapes.iter().try_for_each(|shape| pen.draw(shape))?;
-        drop(backend);
-        encode_png(&averaged(&pixels, width), (width, height), QUICKLY, &self.description)
+        let mut rgb = Vec::with_capacity(3 * width * height);
+        let shapes: Vec<(&Shape, Range<f64>)> =
+            self.shapes.iter().map(|shape| Ok((shape, shape.heights()?))).collect::<Result<_>>()?;
+        let mut drawn = vec![0; ground.len() * band * OVERSAMPLING];
+        for top in (0..height).step_by(band) {
+            let rows = top * OVERSAMPLING..height.min(top + band) * OVERSAMPLING;
+            let pixels = &mut drawn[..ground.len() * rows.len()];
+            pixels.chunks_exact_mut(ground.len()).for_each(|row| row.copy_from_slice(&ground));
+            self.rasters.iter().for_each(|r| paint(pixels, wide, &rows, r, scale));
+            let mut backend = BitMapBackend::with_buffer(pixels, (wide as u32, rows.len() as u32));
+            let rows = rows.start as i32..rows.end as i32;
+            let mut pen = Pen { backend: &mut backend, scale, kind: Kind::Pixels, rows };
+            for (shape, heights) in &shapes {
+                if pen.reaches(heights) {
+                    pen.draw(shape)?;
+                }
+            }
+            drop(backend);
+            average(pixels, &ground, &mut rgb);
+        }
+        Ok(rgb)
     }
 
     /// The root in millimetres, a white ground, the rasters beneath the shapes, and the font by name.
@@ -158,6 +181,8 @@ struct Pen<'a, B> {
     backend: &'a mut B,
     scale: f64,
     kind: Kind,
+    /// Rows of the figure that the backend has.
+    rows: Range<i32>,
 }
 
 impl<B: DrawingBackend> Pen<'_, B> {
@@ -169,21 +194,28 @@ impl<B: DrawingBackend> Pen<'_, B> {
                 let (a, b) = (self.at((rect.x0, rect.y0)), self.at((rect.x1, rect.y1)));
                 self.backend.draw_rect(a, b, &rgb(*colour), true).map_err(refused)
             }
-            Shape::Disc { centre, radius, colour } => {
-                let (centre, radius) = (self.at(*centre), (radius * self.scale).round() as u32);
-                self.backend.draw_circle(centre, radius, &rgb(*colour), true).map_err(refused)
-            }
+            Shape::Disc { centre, radius, colour } => self.disc(*centre, (radius * self.scale).round(), *colour),
             Shape::Text { at, text } => self.text(*at, text),
         }
     }
 
     fn at(&self, (x, y): Point) -> (i32, i32) {
-        ((x * self.scale).round() as i32, (y * self.scale).round() as i32)
+        ((x * self.scale).round() as i32, ((y * self.scale).round() as i32).saturating_sub(self.rows.start))
+    }
+
+    /// Whether what lies between these heights (pt) is, with a pixel around it, within the backend in part.
+    fn reaches(&self, heights: &Range<f64>) -> bool {
+        let [top, bottom] = [heights.start, heights.end].map(|y| self.at((0.0, y)).1);
+        bottom >= -1 && top <= self.rows.len() as i32
     }
 
     fn polygon(&mut self, points: &[Point], colour: Colour) -> Result<()> {
         let places: Vec<_> = points.iter().map(|&p| self.at(p)).collect();
         self.backend.fill_polygon(places, &rgb(colour)).map_err(refused)
+    }
+
+    fn disc(&mut self, centre: Point, radius: f64, colour: Colour) -> Result<()> {
+        self.backend.draw_circle(self.at(centre), radius as u32, &rgb(colour), true).map_err(refused)
     }
 
     fn line(&mut self, points: &[Point], width: f64, colour: Colour) -> Result<()> {
@@ -202,7 +234,7 @@ impl<B: DrawingBackend> Pen<'_, B> {
         for pair in points.windows(2) {
             let ((ax, ay), (bx, by)) = (pair[0], pair[1]);
             let length = libm::hypot(bx - ax, by - ay);
-            if length > 0.0 {
+            if length > 0.0 && self.reaches(&heights(pair, width / 2.0)) {
                 let (nx, ny) = (-(by - ay) / length * width / 2.0, (bx - ax) / length * width / 2.0);
                 self.polygon(
                     &[(ax + nx, ay + ny), (bx + nx, by + ny), (bx - nx, by - ny), (ax - nx, ay - ny)],
@@ -212,8 +244,9 @@ impl<B: DrawingBackend> Pen<'_, B> {
         }
         let joints = points.get(1..points.len().saturating_sub(1)).unwrap_or_default();
         for &joint in joints {
-            let (centre, radius) = (self.at(joint), (width / 2.0 * self.scale).floor() as u32);
-            self.backend.draw_circle(centre, radius, &rgb(colour), true).map_err(refused)?;
+            if self.reaches(&heights(&[joint], width / 2.0)) {
+                self.disc(joint, (width / 2.0 * self.scale).floor(), colour)?;
+            }
         }
         Ok(())
     }
@@ -250,7 +283,11 @@ impl<B: DrawingBackend> Pen<'_, B> {
         let start = self.at(if text.upwards { (at.0, at.1 + before) } else { (at.0 - before, at.1) });
         let colour = rgb(text.colour);
         for glyph in glyphs(&text.text, text.size * self.scale)? {
-            let corner = glyph.px_bounds().min;
+            let (corner, end) = (glyph.px_bounds().min, glyph.px_bounds().max);
+            let (top, bottom) = if text.upwards { (-end.x, -corner.x) } else { (corner.y, end.y) };
+            if start.1 + (bottom as i32) < 0 || start.1 + top as i32 > self.rows.len() as i32 {
+                continue;
+            }
             let mut drawn = Ok(());
             glyph.draw(|x, y, coverage| {
                 let (x, y) = (corner.x as i32 + x as i32, corner.y as i32 + y as i32);
@@ -270,49 +307,55 @@ fn rgb(Colour(r, g, b): Colour) -> RGBColor {
     RGBColor(r, g, b)
 }
 
-/// The raster's cells on the pixels they cover.
-fn paint(pixels: &mut [u8], (wide, high): (usize, usize), raster: &Raster, scale: f64) {
+/// The raster's cells on the pixels they cover, of these rows.
+fn paint(pixels: &mut [u8], wide: usize, rows: &Range<usize>, raster: &Raster, scale: f64) {
     let r = raster.rect;
     // pixels within the raster, and which of its cells each is in
-    let inside = |pixels: usize, start: f64, length: f64, cells: usize| -> Vec<(usize, usize)> {
-        let along = (0..pixels).map(|p| (p, ((p as f64 + 0.5) / scale - start) / length));
+    let inside = |pixels: Range<usize>, start: f64, length: f64, cells: usize| -> Vec<(usize, usize)> {
+        let along = pixels.map(|p| (p, ((p as f64 + 0.5) / scale - start) / length));
         let cell = |f: f64| ((f * cells as f64) as usize).min(cells.saturating_sub(1));
         along.filter(|(_, f)| (0.0..1.0).contains(f)).map(|(p, f)| (p, cell(f))).collect()
     };
-    let columns = inside(wide, r.x0, r.width(), raster.columns);
+    let columns = inside(0..wide, r.x0, r.width(), raster.columns);
     let Some(first) = columns.first().map(|(x, _)| *x) else { return };
     let mut line: Vec<u8> = Vec::with_capacity(3 * columns.len());
-    for same in inside(high, r.y0, r.height(), raster.rows).chunk_by(|a, b| a.1 == b.1) {
+    for same in inside(rows.clone(), r.y0, r.height(), raster.rows).chunk_by(|a, b| a.1 == b.1) {
         let row = &raster.rgb[3 * same[0].1 * raster.columns..][..3 * raster.columns];
         line.clear();
         columns.iter().for_each(|(_, column)| line.extend_from_slice(&row[3 * column..3 * column + 3]));
         for (y, _) in same {
-            pixels[3 * (y * wide + first)..][..line.len()].copy_from_slice(&line);
+            pixels[3 * ((y - rows.start) * wide + first)..][..line.len()].copy_from_slice(&line);
         }
     }
 }
 
-/// Each pixel the mean of the block drawn for it.
-fn averaged(pixels: &[u8], width: usize) -> Vec<u8> {
+/// Each pixel the mean of the block drawn for it, after those that there are; most are the ground's.
+fn average(pixels: &[u8], ground: &[u8], out: &mut Vec<u8>) {
     const BLOCK: u16 = (OVERSAMPLING * OVERSAMPLING) as u16;
-    let row_bytes = 3 * width * OVERSAMPLING;
-    let mut out = Vec::with_capacity(pixels.len() / (OVERSAMPLING * OVERSAMPLING));
-    let mut sums = vec![0u16; row_bytes];
-    for block in pixels.chunks_exact(row_bytes * OVERSAMPLING) {
-        // whole rows first, which is quick
-        sums.fill(0);
-        for row in block.chunks_exact(row_bytes) {
-            sums.iter_mut().zip(row).for_each(|(sum, byte)| *sum += u16::from(*byte));
-        }
-        for cell in sums.chunks_exact(3 * OVERSAMPLING) {
-            let mut sum = [BLOCK / 2; 3];
-            for rgb in cell.chunks_exact(3) {
-                (0..3).for_each(|c| sum[c] += rgb[c]);
+    const STRETCH: usize = 3 * OVERSAMPLING * 16;
+    let mut sums = [0; STRETCH];
+    for block in pixels.chunks_exact(ground.len() * OVERSAMPLING) {
+        for (start, plain) in (0..).step_by(STRETCH).zip(ground.chunks(STRETCH)) {
+            let rows = || block.chunks_exact(ground.len()).map(|row| &row[start..start + plain.len()]);
+            if rows().all(|row| row == plain) {
+                out.extend_from_slice(&plain[..plain.len() / OVERSAMPLING]);
+                continue;
             }
-            out.extend_from_slice(&sum.map(|s| (s / BLOCK) as u8));
+            let sums = &mut sums[..plain.len()];
+            // whole rows first, which is quick
+            sums.fill(0);
+            for row in rows() {
+                sums.iter_mut().zip(row).for_each(|(sum, byte)| *sum += u16::from(*byte));
+            }
+            for cell in sums.chunks_exact(3 * OVERSAMPLING) {
+                let mut sum = [BLOCK / 2; 3];
+                for rgb in cell.chunks_exact(3) {
+                    (0..3).for_each(|c| sum[c] += rgb[c]);
+                }
+                out.extend_from_slice(&sum.map(|s| (s / BLOCK) as u8));
+            }
         }
     }
-    out
 }
 
 /// RGB pixels as a PNG file that knows its size.
@@ -354,6 +397,7 @@ fn image_element(raster: &Raster) -> Result<String> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Rect;
     use super::*;
 
     #[test]
@@ -372,6 +416,29 @@ mod tests {
         };
         let expected = path("#0", "M0,0 1,0M2,0 3,0") + &path("#1", "M0,1 1,1") + "<circle/>\n</svg>\n";
         assert_eq!(joined(&body), expected);
+    }
+
+    #[test]
+    fn a_figure_is_the_same_in_bands_of_any_height() {
+        let colour = Colour(30, 60, 200);
+        let mut canvas = Canvas::new(20.0, 30.0);
+        let rect = Rect { x0: 3.0, y0: 2.0, x1: 50.0, y1: 80.0 };
+        canvas.rasters.push(Raster { rect, columns: 2, rows: 3, rgb: (0..18).map(|c| 10 * c).collect() });
+        let across = vec![(1.0, 1.0), (40.0, 33.3), (20.0, 60.0), (20.0, 84.0)];
+        canvas.shapes = vec![
+            Shape::Polygon { points: vec![(5.0, 4.0), (55.0, 30.0), (10.0, 70.0)], colour: Colour(200, 90, 0) },
+            Shape::Line { points: across, width: 1.5, colour },
+            Shape::Box { rect: Rect { x0: 30.0, y0: 10.0, x1: 31.0, y1: 75.0 }, colour },
+            Shape::Disc { centre: (12.0, 40.0), radius: 7.0, colour },
+            Shape::Text { at: (2.0, 50.0), text: Text::new("E_{0} (meV)", 9.0) },
+            Shape::Text { at: (50.0, 70.0), text: Text::new("gjpq Å upwards", 8.0).upwards() },
+        ];
+        let size = (83, 125);
+        let whole = canvas.pixels(size, 1.5, size.1).unwrap();
+        assert!(whole.iter().any(|c| *c != 255));
+        for band in [1, 7, 64] {
+            assert!(canvas.pixels(size, 1.5, band).unwrap() == whole, "{band}");
+        }
     }
 
     #[test]

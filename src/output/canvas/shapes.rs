@@ -4,6 +4,7 @@ use super::palette::{Colour, VERMILLION};
 use super::{Look, MIN_PT, MM, Rect, SMALL_PT, Style};
 use crate::error::Result;
 use crate::output::font::width_em;
+use std::ops::Range;
 
 /// A place on the canvas (pt), y downwards.
 pub type Point = (f64, f64);
@@ -114,6 +115,28 @@ pub(super) enum Shape {
     Box { rect: Rect, colour: Colour },
     Disc { centre: Point, radius: f64, colour: Colour },
     Text { at: Point, text: Text },
+}
+
+impl Shape {
+    /// The heights (pt) that it lies between.
+    pub(super) fn heights(&self) -> Result<Range<f64>> {
+        Ok(match self {
+            Shape::Line { points, width, .. } => heights(points, width / 2.0),
+            Shape::Polygon { points, .. } => heights(points, 0.0),
+            Shape::Box { rect, .. } => heights(&[(rect.x0, rect.y0), (rect.x1, rect.y1)], 0.0),
+            Shape::Disc { centre, radius, .. } => heights(&[*centre], *radius),
+            // no letter is higher or lower than two of the font's sizes
+            Shape::Text { at, text } => {
+                heights(&[*at], 2.0 * text.size + if text.upwards { text.width()? } else { 0.0 })
+            }
+        })
+    }
+}
+
+/// The heights (pt) that points and what is so near to them lie between.
+pub(super) fn heights(points: &[Point], near: f64) -> Range<f64> {
+    let heights = || points.iter().map(|point| point.1);
+    heights().fold(f64::INFINITY, f64::min) - near..heights().fold(f64::NEG_INFINITY, f64::max) + near
 }
 
 /// A raster of colours that lies beneath all shapes.
