@@ -331,7 +331,8 @@ fn a_descent_ends_at_a_minimum_beside_it_where_it_has_reached_that_and_nowhere_e
     for beside in [&[][..], &[&up], &[&skyrmion], &[&skyrmion, &up]] {
         let ends = [-1.0, 1.0].map(|sense| {
             let down: Vec<f64> = valley.iter().map(|v| sense * v).collect();
-            let descent = descend(h.into(), &saddle, &down, Downhill { c: 0.2, level_mev: 0.0, beside });
+            let descent =
+                descend(h.into(), &saddle, &down, Downhill { c: 0.2, level_mev: 0.0, beside, most: usize::MAX });
             assert!(descent.arrived && descent.fallen_mev > 4.0, "{}", descent.fallen_mev);
             descent.m
         });

@@ -330,7 +330,7 @@ fn a_descent_goes_on_over_wells_that_are_level_and_stops_at_the_one_it_was_to_re
         assert!(descent.arrived);
         descent
     };
-    let level = Downhill { c, level_mev: 6e-9, beside: &[] };
+    let level = Downhill { c, level_mev: 6e-9, beside: &[], most: usize::MAX };
     let near = [-1.0, 1.0].map(|sense| down(sense, Downhill { level_mev: 0.0, ..level }));
     let far = [-1.0, 1.0].map(|sense| down(sense, level));
     assert!(near.iter().all(|d| d.fallen_mev < 1e-8) && far.iter().all(|d| d.fallen_mev > 6.0));

@@ -81,6 +81,7 @@ fn outcome(path: Path, length: f64, energy: impl Fn(f64) -> f64) -> Outcome {
             lowered_by_mev: 0.125,
             spent: false,
             lowest_exits_mev: [Some(0.75), None],
+            exits_from_k: None,
         },
         rejected_paths: Vec::new(),
         rates: None,

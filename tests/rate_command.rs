@@ -153,6 +153,15 @@ fn agree(a: &Value, b: &Value) {
 }
 
 #[test]
+fn below_the_temperatures_of_the_run_it_is_said_that_other_ways_were_not_looked_for() {
+    let run = folder(CONFIG);
+    assert_eq!(spinneb(run.path(), &["run", "chain.json", "--quiet"]).0, Some(0));
+    let said = |kelvin: &str| spinneb(run.path(), &["rate", "results/chain", "-T", kelvin]).2;
+    let words = "were looked for at 1 K and above, not at 0.5 K";
+    assert!(said("0.5 K").contains(words) && said("0.5 K").contains(words) && !said("1 K").contains(words));
+}
+
+#[test]
 fn without_the_stored_states_the_saddles_are_found_anew() {
     let plain = folder(&CONFIG.replace(",\n  \"rates\": {\"temperatures\": [\"1 K\", \"3 K\"], \"damping\": 0.2}", ""));
     assert_eq!(spinneb(plain.path(), &["run", "chain.json", "--quiet"]).0, Some(0));

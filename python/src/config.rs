@@ -2,7 +2,7 @@
 
 use crate::buffer::Buffer;
 use crate::errors::raised;
-use crate::handing::{dictionary, places};
+use crate::handing::{dictionary, places, vacant};
 use crate::landscape::Landscape;
 use crate::outcome::Outcome;
 use crate::recorded::{Computed, Recorded};
@@ -98,6 +98,12 @@ impl Config {
     #[getter]
     fn places(&self) -> Buffer {
         places(&self.loaded)
+    }
+
+    /// Which sites have no spin.
+    #[getter]
+    fn vacant(&self) -> Vec<bool> {
+        vacant(&self.loaded)
     }
 
     /// The initial and the final state as they are given, before anything is relaxed.

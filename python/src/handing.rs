@@ -55,6 +55,11 @@ pub fn save(loaded: &Loaded, dir: PathBuf, names: &[String], force: bool, files:
     discard_leftovers(&place.dir)
 }
 
+/// Which sites of a config have no spin.
+pub fn vacant(loaded: &Loaded) -> Vec<bool> {
+    (0..loaded.lattice.sites).map(|i| loaded.lattice.vacant[i]).collect()
+}
+
 /// Places of the sites of a config.
 pub fn places(loaded: &Loaded) -> Buffer {
     let lattice = &loaded.lattice;

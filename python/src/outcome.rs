@@ -2,7 +2,7 @@
 
 use crate::buffer::Buffer;
 use crate::errors::{failed, raised};
-use crate::handing::{dictionary, places, save};
+use crate::handing::{dictionary, places, save, vacant};
 use crate::supervise::{ONE, supervised};
 use crate::term::Trouble;
 use pyo3::prelude::*;
@@ -82,6 +82,12 @@ impl Outcome {
     #[getter]
     fn places(&self) -> Buffer {
         places(&self.loaded)
+    }
+
+    /// Which sites have no spin.
+    #[getter]
+    fn vacant(&self) -> Vec<bool> {
+        vacant(&self.loaded)
     }
 
     /// The path as (image, site, xyz).

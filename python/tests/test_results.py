@@ -1,5 +1,6 @@
 """What results offer: views, tables, figures, files, pickles."""
 
+import copy
 import gc
 import json
 import pickle
@@ -61,6 +62,22 @@ def test_a_run_with_temperatures_has_the_rates_that_are_made_of_it_later(chain, 
     assert reversal.rates is None
     result = sn.barrier(chain, sn.uniform("z"), sn.uniform("-z"), temperatures=[4.0])
     assert result.rates.lifetimes_s() == pytest.approx(sn.rates(reversal, 4.0).lifetimes_s(), rel=1e-12)
+
+
+def test_what_is_given_stands_beside_what_the_system_asks_for(chain):
+    system = chain.replaced(rates={"damping": 0.5, "theory": ["langer"]}, path={"images": 23}, search={"effort": "none"})
+    config = sn.barrier(system, sn.uniform("z"), sn.uniform("-z"), guess=sn.sweep("left"), temperatures=[4.0]).config
+    assert config["rates"]["damping"] == 0.5 and config["rates"]["theory"] == ["langer"]
+    assert config["path"]["images"] == 23 and config["search"] == {"effort": "none"}
+    # a key that is given whole is what is given
+    config = sn.barrier(system, sn.uniform("z"), sn.uniform("-z"), rates={"g_factor": 2.1}, temperatures=[4.0]).config
+    assert config["rates"]["g_factor"] == 2.1 and config["rates"].get("damping", 0.1) == 0.1
+
+
+def test_a_time_too_long_for_a_number_is_infinite(reversal):
+    rates = sn.rates(reversal, [0.05, 4.0])
+    assert rates.lifetimes_s()[0] == np.inf and np.isfinite(rates.lifetimes_s(log10=True)).all() and rates.reasons == [None, None]
+    assert rates.to_dataframe()["first_passage_s"][0] == np.inf and "10^" in rates._told("forward")[0]
 
 
 def test_temperatures_are_numbers_quantities_or_a_range(chain, reversal):
@@ -177,6 +194,20 @@ def test_maps_of_spins_have_a_key_of_their_colours(reversal):
     assert film.plot_spins([map_], key=own) == [map_] and own.texts
 
 
+def test_sites_without_a_spin_are_told_and_left_blank():
+    from matplotlib.collections import PolyCollection
+
+    lattice = sn.grid(8, 6, 1, cell=["2 nm", "4 nm", "1 nm"], vacant=[17, 18])
+    film = sn.System(lattice, [sn.exchange(A="13 pJ/m"), sn.anisotropy(K="500 kJ/m^3")], Ms="800 kA/m")
+    state = sn.relax(film, sn.uniform("-z"))
+    assert np.flatnonzero(state.vacant).tolist() == [17, 18] and state.spins[~state.vacant].mean(0)[2] == -1
+    (cells,) = [one for one in state.plot_spins()[0].collections if isinstance(one, PolyCollection)]
+    assert len(cells.get_paths()) == 46
+    # as high as the next site is far: twice as high as wide
+    wide, high = np.ptp(cells.get_paths()[0].vertices, axis=0)
+    assert high == pytest.approx(2 * wide)
+
+
 def test_figures_are_drawn_on_axes(reversal):
     axes = reversal.plot()
     assert axes.get_xlabel() == "reaction coordinate (rad)" and "6.2" in axes.get_title()
@@ -282,6 +313,17 @@ def test_results_are_pickled(reversal, chain):
     assert pickle.loads(pickle.dumps(chain)).to_json() == chain.to_json()
 
 
+def test_a_result_without_a_saddle_is_stored_like_any_other(chain, tmp_path):
+    switched = chain.replaced(energy=[*chain.energy, sn.zeeman(B=["0 T", "0 T", "20 T"])])
+    result = sn.barrier(switched, sn.uniform("-z"), sn.uniform("z"), out=tmp_path / "own")
+    assert result.barrier_meV is None and not result.saddles
+    result.save(tmp_path / "saved")
+    others = [pickle.loads(pickle.dumps(result)), copy.deepcopy(result), sn.load(tmp_path / "own"), sn.load(tmp_path / "saved")]
+    others.append(sn.barrier(switched, sn.uniform("-z"), sn.uniform("z"), out=tmp_path / "own", resume=True))
+    for other in others:
+        assert other.summary == result.summary and np.array_equal(other.spins, result.spins)
+
+
 def test_a_band_is_told_of_as_ase_does(reversal, tmp_path):
     tools = sn.NEBTools(reversal)
     barrier, difference = tools.get_barrier()
@@ -304,3 +346,8 @@ def test_fields_of_ubermag_come_in_and_go_out():
     result = sn.barrier(film, spins, sn.uniform("-z"), relax_ends=False, effort=None)
     back = sn.to_field(result, 0, norm=norm)
     assert np.allclose(back.array, field.array) and back.mesh.allclose(mesh)
+    # holes have no vectors, however they were named
+    holed = film.replaced(lattice=sn.grid(5, 3, 1, cell=["4 nm", "4 nm", "3 nm"], vacant={"from": 0, "to": 3}))
+    result = sn.barrier(holed, sn.uniform("z"), sn.uniform("-z"), relax_ends=False)
+    blank = sn.to_field(result, 0).norm.array.transpose(2, 1, 0, 3).ravel() == 0
+    assert 0 < blank.sum() < 5 and np.array_equal(blank, result.vacant)

@@ -1,5 +1,6 @@
 //! What a run found: everything that is written to disk is a function of an [`Outcome`].
 
+use super::rates::exits_not_told;
 use super::{Problem, StopCode, is_said_of_rates, rates_warnings, stored_rates};
 use crate::hessian::Bound;
 use crate::landscape::Effort;
@@ -98,11 +99,15 @@ impl Outcome {
         };
         let rates = stored_rates(problem.evaluator(), &self.saddles, minima, settings)
             .map_err(|why| format!("the states in its files do not prove themselves: {why}"))?;
+        let colder = self.search.exits_from_k.and_then(|from_k| exits_not_told(from_k, settings.coldest_k()));
         // in the place that a run gives them
         let own = |w: &&String| is_said_of_rates(w) || last.contains(w);
         let others = self.warnings.iter().filter(|w| !own(w)).cloned();
-        let warnings =
-            others.chain(rates_warnings(&rates, &self.search, self.barrier)).chain(last.iter().cloned()).collect();
+        let warnings = others
+            .chain(rates_warnings(&rates, &self.search, self.barrier))
+            .chain(colder)
+            .chain(last.iter().cloned())
+            .collect();
         Ok(Outcome { warnings, rates: Some(rates), ..self })
     }
 }
@@ -253,6 +258,9 @@ pub struct SearchReport {
     /// How high above the initial state, and above the final one, the lowest way known leads that leaves the path before its highest
     /// saddle for a state that is not on it (meV).
     pub lowest_exits_mev: [Option<f64>; 2],
+    /// What k_BT of this temperature (K) does not hold apart counts there as one state: the lowest that rates were asked for at; where
+    /// none were, nothing does.
+    pub exits_from_k: Option<f64>,
 }
 
 /// What a run cost.

@@ -218,6 +218,16 @@ fn refusals(rates: &Rates) -> Vec<String> {
     reasons.into_iter().map(line).collect()
 }
 
+/// What is to be said where the lowest exits were told from a temperature (K) on, and rates are asked for at a lower one.
+pub fn exits_not_told(from_k: f64, coldest_k: f64) -> Option<String> {
+    (coldest_k < from_k).then(|| {
+        format!(
+            "other ways out of the two states were looked for at {from_k} K and above, not at {coldest_k} K, where what is one state there \
+             may be several; a run at these temperatures tells them: {ALONE}"
+        )
+    })
+}
+
 /// What the whole run should say of its rates: each reason for a refusal once, that some numbers are rough, and which of its ends are
 /// left beside the path, over saddles that are no higher than its own or by k_BT alone.
 pub fn warnings(rates: &Rates, search: &SearchReport, barrier: Option<Barrier>) -> Vec<String> {

@@ -15,7 +15,7 @@ use crate::geometry::Direction;
 use crate::landscape::{Doubt, Landscape, Minimum, Pass};
 use crate::path::guess::{FirstGuess, GuessContext, Rotation};
 use crate::path::is_within;
-use crate::rates::LEAST_BARRIER;
+use crate::rates::{LEAST_BARRIER, RateSettings};
 use crate::record::Count;
 use crate::sphere::SAME;
 use crate::spins::Spins;
@@ -141,11 +141,16 @@ impl<'a, 'o> Run<'a, 'o> {
         let scale = self.tools.scales.stiffness_mev;
         let mut rejected: Vec<RejectedPath> = others.iter().map(|c| rejection(c, &best.first, scale)).collect();
         let mut search = self.search(&mut best, &mut rejected)?;
-        search.lowest_exits_mev = self.lowest_exits(&best.proof.links);
+        (search.lowest_exits_mev, search.exits_from_k) = (self.lowest_exits(&best.proof.links), self.coldest_k());
         if self.problem.rates.is_some() {
             self.observer.stage("computing the rates");
         }
         Ok(report::outcome(&self, best.first, &best.found, best.proof, search, rejected))
+    }
+
+    /// The lowest temperature (K) that rates are asked for at.
+    fn coldest_k(&self) -> Option<f64> {
+        self.problem.rates.as_ref().map(RateSettings::coldest_k)
     }
 
     /// Beside the path over these saddles, of the initial and of the final state (meV above it).
@@ -154,8 +159,8 @@ impl<'a, 'o> Run<'a, 'o> {
         let beside = std::iter::once(&first.before).chain(links.iter().map(|link| &link.after));
         let mut minima: Vec<usize> = beside.map(|minimum| self.land.add_minimum(minimum)).collect();
         let mut saddles: Vec<f64> = links.iter().map(|link| self.land.height_mev(link.saddle.spins())).collect();
-        // what the hottest temperature does not hold apart is one state of the rates
-        let within_mev = self.problem.rates.as_ref().map_or(0.0, |rates| LEAST_BARRIER * K_B * rates.hottest_k());
+        // what the coldest temperature does not hold apart is one state of all rates; what a hotter one does not has more ways out
+        let within_mev = self.coldest_k().map_or(0.0, |coldest_k| LEAST_BARRIER * K_B * coldest_k);
         let forward = self.land.lowest_exit_mev(&minima, &saddles, within_mev);
         minima.reverse();
         saddles.reverse();

@@ -219,7 +219,7 @@ impl<'a> Run<'a, '_> {
         if highest.is_some_and(|highest| self.land.height_mev(highest.spins()) >= below_mev) {
             return Ok(Proof { ends, links: Vec::new(), doubts: vec![Doubt::NoRoute(0)] });
         }
-        let sides = Sides { c: scale, level_mev: level_mev(&c.band), beside: &ends.each_ref() };
+        let sides = Sides { c: scale, level_mev: level_mev(&c.band), beside: &ends.each_ref(), most: usize::MAX };
         let (mut own, mut doubts): (Vec<Pass>, Vec<Doubt>) = (Vec::new(), Vec::new());
         let others = found.iter().filter(|f| highest.is_some_and(|highest| !std::ptr::eq(*f, highest)));
         for saddle in highest.into_iter().chain(others) {
@@ -279,7 +279,12 @@ impl<'a> Run<'a, '_> {
             path: c.band.path(),
             below_mev,
             evaluations: self.allowed(&c.band),
-            sides: Sides { c: self.tools.scales.stiffness_mev, level_mev: level_mev(&c.band), beside: &[] },
+            sides: Sides {
+                c: self.tools.scales.stiffness_mev,
+                level_mev: level_mev(&c.band),
+                beside: &[],
+                most: usize::MAX,
+            },
             context: self.context(),
         };
         let gap = connector.connect(&mut self.land, self.minima)?;
@@ -307,7 +312,8 @@ impl<'a> Run<'a, '_> {
         // a descending direction may be too flat for that
         let is_plain = self.problem.rates.is_none() && saddle.refined.index() > 0;
         let alone = is_plain.then(|| Pass::between(h, saddle.clone(), ends.clone()));
-        let sides = Sides { c: self.tools.scales.stiffness_mev, level_mev: 0.0, beside: &ends.each_ref() };
+        let sides =
+            Sides { c: self.tools.scales.stiffness_mev, level_mev: 0.0, beside: &ends.each_ref(), most: usize::MAX };
         let descended = || Pass::recorded(h, saddle.clone(), sides);
         let pass = alone.map_or_else(descended, Ok)?;
         let doubts = pass.doubt(h).into_iter().collect();

@@ -184,7 +184,7 @@ pub(super) mod tests {
             // nothing leads on so low
             below_mev: 1e-6,
             evaluations: usize::MAX,
-            sides: Sides { c: 10.0, level_mev: 0.0, beside: &[] },
+            sides: Sides { c: 10.0, level_mev: 0.0, beside: &[], most: usize::MAX },
             context: GuessContext { states: StateContext::new(h.lattice(), 1.4), default_axis: Direction::Y },
         };
         let doubt = connector.connect(&mut land, [walls[0], walls[40]]).unwrap();

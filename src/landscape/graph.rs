@@ -503,7 +503,8 @@ mod tests {
         let limits =
             Limits { steps: 40, without_mode: 8, radius: 0.5, ceiling_mev: f64::INFINITY, known: &|_, _| false };
         let saddle = Saddle::climbed(h.into(), start.as_slice(), &limits).unwrap();
-        Pass::of(h.into(), saddle, crate::landscape::Sides { c: 1.0, level_mev: 0.0, beside: &[] }).unwrap()
+        Pass::of(h.into(), saddle, crate::landscape::Sides { c: 1.0, level_mev: 0.0, beside: &[], most: usize::MAX })
+            .unwrap()
     }
 
     #[test]

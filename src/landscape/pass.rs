@@ -45,6 +45,8 @@ pub struct Sides<'a> {
     pub level_mev: f64,
     /// Minima beside it.
     pub beside: &'a [&'a Minimum],
+    /// Most steps by factors of each.
+    pub most: usize,
 }
 
 /// A saddle with the minima on its two sides.
@@ -76,12 +78,21 @@ impl Pass {
         let sign = if slab::dot(&falls, &saddle.top.tau) < 0.0 { -1.0 } else { 1.0 };
         let side = |direction: f64| -> Result<(Minimum, f64, Vec<Spins>)> {
             let valley: Vec<f64> = falls.iter().map(|v| direction * sign * v).collect();
-            let d = descend(h, state, &valley, Downhill { c: sides.c, level_mev: sides.level_mev, beside: &ends });
+            let d = descend(
+                h,
+                state,
+                &valley,
+                Downhill { c: sides.c, level_mev: sides.level_mev, beside: &ends, most: sides.most },
+            );
             let way = d.way.into_iter().map(|m| Spins::from_unit_components(&m)).collect();
             if let Some(known) = beside.iter().find(|minimum| minimum.spins.as_slice() == d.m) {
                 return Ok((Minimum::clone(known), d.fallen_mev, way));
             }
-            let relaxed = relax_to_minimum(h, &Spins::from_unit_components(&d.m), RELAXED * h.stiffness_mev())?;
+            let end = Spins::from_unit_components(&d.m);
+            if d.given_up {
+                return Ok((Minimum::examine(h, &end), d.fallen_mev, way));
+            }
+            let relaxed = relax_to_minimum(h, &end, RELAXED * h.stiffness_mev())?;
             Ok((Minimum::of(h, &relaxed), d.fallen_mev, way))
         };
         let spectrum = saddle.refined.spectrum.clone().unwrap_or_else(|| Spectrum::of(h, state, 0));

@@ -191,8 +191,8 @@ pub fn search(
         }
         let cut = Cut::of(land, aim.ends(), aim.below_mev(land, top_mev), settings.context);
         let a_climb = match done.searches {
-            // no climb takes less
-            0 => Count { evaluations: FEW, hessians: FEW }.part_of(settings.together),
+            // as many as one may take
+            0 => Count { evaluations: STEPS, hessians: STEPS }.part_of(settings.together),
             climbs => worked.part_of(settings.together) / climbs as f64,
         };
         let side_by_side = FEW.min((1.0 / a_climb) as usize).max(1);
@@ -203,8 +203,10 @@ pub fn search(
         }
         let input: Vec<&[f64]> = starts.iter().map(Vec::as_slice).collect();
         let below = cut.top_mev;
+        let most = (settings.together.hessians / side_by_side).max(STEPS);
+        let sides = Sides { c: settings.c, level_mev: 0.0, beside: &[], most };
         let caught: Vec<Option<Pass>> =
-            recorded_each(h, "searches", &input, |k| climb(land, &starts[k], below, settings.c))?;
+            recorded_each(h, "searches", &input, |k| climb(land, &starts[k], below, sides))?;
         for (pass, counts) in caught.into_iter().zip(count_as_quiet) {
             let news = pass.is_some_and(|pass| bring(land, pass, below, aim));
             done.searches += 1;
@@ -252,7 +254,7 @@ fn bring(land: &mut Landscape, pass: Pass, below: f64, aim: Aim) -> bool {
 }
 
 /// The pass that a climb from a state leads to, if that is a new one below a height (meV).
-fn climb(land: &Landscape, start: &[f64], below: f64, c: f64) -> Result<Option<Pass>> {
+fn climb(land: &Landscape, start: &[f64], below: f64, sides: Sides) -> Result<Option<Pass>> {
     let h = land.evaluator();
     let limits = Limits {
         steps: STEPS,
@@ -265,5 +267,5 @@ fn climb(land: &Landscape, start: &[f64], below: f64, c: f64) -> Result<Option<P
     if land.height_mev(saddle.spins()) >= below || land.knows(&saddle) {
         return Ok(None);
     }
-    Pass::of(h, saddle, Sides { c, level_mev: 0.0, beside: &[] }).map(Some)
+    Pass::of(h, saddle, sides).map(Some)
 }

@@ -15,8 +15,9 @@ use crate::path::Path as SpinPath;
 use crate::spins::Spins;
 use std::path::Path;
 
-/// Files that hold what `summary.json` does not.
-const NEEDED: [&str; 5] = ["path.npz", "saddle.ovf", "minima.ovf", "profile.csv", "history.csv"];
+/// Files that hold what `summary.json` does not, and the one that is there if there is a saddle.
+const NEEDED: [&str; 4] = ["path.npz", "minima.ovf", "profile.csv", "history.csv"];
+const SADDLES: &str = "saddle.ovf";
 
 /// An outcome from its files, without rates.
 #[derive(Clone, Debug)]
@@ -30,19 +31,22 @@ pub struct StoredOutcome {
 impl StoredOutcome {
     /// Reads the result in `dir` of a lattice; what is not there, in words, where its files do not hold all of it.
     pub fn read(dir: &Path, lattice: &Lattice) -> Result<std::result::Result<StoredOutcome, String>> {
-        let missing: Vec<&str> = NEEDED.into_iter().filter(|name| !dir.join(name).is_file()).collect();
+        let summary = Summary::read(dir)?;
+        let has_saddles = !summary.saddles.is_empty();
+        let needed = NEEDED.into_iter().chain(has_saddles.then_some(SADDLES));
+        let missing: Vec<&str> = needed.filter(|name| !dir.join(name).is_file()).collect();
         if !missing.is_empty() {
             return Ok(Err(format!("there is no {} with the result", missing.join(", no "))));
         }
         let must = |name: &str| {
             text(dir, name)?.ok_or_else(|| Error::invalid(shown(dir, name), format!("is not there: {WAY_OUT}")))
         };
-        let summary = Summary::read(dir)?;
         let Some(stop_code) = summary.stop_code else {
             return Ok(Err("its summary.json does not say how the run ended".into()));
         };
         let path = states(dir, "path.npz", lattice)?;
-        let (saddles, minima) = (states(dir, "saddle.ovf", lattice)?, states(dir, "minima.ovf", lattice)?);
+        let saddles = if has_saddles { states(dir, SADDLES, lattice)? } else { Vec::new() };
+        let minima = states(dir, "minima.ovf", lattice)?;
         let between = minima.len().saturating_sub(2);
         if path.len() < 2 || saddles.len() != summary.saddles.len() || between != summary.intermediate_minima.len() {
             return Ok(Err("its files of spins are not of one result with summary.json".into()));
@@ -91,9 +95,20 @@ impl StoredOutcome {
 }
 
 fn searched(found: Search) -> SearchReport {
-    let Search { effort, searches, quiet, minima, saddles, lowered_by_meV, spent, lowest_exit_meV } = found;
+    let Search { effort, searches, quiet, minima, saddles, lowered_by_meV, spent, lowest_exit_meV, lowest_exit_from_K } =
+        found;
     let lowest_exits_mev = [lowest_exit_meV.initial, lowest_exit_meV.r#final].map(|mev| mev.map(|Number(mev)| mev));
-    SearchReport { effort, searches, quiet, minima, saddles, lowered_by_mev: lowered_by_meV.0, spent, lowest_exits_mev }
+    SearchReport {
+        effort,
+        searches,
+        quiet,
+        minima,
+        saddles,
+        lowered_by_mev: lowered_by_meV.0,
+        spent,
+        lowest_exits_mev,
+        exits_from_k: lowest_exit_from_K.map(|Number(k)| k),
+    }
 }
 
 fn point(s: &State, moved: Option<Number>) -> EndPoint {

@@ -145,6 +145,9 @@ pub(super) struct Search {
     /// Nothing of earlier results.
     #[serde(default)]
     pub lowest_exit_meV: Exits,
+    /// The lowest temperature of the rates; nothing where there are none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lowest_exit_from_K: Option<Number>,
 }
 
 /// Above the initial state and above the final one.
@@ -155,7 +158,17 @@ pub(super) struct Exits {
 }
 
 fn search(found: &SearchReport) -> Search {
-    let SearchReport { effort, searches, quiet, minima, saddles, lowered_by_mev, spent, lowest_exits_mev } = *found;
+    let SearchReport {
+        effort,
+        searches,
+        quiet,
+        minima,
+        saddles,
+        lowered_by_mev,
+        spent,
+        lowest_exits_mev,
+        exits_from_k,
+    } = *found;
     let [initial, r#final] = lowest_exits_mev.map(|mev| mev.map(Number));
     Search {
         effort,
@@ -166,6 +179,7 @@ fn search(found: &SearchReport) -> Search {
         lowered_by_meV: Number(lowered_by_mev),
         spent,
         lowest_exit_meV: Exits { initial, r#final },
+        lowest_exit_from_K: exits_from_k.map(Number),
     }
 }
 

@@ -339,7 +339,7 @@ fn frequencies(h: Evaluator, crossing: &Crossing, unstable: &Unstable, settings:
         let found = match theory {
             Theory::Htst => {
                 let size = (-unstable.eigenvalue_mev).sqrt();
-                Some(size * unstable.dynamical_factor(top, &gyration))
+                Some(size * unstable.dynamical_factor(top, &gyration, crossing.spectrum.floor_mev))
             }
             Theory::Langer => growth,
         };
@@ -437,6 +437,7 @@ impl Made<'_> {
                 minimum: Fluctuations::of_minimum(h, &beside.states[1 + side], &bottom.pinned, &beside.unstable),
                 saddle,
                 vague,
+                uneven: libm::hypot(top.uneven, bottom.uneven),
             };
             Regime {
                 above_k,

@@ -84,6 +84,11 @@ impl RateSettings {
         self.temperatures_k.iter().copied().fold(0.0, f64::max)
     }
 
+    /// The lowest temperature (K).
+    pub fn coldest_k(&self) -> f64 {
+        self.temperatures_k.iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
     /// Whether a theory is asked for.
     pub fn wants(&self, theory: Theory) -> bool {
         self.theories.contains(&theory)

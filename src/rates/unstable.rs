@@ -8,7 +8,7 @@ use crate::stationary::State;
 
 /// Most factorisations of a search.
 const ROUNDS: usize = 30;
-/// A residual of more than so many times the rounding error of a product still falls.
+/// A residual of more than so many times the rounding error of a product still falls, and a form of more is told from zero.
 const ROUGH: f64 = 64.0;
 
 /// A negative eigenvalue of the Hessian with its eigenvector.
@@ -71,8 +71,8 @@ fn unit(x: &mut [f64]) -> Option<()> {
 
 impl Unstable {
     /// √(wᵀHw) with w_i = Γ_i m_i × e₁,i, in rad/s per √meV: the spread of the velocity across the dividing plane is √(k_BT) times it.
-    /// `gyration` is Γ (rad/s per meV), a number a site.
-    pub fn dynamical_factor(&self, saddle: &State, gyration: &[f64]) -> f64 {
+    /// `gyration` is Γ (rad/s per meV), a number a site. 0 where wᵀHw is rounding: eigenvalues below `floor_mev` have no sign.
+    pub fn dynamical_factor(&self, saddle: &State, gyration: &[f64], floor_mev: f64) -> f64 {
         let e = saddle.field(&self.mode);
         let (e, m) = (Components::new(&e), Components::new(&saddle.m));
         let mut w = vec![0.0; saddle.m.len()];
@@ -84,6 +84,7 @@ impl Unstable {
         let mut image = vec![0.0; w.len()];
         saddle.hessian.multiply(&w, &mut image);
         // w is orthogonal to e₁, the one direction in which the quadratic form is negative
-        scale * slab::dot(&w, &image).max(0.0).sqrt()
+        let spread_mev = slab::dot(&w, &image);
+        if spread_mev > ROUGH * floor_mev * slab::dot(&w, &w) { scale * spread_mev.sqrt() } else { 0.0 }
     }
 }

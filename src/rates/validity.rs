@@ -17,6 +17,8 @@ pub const LOW_BARRIER: f64 = 5.0;
 pub(super) const LARGE: f64 = 0.3;
 /// A relative error of the descending curvature that is worth a word.
 const VAGUE: f64 = 1e-6;
+/// A part of a rate that is worth a word.
+const UNEVEN: f64 = 0.05;
 /// Damping times ΔE/k_BT below which the bath feeds energy slowly.
 const WEAK: f64 = 3.0;
 
@@ -40,6 +42,8 @@ pub struct Validity {
     pub saddle: Fluctuations,
     /// Rounding error of the descending curvature, relative to it.
     pub vague: f64,
+    /// By how much ½ ln|det'H| differs round the turns along which the states slide.
+    pub uneven: f64,
 }
 
 impl Validity {
@@ -51,7 +55,8 @@ impl Validity {
         let weak = self.damping.map_or(0.0, |a| thermal / (a * self.barrier_mev.max(thermal)));
         let spread = [self.minimum, self.saddle].map(|f| f.factor(thermal));
         let factors = [1.0 + low, 1.0 + weak, spread[0], spread[1], self.top(thermal), 1.0 + 0.5 * self.vague];
-        factors.into_iter().map(|f| libm::log(f) * libm::log(f)).sum::<f64>().sqrt()
+        let squares = factors.into_iter().map(|f| libm::log(f) * libm::log(f)).sum::<f64>();
+        (squares + self.uneven * self.uneven).sqrt()
     }
 
     /// What a top that is flat over k_BT leaves: no more than lies between the two theories.
@@ -131,7 +136,7 @@ fn mean_square(state: &State, pinned: &PinnedHessian, i: usize) -> f64 {
 /// What a user should know about the rates out of one minimum, as they are at the highest temperature.
 pub fn warnings(settings: &RateSettings, barrier_mev: f64, at: &Regime) -> Vec<String> {
     let (htst, langer) = (at.htst, at.langer);
-    let Some(Validity { minimum, saddle, vague, .. }) = &at.validity else { return Vec::new() };
+    let Some(Validity { minimum, saddle, vague, uneven, .. }) = &at.validity else { return Vec::new() };
     let hottest = settings.hottest_k();
     let said = [
         low_barrier(barrier_mev, hottest),
@@ -140,6 +145,7 @@ pub fn warnings(settings: &RateSettings, barrier_mev: f64, at: &Regime) -> Vec<S
         flat_top(saddle, hottest, htst, langer),
         weak_damping(settings, barrier_mev, langer),
         vague_curvature(*vague, langer),
+        uneven_turn(*uneven),
     ];
     said.into_iter().flatten().collect()
 }
@@ -205,6 +211,17 @@ fn vague_curvature(vague: f64, langer: Option<Prefactor>) -> Option<String> {
     ))
 }
 
+/// The product of the modes across a turn is taken where the state stands.
+fn uneven_turn(uneven: f64) -> Option<String> {
+    (uneven > UNEVEN).then(|| {
+        format!(
+            "a state turns without cost, but the modes across its turn are not alike all round, and the rate is made of those where it \
+             stands: it is known within a factor of {:.2}",
+            libm::exp(uneven)
+        )
+    })
+}
+
 /// The spin waves of a film or a body have ever more room for entropy the smaller its cells are (those of a wire have not).
 pub(super) fn of_cells(lattice: &Lattice) -> Option<String> {
     let directions = lattice.grid.size.iter().filter(|cells| **cells > 1).count();
@@ -264,6 +281,7 @@ mod tests {
                 minimum: calm,
                 saddle: calm,
                 vague: 0.0,
+                uneven: 0.0,
             };
             libm::exp(validity.ln_factor(kelvin))
         };

@@ -10,8 +10,15 @@ use super::{
     zero_modes,
 };
 use crate::energy::Evaluator;
+use crate::linalg::{orthonormal, remove, slab};
 use crate::stationary::{Spectrum, State};
 use crate::symmetry::Group;
+use std::f64::consts::PI;
+
+/// Places at which is looked, all round a turn.
+const AROUND: usize = 8;
+/// What turns the spins by less (rad) moves nothing.
+const LEAST: f64 = 1e-6;
 
 const NAMES: [&str; 3] = ["the saddle", "the minimum before it", "the minimum after it"];
 
@@ -67,6 +74,8 @@ pub(super) struct Well {
     pub pinning: Vec<Pinning>,
     /// ln of the states alike that are its places.
     pub ln_places: f64,
+    /// By how much ½ ln|det'H| differs at most, all round the turn along which it slides.
+    pub uneven: f64,
 }
 
 impl<'a> Beside<'a> {
@@ -173,6 +182,32 @@ impl<'a> Beside<'a> {
         Ok(Found { saddle: well(0)?, minima: [well(1), well(2)], equivalents, turn: *turn })
     }
 
+    /// By how much ½ ln|det'H| of state k differs at most, all round a turn: one that keeps the energy need not keep what lies across it.
+    fn uneven(&self, k: usize, turn: &Turn) -> f64 {
+        let (h, state) = (self.h, &self.states[k]);
+        let descent = self.descending(k).map(|unstable| state.field(&unstable.mode));
+        let log_determinant = |part: usize| -> Option<f64> {
+            let angle = 2.0 * PI * part as f64 / (AROUND * turn.fold) as f64;
+            let here = State::at(h, turn.by(&h, state.m.clone(), angle));
+            let along = here.basis.coordinates(&turn.along(&h, &here.m));
+            let left_out = orthonormal(here.zeros.iter().cloned().chain([along]).collect(), LEAST);
+            let mut unstable = None;
+            if let Some(descent) = &descent {
+                let mut mode = here.basis.coordinates(&turn.by(&h, descent.clone(), angle));
+                remove(&mut mode, &left_out);
+                slab::normalise(&mut mode);
+                let eigenvalue_mev = here.curvature_mev(&mode);
+                unstable = Some(Unstable { eigenvalue_mev, mode }).filter(|unstable| unstable.eigenvalue_mev < 0.0);
+                unstable.as_ref()?;
+            }
+            let pinned = PinnedHessian::new(&here.hessian, &left_out, unstable.as_ref(), h.stiffness_mev() / 3.0);
+            let falls = unstable.map_or(0.0, |unstable| libm::log(-unstable.eigenvalue_mev));
+            Some(pinned.log_determinant() + falls).filter(|log| log.is_finite())
+        };
+        let Some(own) = log_determinant(0) else { return 0.0 };
+        (1..AROUND).filter_map(log_determinant).map(|other| 0.5 * (other - own).abs()).fold(0.0, f64::max)
+    }
+
     /// Of state k, where so many times each shift is free, if anything slides over the lattice.
     fn well(&self, k: usize, sliding: &Sliding, free: Option<&[usize]>, along: &Group) -> Result<Well, UnknownModes> {
         let (h, state, unstable) = (self.h, &self.states[k], self.descending(k));
@@ -191,7 +226,9 @@ impl<'a> Beside<'a> {
         let pinned = PinnedHessian::new(&state.hessian, &left_out, unstable, h.stiffness_mev() / 3.0);
         let descent = unstable.map_or(0.0, |u| libm::log(-u.eigenvalue_mev));
         let ln_volume = zeros.iter().map(|z| libm::log(z.volume)).sum::<f64>() + libm::log(kept as f64);
+        let uneven = sliding.turn().map_or(0.0, |turn| self.uneven(k, &turn));
         Ok(Well {
+            uneven,
             log_determinant: pinned.log_determinant() + descent,
             pinned,
             zeros,

@@ -53,6 +53,8 @@ pub struct Descent {
     pub fallen_mev: f64,
     /// It ended at a stationary point without a negative direction.
     pub arrived: bool,
+    /// It took as many steps as it might.
+    pub given_up: bool,
     /// Points on the way, each with a spin turned by 0.3 rad or more since the last (more on long chains, so that they
     /// fit into memory).
     pub way: Vec<Vec<f64>>,
@@ -68,11 +70,13 @@ pub struct Downhill<'a> {
     /// Proven minima beside the saddle: a descent ends in one where its slope forks, where it has all but reached it, and where it comes
     /// by on a level with it.
     pub beside: &'a [&'a Spins],
+    /// Most steps by factors: a descent that takes more is given up.
+    pub most: usize,
 }
 
 /// Descends from a saddle along ± its valley (a unit field of 3N numbers).
 pub fn descend(h: Evaluator, saddle: &State, valley: &[f64], to: Downhill) -> Descent {
-    let Downhill { c, level_mev, beside } = to;
+    let Downhill { c, level_mev, beside, most } = to;
     let mut walk = Walk {
         h,
         c,
@@ -80,6 +84,7 @@ pub fn descend(h: Evaluator, saddle: &State, valley: &[f64], to: Downhill) -> De
         level_mev: if level_mev > FLAT * h.stiffness_mev() && !h.forgoes_factors() { level_mev } else { 0.0 },
         here: saddle.point.clone(),
         next: Point::default(),
+        left: most,
         tau: valley.to_vec(),
         last: None,
         trail: Trail::from(&saddle.m),
@@ -92,7 +97,14 @@ pub fn descend(h: Evaluator, saddle: &State, valley: &[f64], to: Downhill) -> De
     };
     let nearly = walk.unfactored.is_some() && !beside.is_empty();
     let arrived = h.has_dear_factors() && (nearly && walk.roll(true) || walk.roll(false)) || walk.down();
-    Descent { fallen_mev: saddle.above_mev(&walk.here), arrived, m: walk.here.m, way: walk.trail.into_points() }
+    let given_up = !arrived && walk.left == 0;
+    Descent {
+        fallen_mev: saddle.above_mev(&walk.here),
+        arrived,
+        given_up,
+        m: walk.here.m,
+        way: walk.trail.into_points(),
+    }
 }
 
 /// A descent on its way.
@@ -105,6 +117,8 @@ pub(super) struct Walk<'a> {
     pub(super) here: Point,
     /// Where the step that is being tried leads.
     pub(super) next: Point,
+    /// So many steps by factors may be taken yet.
+    pub(super) left: usize,
     /// The valley's direction (3N), of any length.
     pub(super) tau: Vec<f64>,
     /// The direction at the start of the last step along the valley, a radian a unit of length, and that step's length (rad).
@@ -145,6 +159,9 @@ impl Walk<'_> {
             let moved = self.march(enough);
             enough = STATIONARY * self.h.stiffness_mev();
             let end = self.fall();
+            if self.left == 0 {
+                return false;
+            }
             in_vain = if from.above_mev(&self.here) > noise { 0 } else { in_vain + 1 };
             if matches!(end, Fall::Crawling) && moved {
                 enough = STEEP * self.h.stiffness_mev();
@@ -187,9 +204,10 @@ impl Walk<'_> {
             if self.here.max_torque_mev() <= SHARP * scale || self.h.is_stopped() {
                 return Fall::Arrived;
             }
-            if rate > LAST_SHIFT * scale {
+            if rate > LAST_SHIFT * scale || self.left == 0 {
                 return Fall::Stuck;
             }
+            self.left -= 1;
             let Some(step) =
                 flow(self.h, &self.here, &mut self.next, rate, &mut self.room.matrix, self.unfactored.as_mut())
             else {

@@ -198,7 +198,7 @@ fn way_down(h: Evaluator, state: &State, rests: bool) -> Option<(Point, WayDown)
     if !rests && slab::dot(&mode, &state.gradient) > 0.0 {
         slab::scale(&mut mode, -1.0);
     }
-    let to = Downhill { c: h.stiffness_mev(), level_mev: 0.0, beside: &[] };
+    let to = Downhill { c: h.stiffness_mev(), level_mev: 0.0, beside: &[], most: usize::MAX };
     let below = Point::at(h, descend(h, state, &mode, to).m);
     let turns = Components::new(&mode);
     let largest = (0..h.sites()).max_by(|i, j| vector::norm(turns.get(*i)).total_cmp(&vector::norm(turns.get(*j))));

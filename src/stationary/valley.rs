@@ -132,6 +132,7 @@ impl Walk<'_> {
     /// One Newton step across the valley, which bends away from any step along it, and the valley's direction there; its size
     /// (rad, any spin). None where the valley is lost: straight on, the descent will find the way.
     fn correct(&mut self) -> Option<f64> {
+        self.left = self.left.checked_sub(1)?;
         if self.unfactored.is_some() {
             self.iterate_across()?
         } else {

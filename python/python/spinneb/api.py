@@ -123,19 +123,20 @@ def barrier(
     out, threads, progress, force, resume
         As in :func:`run`.
     options
-        Any other key of a config: ``neb={"tolerance": 1e-8}``, ``rates={"damping": 0.5, …}``.
+        Any other key of a config, in place of the system's: ``neb={"tolerance": 1e-8}``, ``rates={"damping": 0.5, …}``.
     """
     if not isinstance(system, System):
         raise TypeError(f"barrier takes a System, made of a lattice and a list of terms, found {system!r}; run takes a config")
-    if temperatures is not None:
-        options["rates"] = {**options.get("rates", {}), "temperatures": _kelvin(temperatures)}
-    if guess is not None or images is not None:
-        path = dict(options.get("path", {}))
-        path.update({} if guess is None else {"guess": as_guess(guess)})
-        path.update({} if images is None else {"images": images})
-        options["path"] = path
-    if effort is not None:
-        options["search"] = {"effort": effort}
+
+    def beside(key: str, **own: Any) -> None:
+        """Puts what is given beside what else is asked for under a key, here or of the system."""
+        given = {name: value for name, value in own.items() if value is not None}
+        if given:
+            options[key] = {**(options.get(key, system.options.get(key)) or {}), **given}
+
+    beside("rates", temperatures=None if temperatures is None else _kelvin(temperatures))
+    beside("path", guess=None if guess is None else as_guess(guess), images=images)
+    beside("search", effort=effort)
     if relax_ends is not None:
         options["relax_ends"] = relax_ends
     changed = {"initial": system.initial if initial is None else initial, "final": system.final if final is None else final}
@@ -176,7 +177,8 @@ def relax(
     with _telling(progress) as tell:
         files, spins = core.relax(wanted, count, tell)
     told = json.loads(files["relax.json"])["states"]
-    found = tuple(Relaxed(one, np.asarray(m), np.asarray(core.places)) for one, m in zip(told, spins))
+    places, vacant = np.asarray(core.places), np.array(core.vacant, dtype=bool)
+    found = tuple(Relaxed(one, np.asarray(m), places, vacant) for one, m in zip(told, spins))
     return found[0] if len(states) == 1 else found
 
 

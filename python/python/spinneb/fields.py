@@ -62,7 +62,7 @@ def to_field(result: Result, image: int = 0, *, norm: float | None = None) -> di
     Parameters
     ----------
     result
-        Of a ``grid`` without a shape.
+        Of a ``grid`` without a shape. Where it has no spin the vectors are zero.
     image
         Which image; negative ones count from the end.
     norm
@@ -81,11 +81,7 @@ def to_field(result: Result, image: int = 0, *, norm: float | None = None) -> di
     mesh = df.Mesh(p1=(0, 0, 0), p2=tuple(n * width for n, width in zip(cells, cell)), n=tuple(cells))
     nx, ny, nz = cells
     values = m.reshape(nz, ny, nx, 3).transpose(2, 1, 0, 3).copy()
-    vacant = content.get("vacant")
-    if isinstance(vacant, list):
-        flat = np.zeros(nx * ny * nz, dtype=bool)
-        flat[vacant] = True
-        values[flat.reshape(nz, ny, nx).transpose(2, 1, 0)] = 0.0
+    values[result.vacant.reshape(nz, ny, nx).transpose(2, 1, 0)] = 0.0
     return df.Field(mesh, nvdim=3, value=values * (1.0 if norm is None else norm))
 
 

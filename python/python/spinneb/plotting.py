@@ -48,15 +48,21 @@ def energy_path(
 
 
 def maps(
-    states: Sequence[Array], places: Array, titles: Sequence[str], axes: Sequence[Axes] | None = None, key: Axes | None = None
+    states: Sequence[Array],
+    places: Array,
+    vacant: NDArray[np.bool_],
+    titles: Sequence[str],
+    axes: Sequence[Axes] | None = None,
+    key: Axes | None = None,
 ) -> list[Axes]:
-    """States side by side: chains one below the other, films as maps of their top layer; a figure of its own has a key of the colours."""
+    """States side by side: chains one below the other, films as maps of their top layer; sites without a spin are left blank; a figure of
+    its own has a key of the colours."""
     is_row = bool(np.ptp(places[:, 1]) < 1e-9 and np.ptp(places[:, 2]) < 1e-9)
     made, key = _figure(len(states), places, is_row) if axes is None else (list(axes), key)
     if len(made) < len(states):
         raise ValueError(f"found {len(made)} axes for {len(states)} states")
     for ax, m, title in zip(made, states, titles):
-        (_row if is_row else _film)(ax, m, places)
+        (_row if is_row else _film)(ax, m, places, vacant)
         ax.set_title(title, fontsize="small")
     if key is not None:
         wheel(key, "arrows: $m_x$ →, $m_z$ ↑" if is_row else "")
@@ -105,12 +111,13 @@ def colors(m: Array) -> Array:
     return np.array([colorsys.hls_to_rgb(h, 0.06 + 0.9 * x, 0.95 * np.hypot(a, b)) for h, x, a, b in zip(hue, light, m[:, 0], m[:, 1])])
 
 
-def _row(ax: Axes, m: Array, places: Array) -> None:
+def _row(ax: Axes, m: Array, places: Array, vacant: NDArray[np.bool_]) -> None:
     from matplotlib.ticker import MaxNLocator
 
     x = places[:, 0]
     step = max(1, int(np.ceil(len(m) / _ARROWS)))
-    x, m = x[::step], m[::step]
+    there = np.flatnonzero(~vacant[::step]) * step
+    x, m = x[there], m[there]
     span = max(float(np.ptp(x)), 1.0)
     # arrows in the plane of the chain and z, what points out of it by its colour
     ax.quiver(x, 0 * x, m[:, 0], m[:, 2], color=colors(m), pivot="mid", units="width", scale=float(np.clip(0.6 * len(x), 14, 45)), width=0.0045, edgecolor="0.3", linewidth=0.3)
@@ -122,18 +129,18 @@ def _row(ax: Axes, m: Array, places: Array) -> None:
     ax.label_outer()
 
 
-def _film(ax: Axes, m: Array, places: Array) -> None:
+def _film(ax: Axes, m: Array, places: Array, vacant: NDArray[np.bool_]) -> None:
     from matplotlib.collections import PolyCollection
 
     top = places[:, 2] > places[:, 2].max() - 1e-6
-    m, r = m[top], places[top][:, :2]
+    m, r, there = m[top], places[top][:, :2], ~vacant[top]
     ax.set_aspect("equal")
     distance = nearest(r)
     turn = np.arange(6) * np.pi / 3 + np.pi / 6
     corner = 0.58 * distance * np.stack([np.cos(turn), np.sin(turn)], axis=-1)
-    square = 0.5 * distance * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
-    cell = square if _is_square(r, distance) else corner
-    ax.add_collection(PolyCollection(r[:, None, :] + cell[None], facecolors=colors(m), edgecolors="none"))
+    rectangle = 0.5 * _cell(r, distance) * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+    cell = rectangle if _is_square(r, distance) else corner
+    ax.add_collection(PolyCollection(r[there][:, None, :] + cell[None], facecolors=colors(m[there]), edgecolors="none"))
     ax.set_facecolor("0.93")
     pad = 0.7 * distance
     ax.set_xlim(r[:, 0].min() - pad, r[:, 0].max() + pad)
@@ -149,6 +156,13 @@ def nearest(r: Array) -> float:
     d[d < 1e-9] = np.inf
     found = float(d.min()) if len(r) > 1 else 1.0
     return found if np.isfinite(found) else 1.0
+
+
+def _cell(r: Array, distance: float) -> Array:
+    """How far it is to the next site along x and along y."""
+    way = np.abs(r - r[len(r) // 2])
+    steps = [way[way[:, 1 - k] < 1e-6 * distance, k] for k in (0, 1)]
+    return np.array([min(step[step > 1e-6 * distance], default=distance) for step in steps])
 
 
 def _is_square(r: Array, distance: float) -> bool:

@@ -220,6 +220,13 @@ class Result:
         """Where the sites are, (site, xyz), in lattice constants; in a chain x is the number of the site."""
         return np.asarray(self._core.places)
 
+    @property
+    def vacant(self) -> NDArray[np.bool_]:
+        """Which sites have no spin, (site,): their vectors are +z, and mean nothing."""
+        vacant = np.array(self._core.vacant, dtype=bool)
+        vacant.flags.writeable = False
+        return vacant
+
     def _column(self, name: str) -> Array:
         return np.asarray(self._core.column(name))
 
@@ -305,7 +312,7 @@ class Result:
         from .plotting import maps
 
         states, titles = self._chosen(images)
-        return maps(states, self.places, titles, axes, key)
+        return maps(states, self.places, self.vacant, titles, axes, key)
 
     def plot_3d(self, images: Sequence[int] | None = None, plotter: Any = None, **style: Any) -> Any:
         """The spins of some images side by side as arrows in three dimensions: a ``pyvista.Plotter``, in the colours of
@@ -326,7 +333,7 @@ class Result:
         from .scenes import arrows
 
         states, titles = self._chosen(images)
-        return arrows(states, self.places, titles, plotter, **style)
+        return arrows(states, self.places, self.vacant, titles, plotter, **style)
 
     def html(self) -> str:
         """The report: a page for a browser that needs no network."""
@@ -386,13 +393,15 @@ def _placed(files: Mapping[str, bytes]) -> Iterator[str]:
 class Relaxed:
     """A state relaxed by itself."""
 
-    def __init__(self, told: Mapping[str, Any], spins: Array, places: Array) -> None:
+    def __init__(self, told: Mapping[str, Any], spins: Array, places: Array, vacant: NDArray[np.bool_]) -> None:
         #: as relax.json has it
         self.summary: dict[str, Any] = {key: value for key, value in told.items() if key != "files"}
         #: the vectors, (N, 3), read-only
         self.spins = spins
         #: where the sites are, (N, 3), in lattice constants
         self.places = places
+        #: which sites have no spin, (N,)
+        self.vacant = vacant
 
     @property
     def is_minimum(self) -> bool:
@@ -428,13 +437,13 @@ class Relaxed:
         """The spins, on matplotlib axes, as of :meth:`Result.plot_spins`."""
         from .plotting import maps
 
-        return maps([self.spins], self.places, [f"{self.energy_meV:.4f} meV"], axes, key)
+        return maps([self.spins], self.places, self.vacant, [f"{self.energy_meV:.4f} meV"], axes, key)
 
     def plot_3d(self, plotter: Any = None, **style: Any) -> Any:
         """The spins as arrows in three dimensions: a ``pyvista.Plotter``, as of :meth:`Result.plot_3d`."""
         from .scenes import arrows
 
-        return arrows([self.spins], self.places, [f"{self.energy_meV:.4f} meV"], plotter, **style)
+        return arrows([self.spins], self.places, self.vacant, [f"{self.energy_meV:.4f} meV"], plotter, **style)
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
         """Its spins: it can stand for a state."""
@@ -497,12 +506,14 @@ class Rates:
         return np.array([row["temperature_K"] for row in self._rows("forward")], dtype=np.float64)
 
     def lifetimes_s(self, way: Way = "forward", *, log10: bool = False) -> Array:
-        """Mean times from one end to the other at the temperatures; NaN where there is none, as ``reasons`` says.
+        """Mean times from one end to the other at the temperatures; NaN where there is none, as ``reasons`` says, and infinite where
+        one is too long for a number.
 
         ``log10`` gives decimal logarithms, which no time is too long for.
         """
-        key = "log10_first_passage_s" if log10 else "first_passage_s"
-        return np.array([np.nan if row[key] is None else row[key] for row in self._rows(way)], dtype=np.float64)
+        if log10:
+            return np.array([_or_nan(row["log10_first_passage_s"]) for row in self._rows(way)], dtype=np.float64)
+        return np.array([_time_s(row, "first_passage_s") for row in self._rows(way)], dtype=np.float64)
 
     @property
     def reasons(self) -> list[str | None]:
@@ -530,7 +541,10 @@ class Rates:
         needs("pandas")
         import pandas
 
-        rows = [{"direction": one["direction"], **row} for one in self.transitions for row in one["temperatures"]]
+        def told(row: dict[str, Any]) -> dict[str, Any]:
+            return {key: _time_s(row, key) if f"log10_{key}" in row else value for key, value in row.items()}
+
+        rows = [{"direction": one["direction"], **told(row)} for one in self.transitions for row in one["temperatures"]]
         return pandas.DataFrame(rows)
 
     def plot(self, ax: Axes | None = None, **style: Any) -> Axes:
@@ -582,10 +596,23 @@ class Rates:
         return "\n".join([f"<Rates {self.result.name}", *(f"  {t}: {told}" for t, _, told in self._lines("forward"))]) + ">"
 
 
+def _or_nan(value: float | None) -> float:
+    """NaN where there is none."""
+    return float("nan") if value is None else float(value)
+
+
+def _time_s(row: Mapping[str, Any], key: str) -> float:
+    """A time of a row of rates; one that is too long or too short for a number is infinite or zero."""
+    value, log10 = row[key], row[f"log10_{key}"]
+    if value is None and log10 is not None:
+        return float("inf") if log10 > 0 else 0.0
+    return _or_nan(value)
+
+
 def _time(seconds: float, log10: float, factor: float | None) -> str:
     """A lifetime with as many digits as its error leaves, and the error."""
     digits = 1 if factor is None else min(max(int(np.ceil(-np.log10(max(factor - 1, 1e-12)))), 1), 4)
-    time = f"{seconds:.{digits}g} s" if np.isfinite(seconds) else f"10^{log10:.0f} s"
+    time = f"{seconds:.{digits}g} s" if 0.0 < seconds < np.inf else f"10^{log10:.0f} s"
     known = "no better than an order of magnitude, if at all" if factor is None else f"within a factor of {factor:.2g}"
     return f"{time} ({known})"
 

@@ -7,13 +7,16 @@ from importlib import import_module
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ._optional import needs
 from .plotting import Array, colors, nearest
 
 
-def arrows(states: Sequence[Array], places: Array, titles: Sequence[str], plotter: Any = None, **style: Any) -> Any:
-    """States side by side as arrows at their sites; all in the view of a plotter that is given."""
+def arrows(
+    states: Sequence[Array], places: Array, vacant: NDArray[np.bool_], titles: Sequence[str], plotter: Any = None, **style: Any
+) -> Any:
+    """States side by side as arrows at their sites, where there is a spin; all in the view of a plotter that is given."""
     # whose types are not needed, and take a checker minutes to read
     needs("pyvista")
     pyvista = import_module("pyvista")
@@ -26,9 +29,9 @@ def arrows(states: Sequence[Array], places: Array, titles: Sequence[str], plotte
             own.subplot(0, k)
             own.set_background("white")
             own.add_text(title, font_size=9, color="black")
-        sites = pyvista.PolyData(np.array(places))
-        sites["spins"] = np.array(m)
-        sites["colors"] = np.rint(255 * colors(m)).astype(np.uint8)
+        sites = pyvista.PolyData(np.array(places[~vacant]))
+        sites["spins"] = np.array(m[~vacant])
+        sites["colors"] = np.rint(255 * colors(m[~vacant])).astype(np.uint8)
         glyphs = sites.glyph(orient="spins", scale=False, factor=length, geom=arrow)
         own.add_mesh(glyphs, **{"scalars": "colors", "rgb": True, "ambient": 0.25, **style})
     if plotter is None:

@@ -7,13 +7,15 @@ use crate::energy::Evaluator;
 use crate::field::Components;
 use crate::linalg::{Factors, Matrix, combination, eigen_symmetric, orthonormal, remove, slab};
 use crate::sphere::write_logs;
-use crate::stationary::{Pin, Point, State, move_free, pin};
+use crate::stationary::{Pin, Point, State, pin};
 
 /// What turns the spins by less (rad) moves nothing.
 const LEAST: f64 = 1e-6;
 /// Most steps to where a state rests half-way, and the part of its height that it may fall short of it by.
-const STEPS: usize = 6;
+const STEPS: usize = 12;
 const SETTLED: f64 = 1e-2;
+/// How often a step that does not lead down is halved.
+const HALVINGS: i32 = 6;
 
 /// The way that a state takes when it is moved.
 #[derive(Debug)]
@@ -52,44 +54,45 @@ impl<'a> Held<'a> {
         (size * size > 0.5 * whole * whole && size > LEAST).then_some(along)
     }
 
-    /// How much higher (meV) the state is half-way to the next place: from these spins (3N) at rest, by steps of Newton, but for the
-    /// direction `along` of the valley there (3N) and the descent, which `carried` brings there (3N). Nothing where it comes back.
+    /// How much higher (meV) the state is half-way to the next place: from these spins (3N) down to where it is at rest, by steps of
+    /// Newton, but for the directions `along` the valley and others as soft there (3N), and the descent, which `carried` brings there
+    /// (3N). No less than that where it does not come to rest soon, and nothing where it comes back.
     pub fn top_mev(
         &self,
         h: Evaluator,
         start: Vec<f64>,
-        along: impl Fn(&Point) -> Vec<f64>,
+        along: impl Fn(&Point) -> Vec<Vec<f64>>,
         carried: impl Fn(Vec<f64>) -> Vec<f64>,
     ) -> Option<f64> {
         let descents = &self.against[self.state.zeros.len()..];
         let descents: Vec<Vec<f64>> = descents.iter().map(|t| carried(self.state.field(t))).collect();
-        let mut between = State::at(h, start);
-        let mut left: Option<[f64; 2]> = None;
+        let mut here = Point::at(h, start.clone());
         for _ in 0..STEPS {
-            let State { point, hessian } = between;
-            let own = std::iter::once(along(&point)).chain(descents.iter().cloned());
-            let own = own.map(|field| point.basis.coordinates(&field));
-            let directions = orthonormal(point.zeros.iter().cloned().chain(own).collect(), 0.0);
-            let (factors, pins) = self.pinned(hessian, directions.iter());
+            let own = along(&here).into_iter().chain(descents.iter().cloned());
+            let own = own.map(|field| here.basis.coordinates(&field));
+            let directions = orthonormal(here.zeros.iter().cloned().chain(own).collect(), LEAST);
+            let (factors, pins) = self.pinned(State::of(h, here.clone()).hessian, directions.iter());
             let bordered = Bordered::new(&factors, directions.iter().collect(), &pins, self.kappa);
-            let way = bordered.to_rest(&point.slope)?;
-            let mut m = point.m.clone();
-            move_free(&h, &mut m, &point.field(&way));
-            if slab::norm(&towards(&m, &self.state.m)) < slab::norm(&towards(&m, &point.m)) {
-                return left.map(|[top_mev, _]| top_mev);
+            let way = bordered.to_rest(&here.slope)?;
+            let falls_mev = -0.5 * slab::dot(&here.slope, &way);
+            let top_mev = here.above_mev(&self.state.point) - falls_mev;
+            if falls_mev.abs() <= SETTLED * top_mev.abs() {
+                return Some(top_mev);
             }
-            let rises_mev = 0.5 * slab::dot(&point.slope, &way);
-            let top_mev = h.difference_mev(&point.m, &self.state.m) + rises_mev;
-            if left.is_some_and(|[_, before]| rises_mev.abs() > 0.5 * before) {
-                break;
+            let field = here.field(&way);
+            let parts = (0..HALVINGS).map(|k| 0.5f64.powi(k));
+            let lower = parts.map(|part| {
+                let mut there = Point::default();
+                there.go(h, &here, &field.iter().map(|x| part * x).collect::<Vec<f64>>());
+                there
+            });
+            let Some(lower) = lower.into_iter().find(|there| there.above_mev(&here) < 0.0) else { break };
+            if slab::norm(&towards(&lower.m, &self.state.m)) < slab::norm(&towards(&lower.m, &start)) {
+                return None;
             }
-            left = Some([top_mev, rises_mev.abs()]);
-            if rises_mev.abs() <= SETTLED * top_mev.abs() {
-                break;
-            }
-            between = State::at(h, m);
+            here = lower;
         }
-        left.map(|[top_mev, _]| top_mev)
+        Some(here.above_mev(&self.state.point))
     }
 
     /// What a place costs along a move ∂m/∂x (2N), all else following, with its top half-way to the next (meV).

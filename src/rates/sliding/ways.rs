@@ -9,7 +9,7 @@ use crate::geometry::{Direction, Vector, log, vector};
 use crate::lattice::Lattice;
 use crate::linalg::slab;
 use crate::sphere::rotate_sites;
-use crate::stationary::Point;
+use crate::stationary::{Point, State};
 use crate::symmetry::{Group, Operation};
 use std::f64::consts::PI;
 
@@ -43,14 +43,17 @@ pub(super) struct Way {
     pub pinning: Pinning,
 }
 
+/// The cosine of the angle between ways that begin alike falls short of 1 by this.
+const ALIKE: f64 = 1e-3;
+
 /// The ways along these directions of the lattice, and the softest turn that costs less than `most_mev` by its curvature.
 pub(super) fn all(h: Evaluator, held: &Held, group: &Group, directions: &[usize], most_mev: f64) -> Vec<Way> {
-    let mut ways: Vec<Way> = directions.iter().filter_map(|d| shift(h, held, group, *d)).collect();
+    let mut ways: Vec<Way> = directions.iter().filter_map(|d| shift(h, held, group, *d, directions)).collect();
     ways.extend(turn(h, held, group, most_mev));
     ways
 }
 
-fn shift(h: Evaluator, held: &Held, group: &Group, direction: usize) -> Option<Way> {
+fn shift(h: Evaluator, held: &Held, group: &Group, direction: usize, all: &[usize]) -> Option<Way> {
     let (number, shift) = shift_along(group, direction)?;
     let m = &held.state.m;
     let mut derivative = held.tangent(&derivative(h.lattice(), m, direction))?;
@@ -59,12 +62,26 @@ fn shift(h: Evaluator, held: &Held, group: &Group, direction: usize) -> Option<W
         return None;
     }
     let half: Vec<f64> = hop.iter().map(|x| 0.5 * x).collect();
-    let top_mev = held.top_mev(h, held.state.moved(&h, &half), |at| towards(&at.m, m), |field| field)?;
+    // half-way nothing tells how far the others lead, which are as soft
+    let others = |at: &Point| -> Vec<Vec<f64>> {
+        all.iter().filter(|d| **d != direction).map(|d| self::derivative(h.lattice(), &at.m, *d)).collect()
+    };
+    // a direction half-way is the mean of those in the two places
+    let between = |mut field: Vec<f64>| {
+        let next = shift.apply(&field);
+        slab::add_scaled(&mut field, 1.0, &next);
+        field
+    };
+    let along = |at: &Point| [vec![towards(&at.m, m)], others(at)].concat();
+    let top_mev = held.top_mev(h, held.state.moved(&h, &half), along, between)?;
     let cells = shift.motion.shifts_by().map_or(1, |by| by[direction]);
     slab::scale(&mut derivative, cells as f64);
     let pinning = held.pinning(&derivative, top_mev);
     Some(Way { generator: Generator::Shift(number), derivative, hop: held.tangent(&hop)?, pinning })
 }
+
+/// A turn with ∂m/∂x (2N) and what a place costs.
+type Candidate = (Turn, Vec<f64>, Pinning);
 
 /// The softest turn about an axis that a term singles out, where the energy has no axis of its own.
 fn turn(h: Evaluator, held: &Held, group: &Group, most_mev: f64) -> Option<Way> {
@@ -74,7 +91,7 @@ fn turn(h: Evaluator, held: &Held, group: &Group, most_mev: f64) -> Option<Way> 
     }
     let rotation = |axis: Vector| held.tangent(&turned(&h, &held.state.m, axis));
     let softness = held.softness(UNIT.into_iter().filter_map(rotation).collect());
-    let mut found: Vec<(Turn, Vec<f64>, Pinning)> = Vec::new();
+    let mut found: Vec<Candidate> = Vec::new();
     for axis in axes {
         let Some(mut derivative) = rotation(axis) else { continue };
         let turn = Turn { axis, fold: fold(group, axis) };
@@ -84,14 +101,33 @@ fn turn(h: Evaluator, held: &Held, group: &Group, most_mev: f64) -> Option<Way> 
             found.push((turn, derivative, pinning));
         }
     }
+    let is_one = |k: usize| found.iter().all(|other| !goes_straighter(&h, held.state, other, &found[k]));
+    let kept: Vec<bool> = (0..found.len()).map(is_one).collect();
+    let mut kept = kept.into_iter();
+    found.retain(|_| kept.next() == Some(true));
     found.sort_by(|a, b| a.2.curved_mev.total_cmp(&b.2.curved_mev));
     found.into_iter().find_map(|(turn, derivative, pinning)| {
         let half = |v: Vec<f64>| turn.half(&h, v);
-        let along = |at: &Point| turned(&h, &at.m, turn.axis);
+        let along = |at: &Point| vec![turned(&h, &at.m, turn.axis)];
         let top_mev = held.top_mev(h, half(held.state.m.clone()), along, half)?;
         let pinning = Pinning { top_mev: pinning.top_mev.max(top_mev), ..pinning };
         Some(Way { generator: Generator::Turn(turn), hop: derivative.clone(), derivative, pinning })
     })
+}
+
+/// Whether of two turns that begin alike the first goes on as it begins, by its energy (meV), as far as the smaller of their circles
+/// leads in a radian, and the other less so: of collinear spins any axis that is not normal to them makes a circle that leaves the valley,
+/// and the nearer it is to them the smaller.
+fn goes_straighter(h: &Hamiltonian, state: &State, one: &Candidate, other: &Candidate) -> bool {
+    let alike = slab::dot(&unit(&one.1), &unit(&other.1)).abs() > 1.0 - ALIKE;
+    let radius = |(turn, derivative, _): &Candidate| slab::norm(derivative) * turn.fold as f64 / (2.0 * PI);
+    let far = radius(one).min(radius(other));
+    let bends_mev = |candidate: &Candidate| {
+        let turned = |angle: f64| h.difference_mev(&candidate.0.by(h, state.m.clone(), angle), &state.m);
+        let both: f64 = [1.0, -1.0].map(|sense| turned(sense * far / radius(candidate))).iter().sum();
+        (both - far * far * state.curvature_mev(&candidate.1)).abs()
+    };
+    alike && bends_mev(one) < bends_mev(other)
 }
 
 impl Way {
@@ -107,9 +143,19 @@ impl Way {
 
 impl Turn {
     /// Half-way to the next place, spins or a field (3N).
-    pub fn half(&self, h: &Hamiltonian, mut v: Vec<f64>) -> Vec<f64> {
+    pub fn half(&self, h: &Hamiltonian, v: Vec<f64>) -> Vec<f64> {
+        self.by(h, v, PI / self.fold as f64)
+    }
+
+    /// The direction of the turn at these spins, a field (3N).
+    pub fn along(&self, h: &Hamiltonian, m: &[f64]) -> Vec<f64> {
+        turned(h, m, self.axis)
+    }
+
+    /// After a turn by an angle (rad), spins or a field (3N).
+    pub fn by(&self, h: &Hamiltonian, mut v: Vec<f64>, angle: f64) -> Vec<f64> {
         if let Ok(axis) = Direction::new(self.axis) {
-            rotate_sites(&mut v, moving(h), axis, PI / self.fold as f64);
+            rotate_sites(&mut v, moving(h), axis, angle);
         }
         v
     }
