@@ -1030,6 +1030,10 @@ fn the_time_to_the_other_end_goes_with_the_highest_climb_and_not_with_the_barrie
     assert!((climb.forward_mev - closed[0]).abs() < 1e-12, "{climb:?} {closed:?}");
     assert!((climb.backward_mev - closed[1].max(barrier.backward_mev)).abs() < 1e-12, "{climb:?} {closed:?}");
     assert!(climb.forward_mev > 1.5 * barrier.forward_mev, "{climb:?} {barrier:?}");
+    let ways = [(barrier.forward_mev, climb.forward_mev), (barrier.backward_mev, climb.backward_mev)];
+    let deeper = ways.iter().filter(|(barrier, climb)| *climb > barrier + K_B * cold).count();
+    let said = outcome.warnings.iter().filter(|w| w.contains("leads through a minimum")).count();
+    assert!(deeper > 0 && said == deeper, "{:?}", outcome.warnings);
     for (t, climb) in outcome.rates.expect("rates").transitions.iter().zip([climb.forward_mev, climb.backward_mev]) {
         let [near, far] = [0, 1].map(|k| t.rows[k].passage.ln_lifetime_s().expect("a time"));
         let slope = (far - near) / (1.0 / (K_B * colder) - 1.0 / (K_B * cold));

@@ -104,7 +104,7 @@ impl Outcome {
         let own = |w: &&String| is_said_of_rates(w) || last.contains(w);
         let others = self.warnings.iter().filter(|w| !own(w)).cloned();
         let warnings = others
-            .chain(rates_warnings(&rates, &self.search, self.barrier))
+            .chain(rates_warnings(&rates, &self.search, self.barrier, self.highest_climb))
             .chain(colder)
             .chain(last.iter().cloned())
             .collect();

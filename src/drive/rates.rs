@@ -228,9 +228,15 @@ pub fn exits_not_told(from_k: f64, coldest_k: f64) -> Option<String> {
     })
 }
 
-/// What the whole run should say of its rates: each reason for a refusal once, that some numbers are rough, and which of its ends are
-/// left beside the path, over saddles that are no higher than its own or by k_BT alone.
-pub fn warnings(rates: &Rates, search: &SearchReport, barrier: Option<Barrier>) -> Vec<String> {
+/// What the whole run should say of its rates: each reason for a refusal once, that some numbers are rough, which of its ends are left
+/// beside the path, over saddles that are no higher than its own or by k_BT alone, and that a minimum on the way holds what comes to it
+/// longer than the first one, by more than k_BT.
+pub fn warnings(
+    rates: &Rates,
+    search: &SearchReport,
+    barrier: Option<Barrier>,
+    highest_climb: Option<Barrier>,
+) -> Vec<String> {
     let mut said = refusals(rates);
     if rates.saddles.iter().any(|r| !r.warnings.is_empty()) {
         said.push(ROUGH.into());
@@ -242,6 +248,18 @@ pub fn warnings(rates: &Rates, search: &SearchReport, barrier: Option<Barrier>) 
             "the {which} state is left over other saddles too, the lowest known {exit:.6} meV above it ({climb:.6} meV along the path), \
              of which \"spinneb landscape\" tells the times: {ALONE}"
         ));
+    }
+    let both = barrier.zip(highest_climb);
+    let climbs =
+        both.map(|(b, c)| [("forward", b.forward_mev, c.forward_mev), ("backward", b.backward_mev, c.backward_mev)]);
+    for (way, barrier, climb) in climbs.into_iter().flatten() {
+        if climb > barrier + K_B * rates.settings.hottest_k() {
+            said.push(format!(
+                "{way}, the path leads through a minimum from which it climbs {climb:.6} meV, more than its barrier of {barrier:.6} meV: \
+                 that is what the time to the other end hangs on, and other ways may lead around it, of which \"spinneb landscape\" \
+                 tells the times: {ALONE}"
+            ));
+        }
     }
     said
 }

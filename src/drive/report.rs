@@ -94,7 +94,7 @@ pub fn outcome(
         highest_climb(b, tops, minima, above_final)
     });
     let flat = flat_warnings(&proof.ends, &proof.links);
-    let of_rates = rates.iter().flat_map(|rates| rates::warnings(rates, &search, barrier));
+    let of_rates = rates.iter().flat_map(|rates| rates::warnings(rates, &search, barrier, highest_climb));
     let images: Vec<usize> = saddles.iter().map(|saddle| saddle.image).collect();
     let lower = lower_maxima(band.energies_mev(), LOWER * height(band), &images);
     let warnings = run.told(doubts.iter().map(Doubt::warning).chain(flat).chain(lower).chain(of_rates));
