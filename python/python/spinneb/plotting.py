@@ -140,11 +140,12 @@ def _film(ax: Axes, m: Array, places: Array, vacant: NDArray[np.bool_]) -> None:
     corner = 0.58 * distance * np.stack([np.cos(turn), np.sin(turn)], axis=-1)
     rectangle = 0.5 * _cell(r, distance) * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
     cell = rectangle if _is_square(r, distance) else corner
-    ax.add_collection(PolyCollection(r[there][:, None, :] + cell[None], facecolors=colors(m[there]), edgecolors="none"))
-    ax.set_facecolor("0.93")
-    pad = 0.7 * distance
-    ax.set_xlim(r[:, 0].min() - pad, r[:, 0].max() + pad)
-    ax.set_ylim(r[:, 1].min() - pad, r[:, 1].max() + pad)
+    ax.add_collection(PolyCollection(r[there][:, None, :] + cell[None], facecolors=colors(m[there]), edgecolors="face", linewidths=0.3))
+    # where no spin is, as in spins.png: no direction is of that colour
+    ax.set_facecolor("0.78")
+    for k, set_limits in enumerate((ax.set_xlim, ax.set_ylim)):
+        pad = float(cell[:, k].max()) + 0.1 * distance
+        set_limits(r[:, k].min() - pad, r[:, k].max() + pad)
     ax.set_xticks([])
     ax.set_yticks([])
 
