@@ -143,9 +143,10 @@ def _film(ax: Axes, m: Array, places: Array, vacant: NDArray[np.bool_]) -> None:
     ax.add_collection(PolyCollection(r[there][:, None, :] + cell[None], facecolors=colors(m[there]), edgecolors="face", linewidths=0.3))
     # where no spin is, as in spins.png: no direction is of that colour
     ax.set_facecolor("0.78")
-    for k, set_limits in enumerate((ax.set_xlim, ax.set_ylim)):
-        pad = float(cell[:, k].max()) + 0.1 * distance
-        set_limits(r[:, k].min() - pad, r[:, k].max() + pad)
+    pad = cell.max(axis=0) + 0.1 * distance
+    (left, bottom), (right, upper) = (r.min(axis=0) - pad).tolist(), (r.max(axis=0) + pad).tolist()
+    ax.set_xlim(left, right)
+    ax.set_ylim(bottom, upper)
     ax.set_xticks([])
     ax.set_yticks([])
 
