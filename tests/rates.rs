@@ -706,6 +706,32 @@ fn the_lifetime_of_a_skyrmion_goes_smoothly_with_the_field() {
     }
 }
 
+/// The stationary point of index two between two places of the saddle is 1.2113024 meV above it (Newton's method in NumPy); a minimum that is
+/// wide against its lattice is held by a cosine, whose top is what its curvature says.
+#[test]
+fn the_top_half_way_is_that_of_the_point_between_two_places() {
+    let film_of = |lattice: &str, dmi: f64, more: &str| {
+        let energy = format!(
+            r#"{{"exchange": {{"J": ["10 meV"]}}}}, {{"dmi": {{"D": "{dmi} meV", "kind": "interfacial"}}}}, {more}"#
+        );
+        let mut problem = film(lattice, &energy, [r#"{"skyrmion": {"radius": 4}}"#, UP], 30.0);
+        problem.search = Effort::None;
+        let outcome = solve(&problem);
+        let regime = made(rate(&outcome, Way::Forward));
+        [&regime.saddle_zeros, &regime.minimum_zeros].map(|zeros| zeros[0].pinning.clone())
+    };
+    let narrow = r#"{"zeeman": {"B": ["0 T", "0 T", "25 T"]}}"#;
+    let [saddle, _] = film_of(r#"{"square": {"cells": [21, 21], "periodic": true}}"#, 6.0, narrow);
+    for Pinning { top_mev, .. } in saddle {
+        assert!((top_mev / 1.2113024 - 1.0).abs() < 0.1, "{top_mev}");
+    }
+    let wide = r#"{"anisotropy": {"K": "1.5 meV", "axis": [0, 0, 1]}}, {"zeeman": {"B": ["0 T", "0 T", "7.2 T"]}}"#;
+    let [_, minimum] = film_of(r#"{"triangular": {"cells": [24, 24], "periodic": true}}"#, 4.0, wide);
+    for Pinning { top_mev, curved_mev } in minimum {
+        assert!((top_mev / curved_mev - 1.0).abs() < 0.05, "{top_mev} {curved_mev}");
+    }
+}
+
 #[test]
 fn two_bonds_round_a_periodic_film_have_the_rates_of_one_that_is_twice_as_strong() {
     let energy = |pairs: &str| {

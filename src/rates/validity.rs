@@ -244,8 +244,7 @@ pub(super) fn kelvin(t: f64) -> String {
 /// K_hard = 2 K the true factor is 0.48 at α Δ = 0.4 and 0.79 at 1: example 04).
 fn weak_damping(settings: &RateSettings, barrier_mev: f64, langer: Option<Prefactor>) -> Option<String> {
     langer?;
-    let coldest = settings.temperatures_k.iter().copied().fold(f64::INFINITY, f64::min);
-    let hottest = settings.hottest_k();
+    let (coldest, hottest) = (settings.coldest_k(), settings.hottest_k());
     let at = |t: f64| settings.damping * barrier_mev / (K_B * t);
     (at(hottest) < WEAK).then(|| {
         let from = (settings.damping * barrier_mev / (WEAK * K_B)).max(coldest);

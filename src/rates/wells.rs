@@ -3,7 +3,7 @@
 
 use super::determinant::PinnedHessian;
 use super::refusal::no_minimum;
-use super::sliding::{Generator, Pinning, Slide, Sliding, Turn};
+use super::sliding::{Generator, LEAST, Pinning, Slide, Sliding, Turn};
 use super::symmetry::{free_shifts, places, states_along_turn, states_on_the_way};
 use super::{
     Crossing, Equivalents, KEPT_OR_EXCHANGED, Refusal, UnknownModes, Unstable, ZeroModes, equivalent_saddles,
@@ -17,8 +17,6 @@ use std::f64::consts::PI;
 
 /// Places at which is looked, all round a turn.
 const AROUND: usize = 8;
-/// What turns the spins by less (rad) moves nothing.
-const LEAST: f64 = 1e-6;
 
 const NAMES: [&str; 3] = ["the saddle", "the minimum before it", "the minimum after it"];
 

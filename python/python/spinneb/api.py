@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from . import _core
 from ._errors import ConfigError
 from ._values import AnyState, Guess, Piece, as_json, as_state
-from .results import Check, Landscape, Rates, Relaxed, Result
+from .results import Check, Landscape, Rates, Relaxed, Result, vacant_sites
 from .system import System, as_guess
 
 __all__ = ["barrier", "check", "landscape", "load", "rates", "relax", "run"]
@@ -177,7 +177,7 @@ def relax(
     with _telling(progress) as tell:
         files, spins = core.relax(wanted, count, tell)
     told = json.loads(files["relax.json"])["states"]
-    places, vacant = np.asarray(core.places), np.array(core.vacant, dtype=bool)
+    places, vacant = np.asarray(core.places), vacant_sites(core)
     found = tuple(Relaxed(one, np.asarray(m), places, vacant) for one, m in zip(told, spins))
     return found[0] if len(states) == 1 else found
 

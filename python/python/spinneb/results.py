@@ -32,6 +32,13 @@ Theory = Literal["htst", "langer"]
 _WHOLE = ["csv", "npz", "ovf"]
 
 
+def vacant_sites(core: _core.Config | _core.Outcome) -> NDArray[np.bool_]:
+    """Which sites have no spin, read-only."""
+    vacant = np.array(core.vacant, dtype=bool)
+    vacant.flags.writeable = False
+    return vacant
+
+
 def _read_only(numbers: Array) -> Array:
     numbers.flags.writeable = False
     return numbers
@@ -223,9 +230,7 @@ class Result:
     @property
     def vacant(self) -> NDArray[np.bool_]:
         """Which sites have no spin, (site,): their vectors are +z, and mean nothing."""
-        vacant = np.array(self._core.vacant, dtype=bool)
-        vacant.flags.writeable = False
-        return vacant
+        return vacant_sites(self._core)
 
     def _column(self, name: str) -> Array:
         return np.asarray(self._core.column(name))
@@ -400,7 +405,7 @@ class Relaxed:
         self.spins = spins
         #: where the sites are, (N, 3), in lattice constants
         self.places = places
-        #: which sites have no spin, (N,)
+        #: which sites have no spin, (N,), read-only
         self.vacant = vacant
 
     @property

@@ -43,6 +43,7 @@ use crate::units::K_B;
 pub use pinning::Pinning;
 use std::collections::BTreeMap;
 use std::rc::Rc;
+pub use valleys::LEAST;
 use valleys::{Held, Valley};
 use ways::Way;
 pub use ways::{Generator, Turn};

@@ -10,7 +10,7 @@ use crate::sphere::write_logs;
 use crate::stationary::{Pin, Point, State, pin};
 
 /// What turns the spins by less (rad) moves nothing.
-const LEAST: f64 = 1e-6;
+pub const LEAST: f64 = 1e-6;
 /// Most steps to where a state rests half-way, and the part of its height that it may fall short of it by.
 const STEPS: usize = 12;
 const SETTLED: f64 = 1e-2;
@@ -80,13 +80,12 @@ impl<'a> Held<'a> {
                 return Some(top_mev);
             }
             let field = here.field(&way);
-            let parts = (0..HALVINGS).map(|k| 0.5f64.powi(k));
-            let lower = parts.map(|part| {
+            let mut parts = (0..HALVINGS).map(|k| {
                 let mut there = Point::default();
-                there.go(h, &here, &field.iter().map(|x| part * x).collect::<Vec<f64>>());
+                there.go(h, &here, &field.iter().map(|x| 0.5f64.powi(k) * x).collect::<Vec<f64>>());
                 there
             });
-            let Some(lower) = lower.into_iter().find(|there| there.above_mev(&here) < 0.0) else { break };
+            let Some(lower) = parts.find(|there| there.above_mev(&here) < 0.0) else { break };
             if slab::norm(&towards(&lower.m, &self.state.m)) < slab::norm(&towards(&lower.m, &start)) {
                 return None;
             }

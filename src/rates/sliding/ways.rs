@@ -101,17 +101,15 @@ fn turn(h: Evaluator, held: &Held, group: &Group, most_mev: f64) -> Option<Way> 
             found.push((turn, derivative, pinning));
         }
     }
-    let is_one = |k: usize| found.iter().all(|other| !goes_straighter(&h, held.state, other, &found[k]));
-    let kept: Vec<bool> = (0..found.len()).map(is_one).collect();
-    let mut kept = kept.into_iter();
-    found.retain(|_| kept.next() == Some(true));
     found.sort_by(|a, b| a.2.curved_mev.total_cmp(&b.2.curved_mev));
-    found.into_iter().find_map(|(turn, derivative, pinning)| {
+    let leaves = |one: &Candidate| found.iter().any(|other| goes_straighter(&h, held.state, other, one));
+    found.iter().filter(|one| !leaves(one)).find_map(|(turn, derivative, pinning)| {
         let half = |v: Vec<f64>| turn.half(&h, v);
         let along = |at: &Point| vec![turned(&h, &at.m, turn.axis)];
         let top_mev = held.top_mev(h, half(held.state.m.clone()), along, half)?;
-        let pinning = Pinning { top_mev: pinning.top_mev.max(top_mev), ..pinning };
-        Some(Way { generator: Generator::Turn(turn), hop: derivative.clone(), derivative, pinning })
+        let pinning = Pinning { top_mev: pinning.top_mev.max(top_mev), ..*pinning };
+        let [hop, derivative] = [(); 2].map(|()| derivative.clone());
+        Some(Way { generator: Generator::Turn(*turn), hop, derivative, pinning })
     })
 }
 
