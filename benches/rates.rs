@@ -7,7 +7,7 @@ use spinneb::energy::{Anisotropy, EnergyTerm, Exchange, Hamiltonian};
 use spinneb::geometry::Direction;
 use spinneb::landscape::Minimum;
 use spinneb::lattice::Chain;
-use spinneb::rates::{Crossing, RateSettings, Theory, saddle_rates};
+use spinneb::rates::{Crossing, RateSettings, Symmetry, Theory, saddle_rates};
 use spinneb::spins::Spins;
 use spinneb::stationary::{Spectrum, refine};
 use spinneb::symmetry::Group;
@@ -58,7 +58,7 @@ fn measure(sites: usize) {
         spectrum: &spectrum,
         minima: [&minima[0], &minima[1]],
         minima_spectra: [&spectra[0], &spectra[1]],
-        group: &Group::of(&h, minima[0].as_slice(), &settings.moments_mub),
+        symmetry: &Symmetry::exactly(&Group::of(&h, minima[0].as_slice(), &settings.moments_mub)),
         doubt: None,
     };
     let [forward, _] = saddle_rates((&h).into(), 0, &crossing, &settings);

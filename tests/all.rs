@@ -29,6 +29,7 @@ mod guesses;
 mod import;
 mod interrupted;
 mod kills;
+mod kin;
 mod landscape_command;
 mod landscape_shares;
 mod lattices;

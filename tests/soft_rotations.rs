@@ -2,6 +2,7 @@
 
 use crate::common::{Build, solve};
 use crate::rates::{Dense, cold, dot, made, mean, rate, settings, unit, unit_hz, with};
+use spinneb::config::load_text;
 use spinneb::drive::{Outcome, Problem};
 use spinneb::geometry::{Direction, vector};
 use spinneb::rates::{SaddleRate, Theory, Way, ZeroKind};
@@ -49,7 +50,8 @@ fn one_or_two_spins_have_the_partition_function_of_their_ring() {
         assert_eq!(cold(found).equivalents.count, 2);
         let well = |theory| cold(found).prefactor(theory).expect("a prefactor").ln_hz_at(kelvin) + 2f64.ln();
         let ring = |theory| found.ln_rate_per_s(theory, kelvin).expect("a rate") + found.barrier_mev.unwrap() / thermal;
-        let ratio = ring(Theory::Langer) - well(Theory::Langer);
+        // Langer's frequency is another one between places
+        let ratio = ring(Theory::Htst) - well(Theory::Htst);
         assert!((ratio.exp() / expected - 1.0).abs() < 1e-9, "{sites} {hard}: {} {expected}", ratio.exp());
     }
 }
@@ -153,5 +155,54 @@ fn a_rate_depends_on_its_own_temperature_alone() {
     for (k, kelvin) in [0.1, 0.5, 1.0, 2.0, 300.0].into_iter().enumerate() {
         let (alone, passage) = rows(&[kelvin]);
         assert_eq!((&alone[0], &passage[0]), (&all[k], &whole[k]), "{kelvin} K");
+    }
+}
+
+#[test]
+fn a_saddle_that_turns_freely_is_crossed_as_the_fokker_planck_equation_says() {
+    // K = 40 meV = 15 k_BT, 1000 μ_B: damping, K_hard/k_BT, the rate (1/s) out of one well from the first eigenvalue of the Fokker–Planck
+    // operator in spherical harmonics up to l = 58, equal to that of l = 50 in four digits
+    let exact = [
+        (1.0, 0.2, 6.922_6e4),
+        (1.0, 0.75, 5.617_2e4),
+        (1.0, 3.75, 3.142_6e4),
+        (0.1, 0.2, 1.395_4e4),
+        (0.1, 0.75, 1.356_7e4),
+        (0.1, 3.75, 1.781_0e4),
+        (0.02, 0.2, 3.026e3),
+        (0.02, 0.75, 3.685e3),
+        (0.02, 3.75, 5.878e3),
+    ];
+    let thermal = 40.0 / 15.0;
+    for (damping, hard, expected) in exact {
+        let kelvin = thermal / K_B;
+        let problem = Build::open(1).easy(40.0).hard(hard * thermal).reversal();
+        let outcome = solve(&with(problem, settings(1, 1000.0, damping, kelvin)));
+        let row = &rate(&outcome, Way::Forward).rows[0];
+        let over = row.ln_langer_per_s.expect("a rate").exp() / expected;
+        let known = row.known_within.expect("an error");
+        assert!(over < known && over > 1.0 / known, "{damping} {hard}: {over} {known}");
+        // where it turns freely no damping makes the rate wrong by more
+        assert!(hard > 1.0 || (0.6..1.1).contains(&over), "{damping} {hard}: {over}");
+    }
+}
+
+#[test]
+fn a_flat_top_is_crossed_no_faster_than_it_is_said_to_be() {
+    // K = 1 meV = 20 k_BT along z, −2 along y and a cubic term K_c (meV): how many times Langer's rate the first eigenvalue of the
+    // Fokker–Planck operator is, at damping 1
+    for (cubic, faster) in
+        [(0.5, 1.01), (0.8, 1.19), (0.9, 1.48), (0.95, 1.95), (0.98, 2.95), (0.99, 4.11), (0.999, 12.8)]
+    {
+        let text = format!(
+            r#"{{"material": {{"name": "m", "moment": "2 mu_B", "energy": [{{"anisotropy": {{"K": "1 meV", "axis": [0, 0, 1]}}}},
+            {{"anisotropy": {{"K": "-2 meV", "axis": [0, 1, 0]}}}}, {{"cubic_anisotropy": {{"K": "{cubic} meV"}}}}]}},
+            "lattice": {{"chain": {{"sites": 1}}}}, "initial": {{"uniform": {{"direction": [0, 0, 1]}}}},
+            "final": {{"uniform": {{"direction": [0, 0, -1]}}}}}}"#
+        );
+        let problem = load_text("flat.json".as_ref(), text).unwrap().problem().unwrap();
+        let outcome = solve(&with(problem, settings(1, 2.0, 1.0, 0.05 / K_B)));
+        let known = rate(&outcome, Way::Forward).rows[0].known_within.expect("an error");
+        assert!(known > faster && known < 1.4 * faster, "{cubic}: {known} {faster}");
     }
 }

@@ -374,7 +374,12 @@ fn rates(stored: &Stored, faults: &mut Faults) {
             let negative = saddle.and_then(|s| s["negative_modes"].as_u64());
             faults.unless(negative == Some(1), || format!("{what} over a saddle with {negative:?} negative modes"));
         }
-        let many = number(&entry["equivalent_saddles"]);
+        let siblings: Vec<f64> =
+            entry["nearly_equivalent_saddles_above_meV"].as_array().into_iter().flatten().map(number).collect();
+        let many = |t: f64| {
+            let weights = siblings.iter().map(|above| (-above / (K_B_MEV * t)).exp());
+            number(&entry["equivalent_saddles"]) + weights.sum::<f64>()
+        };
         let first = number(&entry["prefactor_temperature_K"]);
         let exponent = number(&entry["prefactor_temperature_exponent"]);
         let changes: Vec<f64> = entry["soft_modes_change_at_K"].as_array().into_iter().flatten().map(number).collect();
@@ -395,7 +400,8 @@ fn rates(stored: &Stored, faults: &mut Faults) {
                 });
                 faults.unless(rate.is_none() || delta >= 1.0, || format!("{what}: a rate at ΔE = {delta} k_BT"));
                 if let (Some(rate), Some(prefactor), true) = (rate, prefactor, told(t)) {
-                    let wanted = many * prefactor * (t / first).powf(exponent) * held(t) / held(first) * (-delta).exp();
+                    let wanted =
+                        many(t) * prefactor * (t / first).powf(exponent) * held(t) / held(first) * (-delta).exp();
                     faults.near(&format!("{what}: rate by {theory}"), rate, wanted, 1e-9 * wanted + 1e-300);
                 }
             }

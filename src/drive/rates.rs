@@ -6,12 +6,11 @@ use crate::energy::Evaluator;
 use crate::landscape::{Doubt, Minimum, Pass, Peak, Saddle};
 use crate::linalg::slab;
 use crate::rates::{
-    Equivalents, KEPT, Orbits, RateSettings, Rates, Refusal, SaddleRate, Theory, Turn, ZeroKind, ZeroModes,
-    equivalent_saddles, leads_back, refused, transitions,
+    Equivalents, KEPT, Kindred, Orbits, RateSettings, Rates, Refusal, SaddleRate, Symmetry, Theory, Turn, Unstable,
+    ZeroKind, ZeroModes, equivalent_saddles, leads_back, refused, siblings, transitions, unstable_mode,
 };
 use crate::spins::Spins;
 use crate::stationary::{ALIKE, Refined, Spectrum, State};
-use crate::symmetry::Group;
 use crate::units::K_B;
 
 /// What is known of a path.
@@ -39,24 +38,25 @@ impl Known<'_> {
 /// The rates over every saddle and over the whole path.
 pub fn of_path(known: &Known, settings: &RateSettings) -> Rates {
     let doubt = known.doubt();
-    let group = known.links.first().map(|l| Group::of(&known.h, l.before.spins.as_slice(), &settings.moments_mub));
-    let saddles: Vec<_> = match group.as_ref().filter(|_| known.no_barrier.is_none()) {
+    let symmetry =
+        known.links.first().map(|l| Symmetry::of(&known.h, l.before.spins.as_slice(), &settings.moments_mub));
+    let saddles: Vec<_> = match symmetry.as_ref().filter(|_| known.no_barrier.is_none()) {
         None => known.saddles.iter().enumerate().flat_map(|(k, s)| unproven(known, k, s, settings)).collect(),
-        Some(group) => known.links.iter().flat_map(|l| proven(known, group, l, settings)).collect(),
+        Some(symmetry) => known.links.iter().flat_map(|l| proven(known, symmetry, l, settings)).collect(),
     };
-    let orbits = orbits(known, group.as_ref(), &saddles);
+    let orbits = orbits(known, symmetry.as_ref(), &saddles);
     let transitions = transitions(&saddles, &orbits, settings, doubt.as_deref());
     Rates { settings: settings.clone(), saddles, transitions }
 }
 
 /// How many of its saddles and minima symmetry makes, both ends kept, at all temperatures. A path over one saddle needs no count: the
 /// saddles between the same two minima are counted with it.
-fn orbits(known: &Known, group: Option<&Group>, rates: &[SaddleRate]) -> Vec<Orbits> {
+fn orbits(known: &Known, symmetry: Option<&Symmetry>, rates: &[SaddleRate]) -> Vec<Orbits> {
     let alone = |by: &str| {
         let paths = Equivalents { count: 1, by: by.into() };
         vec![Orbits { above_k: 0.0, saddles: Vec::new(), minima: Vec::new(), paths, leads_back: false }]
     };
-    let Some(group) = group.filter(|_| !known.links.is_empty()) else { return alone("not sought") };
+    let Some(symmetry) = symmetry.filter(|_| !known.links.is_empty()) else { return alone("not sought") };
     if known.links.len() == 1 || known.doubt().is_some() {
         return alone("counted with the saddle");
     }
@@ -68,7 +68,7 @@ fn orbits(known: &Known, group: Option<&Group>, rates: &[SaddleRate]) -> Vec<Orb
         // the end of a range is still in it
         let slides = Slides::at(rates, above.get(k + 1).copied().unwrap_or(f64::INFINITY));
         if counted.last().is_none_or(|(last, _)| *last != slides) {
-            let orbits = slides.orbits(known, group, *above_k);
+            let orbits = slides.orbits(known, symmetry, *above_k);
             counted.push((slides, orbits));
         }
     }
@@ -97,7 +97,8 @@ impl Slides {
         }
     }
 
-    fn orbits(&self, known: &Known, group: &Group, above_k: f64) -> Orbits {
+    fn orbits(&self, known: &Known, symmetry: &Symmetry, above_k: f64) -> Orbits {
+        let group = &symmetry.exact;
         let (links, h, last) = (known.links, known.h, known.links.len());
         let along = self.turn.map(|turn| group.with_axis(turn.axis));
         let along = along.as_ref().unwrap_or(group);
@@ -106,11 +107,27 @@ impl Slides {
             let sliding = [own, self.minima[0], self.minima[last]];
             equivalent_saddles(h.lattice(), along, m, ends, sliding, KEPT)
         };
+        let near = symmetry.near.as_ref().map(|near| self.turn.map_or(near.clone(), |turn| near.with_axis(turn.axis)));
+        let tops: Vec<&[f64]> = links.iter().map(|l| l.saddle.spins()).collect();
+        let inside: Vec<&[f64]> = links[..last - 1].iter().map(|l| l.after.spins.as_slice()).collect();
+        let kindred = |state: &State, unstable: Option<&Unstable>, own: bool| {
+            let counted = if unstable.is_some() { &tops } else { &inside };
+            let like = like(&state.m, own);
+            let sliding = [own, self.minima[0], self.minima[last]];
+            let near = near.as_ref();
+            let siblings =
+                near.map(|near| siblings(h, [along, near], (state, unstable, 0), ends, sliding, KEPT, counted));
+            (like.clone(), Kindred { alike: like.count, siblings: siblings.unwrap_or_default() })
+        };
         let inner = links[..last - 1].iter().zip(&self.minima[1..]);
-        let between: Vec<Equivalents> = inner.map(|(l, own)| like(l.after.spins.as_slice(), *own)).collect();
-        let tops = links.iter().zip(&self.saddles);
-        let saddles = tops.map(|(l, own)| like(&l.saddle.refined.state.m, *own).count).collect();
-        let minima = std::iter::once(1).chain(between.iter().map(|e| e.count)).chain([1]).collect();
+        let inner = inner.map(|(l, own)| kindred(&State::at(h, l.after.spins.as_slice().to_vec()), None, *own));
+        let (between, inside): (Vec<Equivalents>, Vec<Kindred>) = inner.unzip();
+        let tops = links.iter().zip(&self.saddles).map(|(l, own)| {
+            let Refined { state, valley, .. } = &*l.saddle.refined;
+            kindred(state, unstable_mode(state, valley, &state.zeros).as_ref(), *own).1
+        });
+        let saddles = tops.collect();
+        let minima = std::iter::once(Kindred::alone()).chain(inside).chain([Kindred::alone()]).collect();
         let inner = [&links[0], &links[last - 2]].map(|l| l.after.spins.as_slice());
         // of what slides the ends' own volumes hold all places
         let slides = self.minima.iter().chain(&self.saddles).any(|slides| *slides);
@@ -119,9 +136,9 @@ impl Slides {
     }
 }
 
-fn proven(known: &Known, group: &Group, link: &Pass, settings: &RateSettings) -> [SaddleRate; 2] {
+fn proven(known: &Known, symmetry: &Symmetry, link: &Pass, settings: &RateSettings) -> [SaddleRate; 2] {
     let number = known.saddles.iter().position(|s| s.spins.as_slice() == link.saddle.spins()).unwrap_or(0);
-    link.rates(known.h, number, group, settings)
+    link.rates(known.h, number, symmetry, settings)
 }
 
 /// Without a proof there is no minimum to leave: the barriers are those above the ends.

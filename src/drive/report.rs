@@ -97,7 +97,9 @@ pub fn outcome(
     let of_rates = rates.iter().flat_map(|rates| rates::warnings(rates, &search, barrier, highest_climb));
     let images: Vec<usize> = saddles.iter().map(|saddle| saddle.image).collect();
     let lower = lower_maxima(band.energies_mev(), LOWER * height(band), &images);
-    let warnings = run.told(doubts.iter().map(Doubt::warning).chain(flat).chain(lower).chain(of_rates));
+    let more = run.problem.images.asked_for().and_then(|asked| more_images(asked, band.images(), saddles.len()));
+    let warnings =
+        run.told(more.into_iter().chain(doubts.iter().map(Doubt::warning).chain(flat).chain(lower).chain(of_rates)));
     let (certified, iterations) = (doubts.is_empty() && barrier.is_some(), band.evaluations());
     let beside = links.iter().flat_map(|link| [&link.before, &link.after]).chain(&proof.ends);
     let spectra = links.iter().map(|link| &link.spectrum).chain(beside.map(|minimum| &minimum.spectrum));
@@ -364,6 +366,15 @@ fn lower_maxima(e: &[f64], prominence: f64, saddles: &[usize]) -> Option<String>
         format!(
             "the path has {count} more maxima than the saddles that are told, the highest {highest:.6} meV above the initial \
              state: below the barrier, and not refined"
+        )
+    })
+}
+
+/// That a path has more images than were asked for.
+fn more_images(asked: usize, has: usize, saddles: usize) -> Option<String> {
+    (has > asked).then(|| {
+        format!(
+            "path.images is {asked}: the lowest route that is known, over {saddles} saddles, needs more, and its path has {has}"
         )
     })
 }

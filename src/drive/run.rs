@@ -12,10 +12,10 @@ use crate::band::{Band, Laplacian, Sweep};
 use crate::energy::{Evaluator, recorded};
 use crate::error::{Error, Result};
 use crate::geometry::Direction;
-use crate::landscape::{Doubt, Landscape, Minimum, Pass};
+use crate::landscape::{Doubt, Edge, Landscape, Minimum, Pass};
 use crate::path::guess::{FirstGuess, GuessContext, Rotation};
 use crate::path::is_within;
-use crate::rates::{LEAST_BARRIER, RateSettings};
+use crate::rates::{Kin, LEAST_BARRIER, RateSettings};
 use crate::record::Count;
 use crate::sphere::SAME;
 use crate::spins::Spins;
@@ -161,10 +161,19 @@ impl<'a, 'o> Run<'a, 'o> {
         let mut saddles: Vec<f64> = links.iter().map(|link| self.land.height_mev(link.saddle.spins())).collect();
         // what the coldest temperature does not hold apart is one state of all rates; what a hotter one does not has more ways out
         let within_mev = self.coldest_k().map_or(0.0, |coldest_k| LEAST_BARRIER * K_B * coldest_k);
-        let forward = self.land.lowest_exit_mev(&minima, &saddles, within_mev);
+        // rates are over the kin of the path's saddles too
+        let ends = [&first.before, &links[links.len() - 1].after].map(|minimum| minimum.spins.as_slice());
+        let tops: Vec<&[f64]> = links.iter().map(|link| link.saddle.spins()).collect();
+        let rates = self.problem.rates.as_ref();
+        let kin = rates.map(|rates| Kin::of(&self.problem.hamiltonian, ends, &rates.moments_mub));
+        let exit = |minima: &[usize], saddles: &[f64], last: usize| {
+            let is_told = |edge: &Edge| kin.as_ref().is_some_and(|kin| kin.holds(last, &tops, &edge.saddle));
+            self.land.lowest_exit_mev(minima, saddles, within_mev, &is_told)
+        };
+        let forward = exit(&minima, &saddles, 1);
         minima.reverse();
         saddles.reverse();
-        [forward, self.land.lowest_exit_mev(&minima, &saddles, within_mev)]
+        [forward, exit(&minima, &saddles, 0)]
     }
 
     /// The first of the paths in full, or another one that could be proven where it could not or that is lower; and all others.

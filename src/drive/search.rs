@@ -14,7 +14,7 @@ use crate::energy::Hamiltonian;
 use crate::error::Result;
 use crate::geometry::Vector;
 use crate::hessian::factorisation_flops;
-use crate::landscape::{Aim, Effort, KINDS, Landscape, Minimum, Searched, Settings, search};
+use crate::landscape::{Aim, Doubt, Effort, KINDS, Landscape, Minimum, Searched, Settings, search};
 use crate::record::Count;
 use crate::spins::Spins;
 use crate::stationary::{RELAXED, STRIDE, relax_to_minimum};
@@ -82,10 +82,7 @@ impl<'a> Run<'a, '_> {
                 .insert(0, RejectedPath { guess: name, barrier_mev: Some(first_mev), negative_modes: None, reason });
             best.proof = proof;
         } else {
-            let top = route.top_mev;
-            self.warnings.push(format!(
-                "passes are known that rise to {top:.6} meV alone, but a path over them could not be put together"
-            ));
+            best.proof.doubts.push(Doubt::Unassembled { top_mev: route.top_mev, path_mev: first_mev });
         }
         Ok(report)
     }

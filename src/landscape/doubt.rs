@@ -49,6 +49,17 @@ pub enum Doubt {
         /// What the path stays below.
         path_mev: f64,
     },
+    /// A lower route over proven saddles is known, which no path was made of.
+    #[error(
+        "proven passes are known that rise to {top_mev:.6} meV alone, but a path over them could not be put together; this one rises to \
+         {path_mev:.6} meV"
+    )]
+    Unassembled {
+        /// The highest of the passes above the initial state.
+        top_mev: f64,
+        /// The top of the path.
+        path_mev: f64,
+    },
     /// A saddle is not stationary.
     #[error("a torque of {0:.1e} meV remains on the saddle")]
     Torque(f64),

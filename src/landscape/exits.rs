@@ -1,6 +1,6 @@
 //! Saddles beside a path, by which the state that it begins in is left for states that are not on it.
 
-use super::{Landscape, Seen};
+use super::{Edge, Landscape, Seen};
 use crate::network::Parts;
 use crate::symmetry::Operation;
 
@@ -17,8 +17,14 @@ impl Landscape<'_> {
     /// How high one has to go at least by those that are known (meV above the state), from the first of a path's minima or along the path
     /// from one that comes before its highest saddle; its saddles' heights above the reference (meV). Minima between which no saddle is as
     /// high as `within_mev` above both are one state. What a symmetry that keeps the last one makes of the path leads there just as the path
-    /// does: it is none where it begins in the same state, and the first state's images are none.
-    pub fn lowest_exit_mev(&self, minima: &[usize], saddles_mev: &[f64], within_mev: f64) -> Option<f64> {
+    /// does: it is none where it begins in the same state, and the first state's images are none, nor is what is told of already.
+    pub fn lowest_exit_mev(
+        &self,
+        minima: &[usize],
+        saddles_mev: &[f64],
+        within_mev: f64,
+        is_told: &dyn Fn(&Edge) -> bool,
+    ) -> Option<f64> {
         let nodes: Vec<usize> = minima.iter().map(|k| self.standing_for(*k)).collect();
         let (last, earlier) = nodes.split_last()?;
         let highest = (0..saddles_mev.len()).max_by(|i, j| saddles_mev[*i].total_cmp(&saddles_mev[*j]))?;
@@ -33,7 +39,7 @@ impl Landscape<'_> {
             let leads_off = !on_path || !before.contains(&state(to)) && !is_own(height);
             leads_off.then(|| (saddles_mev[..place].iter().copied().fold(height, f64::max), (!on_path).then_some(to)))
         };
-        let ways = self.edges().iter().flat_map(|edge| {
+        let ways = self.edges().iter().filter(|edge| !is_told(edge)).flat_map(|edge| {
             let [a, b] = edge.ends;
             [way(a, b, edge.height_mev), way(b, a, edge.height_mev)]
         });

@@ -199,6 +199,16 @@ impl<'a> Landscape<'a> {
         self.edges.iter().any(beside)
     }
 
+    /// Whether this state of rest of this height is a known saddle.
+    pub fn has_saddle(&self, m: &[f64], height_mev: f64) -> bool {
+        self.edges_over(m, height_mev).next().is_some()
+    }
+
+    /// The state from which energies are counted (3N).
+    pub fn reference(&self) -> &[f64] {
+        &self.reference
+    }
+
     /// By how much a pass must be lower than one of this height to count as lower (meV).
     pub fn tolerance_mev(&self, height_mev: f64) -> f64 {
         (ALIKE * self.h.stiffness_mev()).max(LOWER * height_mev.abs())

@@ -4,12 +4,12 @@ use super::{Doubt, Minimum, Saddle};
 use crate::energy::{Evaluator, recorded};
 use crate::error::Result;
 use crate::linalg::slab;
-use crate::rates::{Crossing, RateSettings, SaddleRate, saddle_rates};
+use crate::rates::{Crossing, RateSettings, SaddleRate, Symmetry, saddle_rates};
 use crate::spins::Spins;
 use crate::stationary::{
     Downhill, RELAXED, ROUGHLY, Refined, Spectrum, descend, lowest_eigenvalues_mev, relax_to_minimum,
 };
-use crate::symmetry::{Group, Operation};
+use crate::symmetry::Operation;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -129,7 +129,7 @@ impl Pass {
     }
 
     /// The rates over it, from the minimum before it and back; as a saddle of this number.
-    pub fn rates(&self, h: Evaluator, number: usize, group: &Group, settings: &RateSettings) -> [SaddleRate; 2] {
+    pub fn rates(&self, h: Evaluator, number: usize, symmetry: &Symmetry, settings: &RateSettings) -> [SaddleRate; 2] {
         let doubt = self.doubt(h).map(|doubt| doubt.to_string());
         let crossing = Crossing {
             saddle: &self.saddle.refined.state,
@@ -137,7 +137,7 @@ impl Pass {
             spectrum: &self.spectrum,
             minima: [&self.before.spins, &self.after.spins],
             minima_spectra: [&self.before.spectrum, &self.after.spectrum],
-            group,
+            symmetry,
             doubt: doubt.as_deref(),
         };
         saddle_rates(h, number, &crossing, settings)

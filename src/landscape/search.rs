@@ -170,8 +170,8 @@ pub fn search(
     land.unfold();
     let mut done = Searched::default();
     let mut turns = match aim {
-        Aim::Route(..) => Turns::of(None, rivals(h.lattice())),
-        Aim::All(_) => Turns::of(Some(vanguard()), scouts()),
+        Aim::Route(..) => Turns::of(vanguard(false), rivals(h.lattice())),
+        Aim::All(_) => Turns::of(vanguard(true), scouts()),
     };
     let (mut lowest, mut found) = (f64::INFINITY, 0);
     let before = h.evaluated();
@@ -219,20 +219,20 @@ pub fn search(
 
 /// Whose turn it is to name a start.
 struct Turns {
-    first: Option<Box<dyn Rival>>,
+    first: Vec<Box<dyn Rival>>,
     rivals: Vec<Box<dyn Rival>>,
     turn: usize,
     random: ChaCha8Rng,
 }
 
 impl Turns {
-    fn of(first: Option<Box<dyn Rival>>, rivals: Vec<Box<dyn Rival>>) -> Turns {
+    fn of(first: Vec<Box<dyn Rival>>, rivals: Vec<Box<dyn Rival>>) -> Turns {
         Turns { first, rivals, turn: 0, random: ChaCha8Rng::seed_from_u64(SEED) }
     }
 
     /// The next start, and whether a search from there that brings no news counts as quiet.
     fn next(&mut self, cut: &Cut) -> Option<(Vec<f64>, bool)> {
-        if let Some(start) = self.first.as_mut().and_then(|first| first.start(cut, &mut self.random)) {
+        if let Some(start) = self.first.iter_mut().find_map(|first| first.start(cut, &mut self.random)) {
             return Some((start, false));
         }
         let count = self.rivals.len();

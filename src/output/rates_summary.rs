@@ -33,6 +33,8 @@ pub(super) struct RateEntry {
     soft_modes_change_at_K: Vec<Number>,
     equivalent_saddles: usize,
     equivalent_by: String,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    nearly_equivalent_saddles_above_meV: Vec<Number>,
     damping: Number,
     g_factor: Number,
     blocking_temperature_1_s_K: Option<Number>,
@@ -132,6 +134,7 @@ fn saddle(rates: &Rates, r: &SaddleRate) -> RateEntry {
         soft_modes_change_at_K: r.regimes.iter().skip(1).map(|regime| Number(regime.above_k)).collect(),
         equivalent_saddles: told.equivalents.count,
         equivalent_by: told.equivalents.by.clone(),
+        nearly_equivalent_saddles_above_meV: told.siblings.0.iter().map(|s| Number(s.above_mev)).collect(),
         damping: Number(settings.damping),
         g_factor: Number(settings.g_factor),
         blocking_temperature_1_s_K: r.blocking_k[0].map(Number),

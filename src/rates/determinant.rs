@@ -76,6 +76,11 @@ impl PinnedHessian {
         self.log_determinant
     }
 
+    /// How many directions fall, what was left out apart.
+    pub fn negatives(&self) -> usize {
+        self.factors.negatives()
+    }
+
     /// The solution of Hx = b in the space orthogonal to the zero modes and the descending one, for the part of b in that space.
     pub fn solve(&self, b: &mut [f64]) {
         remove(b, &self.zeros);

@@ -3,15 +3,15 @@
 use super::passage::{TEN_YEARS_S, blocking_temperature};
 use super::refusal::{conserved_moment, unfit};
 use super::sliding::{Pinning, Turn};
-use super::validity::{Fluctuations, Validity, of_cells, warnings};
+use super::validity::{Bath, Fluctuations, Validity, of_cells, warnings};
 use super::wells::{Beside, Found};
 use super::{
-    Equivalents, RateSettings, Refusal, Theory, Unstable, ZeroModes, crossover_temperature, growth_rate, unstable_mode,
+    Equivalents, RateSettings, Refusal, Siblings, Symmetry, Theory, Unstable, ZeroModes, crossover_temperature,
+    growth_rate, unstable_mode,
 };
 use crate::energy::Evaluator;
 use crate::spins::Spins;
 use crate::stationary::{Spectrum, State};
-use crate::symmetry::Group;
 use crate::units::K_B;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -35,8 +35,8 @@ pub struct Crossing<'a> {
     pub minima: [&'a Spins; 2],
     /// Their modes.
     pub minima_spectra: [&'a Spectrum; 2],
-    /// The symmetry of the energy and the moments.
-    pub group: &'a Group,
+    /// The symmetry of the energy and the moments, and what it nearly is.
+    pub symmetry: &'a Symmetry,
     /// What stands against its certificate; nothing if it has one.
     pub doubt: Option<&'a str>,
 }
@@ -147,6 +147,8 @@ pub struct Regime {
     /// Saddles of the same kind out of the same minimum; the rates are over all of them. Where something slides, the places of
     /// a minimum are one state, which is left over the saddles at all places.
     pub equivalents: Equivalents,
+    /// Saddles of all but the same kind, as many as their heights let through; the rates are over them too.
+    pub siblings: Siblings,
     /// Where something slides: ln of the states of the minimum that are places of one over those of the saddle.
     pub ln_places: f64,
     /// The turn along which the saddle or a minimum slides.
@@ -167,11 +169,17 @@ impl Regime {
             minimum_zeros: Vec::new(),
             saddle_zeros: Vec::new(),
             equivalents: Equivalents { count: 1, by: "not sought".into() },
+            siblings: Siblings::default(),
             ln_places: 0.0,
             turn: None,
             validity: None,
             refused: settings.theories.iter().map(|t| (*t, reason.clone())).collect(),
         }
+    }
+
+    /// ln of the number of saddles that the rates at a temperature (K) are over, and by how much that may be off.
+    pub fn ln_saddles(&self, temperature_k: f64) -> [f64; 2] {
+        self.siblings.ln_number(self.equivalents.count, K_B * temperature_k)
     }
 
     /// The prefactor by a theory.
@@ -211,11 +219,11 @@ impl SaddleRate {
         ruling(&self.regimes, |regime| regime.above_k, temperature_k)
     }
 
-    /// ln of the rate in 1/s by a theory at a temperature (K), over all equivalent saddles; what the formula gives, however low the
+    /// ln of the rate in 1/s by a theory at a temperature (K), over all saddles that are, or are nearly, equivalent; what the formula gives, however low the
     /// barrier.
     pub fn ln_rate_per_s(&self, theory: Theory, temperature_k: f64) -> Option<f64> {
         let regime = self.at(temperature_k);
-        let many = libm::log(regime.equivalents.count as f64);
+        let many = regime.ln_saddles(temperature_k)[0];
         let prefactor = regime.prefactor(theory)?.ln_hz_at(temperature_k);
         Some(prefactor + many - self.barrier_mev? / (K_B * temperature_k))
     }
@@ -223,7 +231,7 @@ impl SaddleRate {
     /// ln of the rate in 1/s by a theory at a temperature (K) over one of the equivalent saddles alone, out of one place of the minimum.
     pub fn ln_rate_of_one_per_s(&self, theory: Theory, temperature_k: f64) -> Option<f64> {
         let (all, regime) = (self.ln_rate_per_s(theory, temperature_k)?, self.at(temperature_k));
-        Some(all - libm::log(regime.equivalents.count as f64) + regime.ln_places)
+        Some(all - regime.ln_saddles(temperature_k)[0] + regime.ln_places)
     }
 
     /// Whether what is on both sides of the saddle slides, and the saddle holds it on neither side: two places of one state, whose integral
@@ -237,7 +245,9 @@ impl SaddleRate {
 
     /// ln of the factor within which the rate is known at a temperature (K).
     pub fn ln_known_within(&self, temperature_k: f64) -> f64 {
-        self.at(temperature_k).validity.map_or(f64::INFINITY, |v| v.ln_factor(temperature_k))
+        let regime = self.at(temperature_k);
+        let [_, vague] = regime.ln_saddles(temperature_k);
+        regime.validity.map_or(f64::INFINITY, |v| libm::hypot(v.ln_factor(temperature_k), vague))
     }
 
     fn fill(&mut self, settings: &RateSettings) {
@@ -318,6 +328,7 @@ pub fn saddle_rates(h: Evaluator, number: usize, crossing: &Crossing, settings: 
 struct Frequencies {
     of: [Option<f64>; 2],
     growth: Option<f64>,
+    bath: Option<Bath>,
     conserved: bool,
     refused: Vec<(Theory, Refusal)>,
 }
@@ -350,7 +361,19 @@ fn frequencies(h: Evaluator, crossing: &Crossing, unstable: &Unstable, settings:
         found
     };
     let of = Theory::ALL.map(frequency);
-    Frequencies { of, growth, conserved: conserved.is_some(), refused }
+    let bath = growth.map(|growth| {
+        let falls = unstable.gyration(top, &gyration) * -unstable.eigenvalue_mev;
+        let precession =
+            (-unstable.eigenvalue_mev).sqrt() * unstable.dynamical_factor(top, &gyration, crossing.spectrum.floor_mev);
+        let damping = settings.damping;
+        Bath {
+            damping,
+            share: (precession / falls).min(1.0).sqrt(),
+            precesses: growth * (1.0 + damping * damping) / (damping * falls),
+            slides: false,
+        }
+    });
+    Frequencies { of, growth, bath, conserved: conserved.is_some(), refused }
 }
 
 fn computed(
@@ -411,11 +434,25 @@ struct Made<'a> {
 }
 
 impl Made<'_> {
+    /// Langer's λ₊ (rad/s), where it is asked for, and the bath: where the saddle slides along a turn, of what precesses past all of its
+    /// places.
+    fn over_the_saddle(&self) -> (Option<f64>, Option<Bath>) {
+        let Frequencies { of: [_, langer], bath, .. } = *self.frequencies;
+        let (Some(held), Some(turn)) = (langer, &self.found.saddle.turn) else { return (langer, bath) };
+        let settings = self.settings;
+        let gyration = settings.gyration_per_s_mev();
+        match self.beside.growth_between_places(turn, &gyration, settings.damping) {
+            Some(free) if free < held => (Some(free), bath.map(|bath| bath.sliding(held / free))),
+            _ => (langer, bath),
+        }
+    }
+
     fn regimes(&self, above_k: f64, barriers: [f64; 2]) -> [Regime; 2] {
         let Made { h, found, beside, frequencies, .. } = self;
         let top = &found.saddle;
         let saddle = Fluctuations::of_saddle(h, &beside.states[0], &top.pinned, &beside.unstable);
         let vague = self.crossing.spectrum.floor_mev / -beside.unstable.eigenvalue_mev;
+        let (langer, bath) = self.over_the_saddle();
         [0, 1].map(|side| {
             let bottom = match &found.minima[side] {
                 Ok(bottom) => bottom,
@@ -429,10 +466,10 @@ impl Made<'_> {
                 exponent: 0.5 * (bottom.count as f64 - top.count as f64),
                 pinning: [top, bottom].map(|well| std::array::from_fn(|k| well.pinning.get(k).copied())),
             };
-            let [htst, langer] = frequencies.of.map(|f| f.map(prefactor));
+            let [htst, langer] = [frequencies.of[0], langer].map(|f| f.map(prefactor));
             let validity = Validity {
                 barrier_mev: barriers[side],
-                damping: langer.map(|_| self.settings.damping),
+                bath: langer.and(bath),
                 ln_htst_over_langer: htst.zip(langer).map(|(h, l)| h.ln_hz - l.ln_hz),
                 minimum: Fluctuations::of_minimum(h, &beside.states[1 + side], &bottom.pinned, &beside.unstable),
                 saddle,
@@ -447,6 +484,7 @@ impl Made<'_> {
                 minimum_zeros: bottom.zeros.clone(),
                 saddle_zeros: top.zeros.clone(),
                 equivalents: found.equivalents.clone(),
+                siblings: found.siblings.clone(),
                 ln_places: bottom.ln_places - top.ln_places,
                 turn: found.turn,
                 validity: htst.or(langer).map(|_| validity),

@@ -128,7 +128,7 @@ pub(super) fn states_along_turn(group: &Group, along: &Group, m: &[f64]) -> usiz
 }
 
 /// Whether a multiple of shifts takes state a to b: each spin to less than `off` beside it.
-fn slid(group: &Group, steps: &[usize], a: &[f64], b: &[f64], off: f64) -> bool {
+pub(super) fn slid(group: &Group, steps: &[usize], a: &[f64], b: &[f64], off: f64) -> bool {
     group.multiples(steps).any(|shift| group.takes(&shift, a, b, off))
 }
 
@@ -142,7 +142,7 @@ pub(super) fn places(group: &Group, m: &[f64], shortest: &[usize]) -> usize {
 
 /// How much like sites of neighbouring cells differ at most (rad), over all directions: a state that slides freely may stand half a
 /// cell beside its image.
-fn largest_steps(lattice: &Lattice, m: &[f64]) -> f64 {
+pub(super) fn largest_steps(lattice: &Lattice, m: &[f64]) -> f64 {
     let c = Components::new(m);
     let step =
         |d: usize, i: usize| lattice.step_from(i, d, 1).map_or(0.0, |j| vector::norm(vector::sub(c.get(j), c.get(i))));

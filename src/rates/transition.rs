@@ -2,7 +2,7 @@
 
 use super::passage::{TEN_YEARS_S, blocking_temperature, first_passage, first_passage_by_either, passages};
 use super::rate::{factor, ruling};
-use super::{Equivalents, RateSettings, Refusal, Row, SaddleRate, Theory, Way};
+use super::{Equivalents, RateSettings, Refusal, Row, SaddleRate, Siblings, Theory, Way};
 use crate::units::K_B;
 
 /// How many of each stationary state symmetry makes of the path's own with both ends kept: from a minimum of a kind of which there
@@ -13,9 +13,9 @@ pub struct Orbits {
     /// So it is above this temperature (K), until the next.
     pub above_k: f64,
     /// Of each saddle, in path order.
-    pub saddles: Vec<usize>,
+    pub saddles: Vec<Kindred>,
     /// Of each minimum, both ends counted.
-    pub minima: Vec<usize>,
+    pub minima: Vec<Kindred>,
     /// Paths of the same kind, through other minima.
     pub paths: Equivalents,
     /// Whether what makes each end the other makes another path of this one, over the same saddles the other way round, as time reversal
@@ -24,11 +24,32 @@ pub struct Orbits {
 }
 
 impl Orbits {
-    /// ln of the number of ways over saddles like saddle k out of the minimum before it (`side` 0) or after it (1), over the number
-    /// that its own rate is over already.
-    fn ln_more(&self, k: usize, side: usize, counted: usize) -> f64 {
+    /// ln of the number of ways over saddles like saddle k out of the minimum before it (`side` 0) or after it (1) at a k_BT (meV), over
+    /// the number that its own rate is over already, of which the ln is given.
+    fn ln_more(&self, k: usize, side: usize, ln_counted: f64, thermal_mev: f64) -> f64 {
         let known = self.saddles.get(k).zip(self.minima.get(k + side));
-        known.map_or(0.0, |(s, m)| libm::log(*s as f64 / (*m * counted) as f64).max(0.0))
+        known.map_or(0.0, |(s, m)| (s.ln_number(thermal_mev) - m.ln_number(thermal_mev) - ln_counted).max(0.0))
+    }
+}
+
+/// How many states there are like one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Kindred {
+    /// That symmetry makes of it, itself among them.
+    pub alike: usize,
+    /// That it nearly makes of it.
+    pub siblings: Siblings,
+}
+
+impl Kindred {
+    /// None but itself.
+    pub fn alone() -> Kindred {
+        Kindred { alike: 1, siblings: Siblings::default() }
+    }
+
+    /// ln of their number at a k_BT (meV).
+    fn ln_number(&self, thermal_mev: f64) -> f64 {
+        self.siblings.ln_number(self.alike, thermal_mev)[0]
     }
 }
 
@@ -107,7 +128,8 @@ impl<'a> Along<'a> {
         let side = usize::from(onward != (self.way == Way::Forward));
         let number = if self.way == Way::Forward { i } else { self.onward.len() - 1 - i };
         let rate = if onward { self.onward[i] } else { self.back[i] };
-        let more = at(self.orbits, t).ln_more(number, side, rate.at(t).equivalents.count);
+        let [counted, _] = rate.at(t).ln_saddles(t);
+        let more = at(self.orbits, t).ln_more(number, side, counted, K_B * t);
         Some(rate.ln_rate_per_s(theory, t)? + more)
     }
 
@@ -232,8 +254,8 @@ mod tests {
         let orbits = Orbits {
             leads_back: false,
             above_k: 0.0,
-            saddles: vec![1; saddles.len() / 2],
-            minima: vec![1; saddles.len() / 2 + 1],
+            saddles: vec![Kindred::alone(); saddles.len() / 2],
+            minima: vec![Kindred::alone(); saddles.len() / 2 + 1],
             paths: Equivalents { count: 1, by: String::new() },
         };
         let settings = settings(&[temperature_k]);

@@ -70,6 +70,14 @@ fn unit(x: &mut [f64]) -> Option<()> {
 }
 
 impl Unstable {
+    /// √(Σ Γ_i² |e₁,i|²) (rad/s per meV): Γ, as the mode has it.
+    pub fn gyration(&self, saddle: &State, gyration: &[f64]) -> f64 {
+        let e = saddle.field(&self.mode);
+        let e = Components::new(&e);
+        let square = |i: usize| gyration[i] * gyration[i] * vector::dot(e.get(i), e.get(i));
+        (0..e.sites()).map(square).sum::<f64>().sqrt()
+    }
+
     /// √(wᵀHw) with w_i = Γ_i m_i × e₁,i, in rad/s per √meV: the spread of the velocity across the dividing plane is √(k_BT) times it.
     /// `gyration` is Γ (rad/s per meV), a number a site. 0 where wᵀHw is rounding: eigenvalues below `floor_mev` have no sign.
     pub fn dynamical_factor(&self, saddle: &State, gyration: &[f64], floor_mev: f64) -> f64 {

@@ -19,8 +19,8 @@ pub(super) const LARGE: f64 = 0.3;
 const VAGUE: f64 = 1e-6;
 /// A part of a rate that is worth a word.
 const UNEVEN: f64 = 0.05;
-/// Damping times ΔE/k_BT below which the bath feeds energy slowly.
-const WEAK: f64 = 3.0;
+/// How many times Langer's rate may be too large for want of damping before it is worth a word.
+const WEAK: f64 = 4.0 / 3.0;
 
 /// A mode that reaches round the sphere leaves the order of magnitude, if that.
 pub const ORDER: f64 = 10.0;
@@ -32,8 +32,8 @@ const MOST_DIGITS: usize = 4;
 pub struct Validity {
     /// ΔE (meV).
     pub barrier_mev: f64,
-    /// Gilbert damping, where the rate is Langer's.
-    pub damping: Option<f64>,
+    /// How the bath feeds the crossings, where the rate is Langer's.
+    pub bath: Option<Bath>,
     /// ln of the rate by HTST over Langer's, where there are both.
     pub ln_htst_over_langer: Option<f64>,
     /// About the minimum.
@@ -51,20 +51,52 @@ impl Validity {
     pub fn ln_factor(&self, temperature_k: f64) -> f64 {
         let thermal = K_B * temperature_k;
         let low = thermal / self.barrier_mev.max(0.0);
-        // what the bath must feed is ΔE or k_BT, whichever is more
-        let weak = self.damping.map_or(0.0, |a| thermal / (a * self.barrier_mev.max(thermal)));
+        let weak = self.bath.map_or(1.0, |bath| bath.weak(self.barrier_mev, thermal));
         let spread = [self.minimum, self.saddle].map(|f| f.factor(thermal));
-        let factors = [1.0 + low, 1.0 + weak, spread[0], spread[1], self.top(thermal), 1.0 + 0.5 * self.vague];
+        let factors = [1.0 + low, weak, spread[0], spread[1], self.top(thermal), 1.0 + 0.5 * self.vague];
         let squares = factors.into_iter().map(|f| libm::log(f) * libm::log(f)).sum::<f64>();
         (squares + self.uneven * self.uneven).sqrt()
     }
 
     /// What a top that is flat over k_BT leaves: no more than lies between the two theories.
     fn top(&self, thermal_mev: f64) -> f64 {
-        let square = self.saddle.top_per_mev * thermal_mev;
-        let open = if square < LARGE { 1.0 + square } else { (square / LARGE).sqrt().max(1.0 + LARGE) };
+        let open = self.saddle.opens(thermal_mev);
         let between = self.ln_htst_over_langer.filter(|ln| *ln > 0.0).map_or(f64::INFINITY, libm::exp);
         open.min(between)
+    }
+}
+
+/// How a bath feeds the crossings of a saddle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bath {
+    /// α, Gilbert damping.
+    pub damping: f64,
+    /// √(ω/Γ|λ₁|), at most 1: ω is the frequency at the saddle without damping, Γ|λ₁| that of a spin as stiff across the descent as it
+    /// falls along it. The less, the farther a spin precesses along a soft saddle, and the less it loses on its way.
+    pub share: f64,
+    /// Langer's λ₊ over αΓ|λ₁|/(1 + α²), that of spins that do not precess over the saddle at all.
+    pub precesses: f64,
+    /// Whether the saddle slides along a turn: λ₊ is that of what precesses past all of its places.
+    pub slides: bool,
+}
+
+/// By so much may what precesses past all places of a saddle be faster than λ₊ between them, where none costs more than k_BT (one spin,
+/// Fokker–Planck: 1.2 at U = 0.2 k_BT, 2 at 0.75 k_BT with little damping).
+const PAST_PLACES: f64 = 2.5;
+
+impl Bath {
+    /// The same where λ₊ is taken between the places of a saddle, so many times smaller than at one.
+    pub fn sliding(self, slower: f64) -> Bath {
+        Bath { precesses: slower.min(PAST_PLACES), slides: true, ..self }
+    }
+
+    /// How many times Langer's rate may be too large at a k_BT (meV): a bath makes good what a crossing takes between two attempts only
+    /// where α ΔE/k_BT is large. 1 + k_BT/(α ΔE √(ω/Γ|λ₁|)) covers one spin with hard axes of 0.02 to 1 times the easy one (Fokker–Planck,
+    /// α from 0.005 to 1, ΔE from 12 to 25 k_BT); no less than what does not precess is left.
+    fn weak(&self, barrier_mev: f64, thermal_mev: f64) -> f64 {
+        let fed = self.damping * barrier_mev.max(thermal_mev) * self.share;
+        let most = self.precesses * (1.0 + thermal_mev / barrier_mev.max(thermal_mev));
+        (1.0 + thermal_mev / fed).min(most).max(1.0)
     }
 }
 
@@ -89,6 +121,13 @@ impl Fluctuations {
         let angle = (thermal_mev * self.mean_square_per_mev).sqrt();
         // what goes round the sphere has less room than the harmonic integral counts, by as many times
         if angle < PI { 1.0 + angle.min(angle * angle) } else { ORDER * angle / PI }
+    }
+
+    /// How many times faster than by its curvature a top may be crossed that is flat over what k_BT climbs; σ² is its spin's square. (One
+    /// spin with a quartic term, Fokker–Planck: 1.2 at σ² = 1/8, 1.95 at 1/2, 4.1 at 5/2 and 12.8 at 25.)
+    fn opens(&self, thermal_mev: f64) -> f64 {
+        let square = self.top_per_mev * thermal_mev;
+        (1.0 + 2.0 * square).min((1.0 + 6.6 * square).sqrt())
     }
 
     /// About a minimum.
@@ -136,14 +175,14 @@ fn mean_square(state: &State, pinned: &PinnedHessian, i: usize) -> f64 {
 /// What a user should know about the rates out of one minimum, as they are at the highest temperature.
 pub fn warnings(settings: &RateSettings, barrier_mev: f64, at: &Regime) -> Vec<String> {
     let (htst, langer) = (at.htst, at.langer);
-    let Some(Validity { minimum, saddle, vague, uneven, .. }) = &at.validity else { return Vec::new() };
+    let Some(Validity { minimum, saddle, vague, uneven, bath, .. }) = &at.validity else { return Vec::new() };
     let hottest = settings.hottest_k();
     let said = [
         low_barrier(barrier_mev, hottest),
         large_fluctuations("minimum", minimum, hottest),
         large_fluctuations("saddle", saddle, hottest),
         flat_top(saddle, hottest, htst, langer),
-        weak_damping(settings, barrier_mev, langer),
+        weak_damping(settings, barrier_mev, *bath),
         vague_curvature(*vague, langer),
         uneven_turn(*uneven),
     ];
@@ -193,7 +232,7 @@ fn flat_top(saddle: &Fluctuations, hottest: f64, htst: Option<Prefactor>, langer
             format!(": the rate lies between Langer's and that of HTST, {:.3} times it", libm::exp(h - l))
         }
         (_, Some(_)) => {
-            let factor = (saddle.top_per_mev * K_B * hottest / LARGE).sqrt();
+            let factor = saddle.opens(K_B * hottest);
             format!(": Langer's rate may be too small by a factor of up to about {factor:.2} at {hottest} K")
         }
         _ => ": HTST counts every return over it, and may be far above the rate".into(),
@@ -239,20 +278,20 @@ pub(super) fn kelvin(t: f64) -> String {
     if t < 0.01 { format!("{t:.1e} K") } else { format!("{t:.4} K") }
 }
 
-/// Langer's rate needs a bath that makes good, between two attempts, the energy that a crossing takes. Where α ΔE/k_BT is small it
-/// does not, and the rate falls with α; α Δ/(1 + α Δ) is what is left of it, roughly, between the two limits (for one spin with
-/// K_hard = 2 K the true factor is 0.48 at α Δ = 0.4 and 0.79 at 1: example 04).
-fn weak_damping(settings: &RateSettings, barrier_mev: f64, langer: Option<Prefactor>) -> Option<String> {
-    langer?;
-    let (coldest, hottest) = (settings.coldest_k(), settings.hottest_k());
-    let at = |t: f64| settings.damping * barrier_mev / (K_B * t);
-    (at(hottest) < WEAK).then(|| {
-        let from = (settings.damping * barrier_mev / (WEAK * K_B)).max(coldest);
-        let left = at(hottest) / (1.0 + at(hottest));
+/// Where Langer's rate is too large, because the bath feeds it slowly.
+fn weak_damping(settings: &RateSettings, barrier_mev: f64, bath: Option<Bath>) -> Option<String> {
+    let bath = bath?;
+    let factor = |t: f64| bath.weak(barrier_mev, K_B * t);
+    let hottest = settings.hottest_k();
+    (factor(hottest) > WEAK).then(|| {
+        if bath.slides {
+            let most = factor(hottest);
+            return format!("the saddle turns freely, past all of its places: the rate lies between Langer's and {most:.2} times that");
+        }
         format!(
-            "from {} on, damping times ΔE/k_BT is below {WEAK}: the bath feeds energy slowly, and the rate lies between \
-             Langer's and, at {hottest} K, about {left:.3} times that",
-            kelvin(from)
+            "the bath feeds energy slowly where damping times ΔE/k_BT is small: the rate lies between Langer's and, at {hottest} K, about \
+             {:.3} times that",
+            1.0 / factor(hottest)
         )
     })
 }
@@ -271,11 +310,11 @@ mod tests {
     #[test]
     fn a_rate_is_known_the_better_the_colder_and_not_at_all_without_a_bath() {
         let calm = Fluctuations { mean_square_per_mev: 0.01, top_per_mev: 0.02 };
-        let at = |damping, kelvin: f64| {
+        let at = |damping: Option<f64>, kelvin: f64| {
             let both = Some(0.2);
             let validity = Validity {
                 barrier_mev: 50.0,
-                damping,
+                bath: damping.map(|damping| Bath { damping, share: 1.0, precesses: f64::INFINITY, slides: false }),
                 ln_htst_over_langer: both,
                 minimum: calm,
                 saddle: calm,
@@ -285,8 +324,8 @@ mod tests {
             libm::exp(validity.ln_factor(kelvin))
         };
         let kelvin = 1.0 / K_B;
-        // 1/Δ, 1/(αΔ), two times σ² and the top's own square, by hand
-        let parts = [1.02, 1.2, 1.01, 1.01, 1.02f64].map(|f| f.ln().powi(2));
+        // 1/Δ, 1/(αΔ), two times σ² and twice the top's own square, by hand
+        let parts = [1.02, 1.2, 1.01, 1.01, 1.04f64].map(|f| f.ln().powi(2));
         let expected = parts.iter().sum::<f64>().sqrt().exp();
         assert!((at(Some(0.1), kelvin) / expected - 1.0).abs() < 1e-12);
         assert!(at(Some(0.1), 0.5 * kelvin) < expected && at(None, kelvin) < expected);

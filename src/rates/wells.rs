@@ -6,8 +6,8 @@ use super::refusal::no_minimum;
 use super::sliding::{Generator, LEAST, Pinning, Slide, Sliding, Turn};
 use super::symmetry::{free_shifts, places, states_along_turn, states_on_the_way};
 use super::{
-    Crossing, Equivalents, KEPT_OR_EXCHANGED, Refusal, UnknownModes, Unstable, ZeroModes, equivalent_saddles,
-    zero_modes,
+    Crossing, Equivalents, KEPT_OR_EXCHANGED, Refusal, Siblings, Symmetry, UnknownModes, Unstable, ZeroModes,
+    equivalent_saddles, growth_rate, siblings, zero_modes,
 };
 use crate::energy::Evaluator;
 use crate::linalg::{orthonormal, remove, slab};
@@ -23,7 +23,7 @@ const NAMES: [&str; 3] = ["the saddle", "the minimum before it", "the minimum af
 /// A saddle with its descending mode, and the minima beside it.
 pub(super) struct Beside<'a> {
     h: Evaluator<'a>,
-    group: &'a Group,
+    symmetry: &'a Symmetry,
     pub unstable: Unstable,
     /// The saddle, the minimum before it and that after it.
     pub states: [State; 3],
@@ -54,6 +54,7 @@ pub(super) struct Found {
     /// The minimum before it and that after it; over the saddle out of one it takes no volume of the other.
     pub minima: [Result<Well, Refusal>; 2],
     pub equivalents: Equivalents,
+    pub siblings: Siblings,
     pub turn: Option<Turn>,
 }
 
@@ -72,7 +73,9 @@ pub(super) struct Well {
     pub pinning: Vec<Pinning>,
     /// ln of the states alike that are its places.
     pub ln_places: f64,
-    /// By how much ½ ln|det'H| differs at most, all round the turn along which it slides.
+    /// The turn along which it slides.
+    pub turn: Option<Turn>,
+    /// By how much ½ ln|det'H| differs at most, all round that.
     pub uneven: f64,
 }
 
@@ -86,12 +89,12 @@ impl<'a> Beside<'a> {
         let [before, after] = minima;
         let [b, a] = crossing.minima_spectra;
         let states = [crossing.saddle.clone(), before, after];
-        Ok(Beside { h, group: crossing.group, unstable, states, spectra: [crossing.spectrum, b, a] })
+        Ok(Beside { h, symmetry: crossing.symmetry, unstable, states, spectra: [crossing.spectrum, b, a] })
     }
 
     /// The states at all temperatures, by ascending k_BT from 0 on; `most_mev`: the higher of the two barriers.
     pub fn wells(&self, most_mev: f64) -> Vec<Wells> {
-        let of = |k: usize| Slide::of(self.h, &self.states[k], self.descending(k), self.group, most_mev);
+        let of = |k: usize| Slide::of(self.h, &self.states[k], self.descending(k), self.group(), most_mev);
         let mut slides = [of(0), of(1), of(2)];
         let mut levels: Vec<f64> = Vec::new();
         // what is chosen somewhere may change elsewhere than what was known before
@@ -116,6 +119,10 @@ impl<'a> Beside<'a> {
         different.into_iter().map(wells).collect()
     }
 
+    fn group(&self) -> &'a Group {
+        &self.symmetry.exact
+    }
+
     fn descending(&self, k: usize) -> Option<&Unstable> {
         (k == 0).then_some(&self.unstable)
     }
@@ -132,7 +139,7 @@ impl<'a> Beside<'a> {
         // a state slides above a level, not at it
         let last = levels.last().map_or(1.0, |last| 2.0 * last);
         let thermal_mev = levels.get(k).copied().unwrap_or(last);
-        let (mut free, mut turns) = (vec![true; self.group.shifts().len()], true);
+        let (mut free, mut turns) = (vec![true; self.group().shifts().len()], true);
         loop {
             let is_free = |generator: &Generator| match generator {
                 Generator::Shift(k) => free[*k],
@@ -140,7 +147,7 @@ impl<'a> Beside<'a> {
             };
             let sliding = slides.each_mut().map(|slide| slide.at(thermal_mev, &is_free));
             let minima = [&self.states[1].m[..], &self.states[2].m[..]];
-            let steps = free_shifts(self.group, minima, [sliding[1].shifts(), sliding[2].shifts()]);
+            let steps = free_shifts(self.group(), minima, [sliding[1].shifts(), sliding[2].shifts()]);
             let turn = sliding.iter().find_map(Sliding::turn);
             // a shift that does not keep both leads to a saddle between other minima, and so does a turn
             let shifts = sliding.iter().any(Sliding::shifts);
@@ -166,18 +173,36 @@ impl<'a> Beside<'a> {
         if self.h.is_stopped() {
             return Err(Refusal::Stopped);
         }
-        let along = turn.map(|turn| self.group.with_axis(turn.axis));
-        let along = along.as_ref().unwrap_or(self.group);
+        let along = turn.map(|turn| self.group().with_axis(turn.axis));
+        let along = along.as_ref().unwrap_or(self.group());
         let shifts = sliding.each_ref().map(Sliding::shifts);
         let [saddle, before, after] = self.states.each_ref().map(|state| &state.m[..]);
         let equivalents =
             equivalent_saddles(self.h.lattice(), along, saddle, [before, after], shifts, KEPT_OR_EXCHANGED);
+        let near = self.symmetry.near.as_ref().map(|near| turn.map_or(near.clone(), |turn| near.with_axis(turn.axis)));
+        let siblings = near.map_or_else(Siblings::default, |near| {
+            let own = (&self.states[0], Some(&self.unstable), sliding[0].modes.len());
+            siblings(self.h, [along, &near], own, [before, after], shifts, KEPT_OR_EXCHANGED, &[])
+        });
         let free = Some(&steps[..]).filter(|_| shifts.contains(&true));
         let well = |k: usize| {
             let well = unknown[k].map_or_else(|| self.well(k, &sliding[k], free, along), Err);
             well.map_err(|unknown| Refusal::Volume(NAMES[k], unknown))
         };
-        Ok(Found { saddle: well(0)?, minima: [well(1), well(2)], equivalents, turn: *turn })
+        Ok(Found { saddle: well(0)?, minima: [well(1), well(2)], equivalents, siblings, turn: *turn })
+    }
+
+    /// λ₊ (rad/s) a quarter of the way to the saddle's next place by a turn, where the energy along that has no curvature: as it is for
+    /// what precesses past place after place while it crosses. `gyration` and damping as in [`growth_rate`].
+    pub fn growth_between_places(&self, turn: &Turn, gyration: &[f64], damping: f64) -> Option<f64> {
+        let angle = 0.5 * PI / turn.fold as f64;
+        let saddle = &self.states[0];
+        let there = State::at(self.h, turn.by(&self.h, saddle.m.clone(), angle));
+        let mut mode = there.basis.coordinates(&turn.by(&self.h, saddle.field(&self.unstable.mode), angle));
+        slab::normalise(&mut mode);
+        let eigenvalue_mev = there.curvature_mev(&mode);
+        let unstable = Some(Unstable { eigenvalue_mev, mode }).filter(|unstable| unstable.eigenvalue_mev < 0.0)?;
+        growth_rate(self.h, &there, &unstable, gyration, damping)
     }
 
     /// By how much ½ ln|det'H| of state k differs at most, all round a turn: one that keeps the energy need not keep what lies across it.
@@ -209,11 +234,11 @@ impl<'a> Beside<'a> {
     /// Of state k, where so many times each shift is free, if anything slides over the lattice.
     fn well(&self, k: usize, sliding: &Sliding, free: Option<&[usize]>, along: &Group) -> Result<Well, UnknownModes> {
         let (h, state, unstable) = (self.h, &self.states[k], self.descending(k));
-        let number = |steps: &[usize]| places(self.group, &state.m, steps);
-        let turned = states_along_turn(self.group, along, &state.m);
+        let number = |steps: &[usize]| places(self.group(), &state.m, steps);
+        let turned = states_along_turn(self.group(), along, &state.m);
         let (own, kept, alike) = match free {
             Some(steps) if sliding.shifts() => {
-                (number(steps), 1, states_on_the_way(h.lattice(), self.group, &state.m, steps))
+                (number(steps), 1, states_on_the_way(h.lattice(), self.group(), &state.m, steps))
             }
             Some(steps) => (1, number(steps), number(steps)),
             None => (1, 1, 1),
@@ -226,6 +251,7 @@ impl<'a> Beside<'a> {
         let ln_volume = zeros.iter().map(|z| libm::log(z.volume)).sum::<f64>() + libm::log(kept as f64);
         let uneven = sliding.turn().map_or(0.0, |turn| self.uneven(k, &turn));
         Ok(Well {
+            turn: sliding.turn(),
             uneven,
             log_determinant: pinned.log_determinant() + descent,
             pinned,

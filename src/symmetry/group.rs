@@ -1,7 +1,7 @@
 //! The group of an energy, as generators: shifts, and one operation of each class of those that differ by shifts.
 
 use super::operation::Operation;
-use super::search::Search;
+use super::search::{Alike, Search};
 use super::shift::Shift;
 use crate::energy::Hamiltonian;
 use crate::geometry::Vector;
@@ -18,7 +18,17 @@ impl Group {
     /// The group of an energy. Frozen spins are those of `state` (component-major, 3N numbers). `alike`: a number a site, if more
     /// than the energy must be kept: the moments, where rates are to be the same.
     pub fn of(h: &Hamiltonian, state: &[f64], alike: &[f64]) -> Group {
-        let mut search = Search::new(h, state, alike);
+        Group::found(h, state, alike, Alike::EXACTLY)
+    }
+
+    /// The operations that would leave an energy as it is if what is weak in it were not: each takes it to within a hundredth of the
+    /// stiffness a site, all of them together to any. The rotations about axes are those of the energy as it is.
+    pub fn nearly(h: &Hamiltonian, state: &[f64], alike: &[f64]) -> Group {
+        Group::found(h, state, alike, Alike::NEARLY)
+    }
+
+    fn found(h: &Hamiltonian, state: &[f64], alike: &[f64], within: Alike) -> Group {
+        let mut search = Search::new(h, state, alike, within);
         let turns = search.turns_of_spins();
         let shifts = search.shifts();
         let motions = search.motions(&shifts);

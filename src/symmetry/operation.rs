@@ -64,6 +64,14 @@ impl Operation {
         moved
     }
 
+    /// v of which a tangent field at m' is R v_p(i) (3N numbers): what [`apply_field`](Self::apply_field) makes, undone.
+    pub fn undone_field(&self, moved: &[f64]) -> Vec<f64> {
+        let (from, mut v) = (Components::new(moved), vec![0.0; moved.len()]);
+        let (mut to, back) = (ComponentsMut::new(&mut v), transposed(&self.spin));
+        (0..self.held.len()).filter(|i| !self.held[*i]).for_each(|i| to.set(self.source(i), times(&back, from.get(i))));
+        v
+    }
+
     /// What first `first` and then this one does.
     pub fn after(&self, first: &Operation) -> Operation {
         Operation {

@@ -13,10 +13,22 @@ use crate::linalg::slab;
 use crate::spins::Spins;
 use std::sync::Arc;
 
-/// Forces agree that differ by less than this part of the stiffness, energies by so much a site.
-const AGREE: f64 = 1e-12;
-/// Squares of gradients differ by more than this part of the squared stiffness.
-const NOISE: f64 = 1e-11;
+/// How much alike two things are.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Alike {
+    /// Forces agree that differ by less than this part of the stiffness, energies by so much a site.
+    agree: f64,
+    /// Squares of gradients differ by more than this part of the squared stiffness.
+    noise: f64,
+}
+
+impl Alike {
+    /// But for rounding.
+    pub const EXACTLY: Alike = Alike { agree: 1e-12, noise: 1e-11 };
+    /// But for what is weak beside the stiffness: a stray field, a little disorder.
+    pub const NEARLY: Alike = Alike { agree: 1e-2, noise: 2e-2 };
+}
+
 /// How many operations that move sites are tried at most.
 const TRIALS: usize = 512;
 /// How many axes are kept of those that the terms and the frozen spins single out.
@@ -37,10 +49,11 @@ pub(super) struct Search<'a> {
     /// Another one and its energy (meV).
     witness: (Vec<f64>, f64),
     trials: usize,
+    within: Alike,
 }
 
 impl<'a> Search<'a> {
-    pub fn new(h: &'a Hamiltonian, state: &'a [f64], alike: &[f64]) -> Search<'a> {
+    pub fn new(h: &'a Hamiltonian, state: &'a [f64], alike: &[f64], within: Alike) -> Search<'a> {
         let vacant = &h.lattice().vacant;
         let held: Arc<[bool]> = (0..h.sites()).map(|i| h.is_frozen(i) || vacant[i]).collect();
         let mut search = Search {
@@ -53,6 +66,7 @@ impl<'a> Search<'a> {
             sample: Default::default(),
             witness: Default::default(),
             trials: TRIALS,
+            within,
         };
         search.marks.tell(|i| u64::from(h.is_frozen(i)) + 2 * u64::from(vacant[i]));
         if !alike.is_empty() {
@@ -198,7 +212,7 @@ impl<'a> Search<'a> {
         }
         let [m, force] = &self.sample;
         let (moved, force) = (self.force(&o.apply(m)), Components::new(force));
-        let (moved, most) = (Components::new(&moved), AGREE * self.h.stiffness_mev());
+        let (moved, most) = (Components::new(&moved), self.within.agree * self.h.stiffness_mev());
         let (other, energy_mev) = &self.witness;
         (0..n).all(|i| near(moved.get(i), image(force, i), most))
             && (self.h.energy_mev(&o.apply(other)) - energy_mev).abs() <= most * n as f64
@@ -254,7 +268,7 @@ impl<'a> Search<'a> {
             list.extend(self.fitting(&frame, &sums));
         }
         let stiffness = self.h.stiffness_mev();
-        self.marks.tell_values(&squares, NOISE * stiffness * stiffness);
+        self.marks.tell_values(&squares, self.within.noise * stiffness * stiffness);
         if self.axes.len() == 3 {
             list = vec![UNIT, opposite(&UNIT)];
         }
@@ -270,7 +284,7 @@ impl<'a> Search<'a> {
 
     /// The matrices of a frame that take the sums of the states along each axis (forwards, backwards) to those of its image.
     fn fitting(&self, frame: &Frame, sums: &[[Vector; 2]; 3]) -> Vec<Matrix> {
-        let most = AGREE * self.h.stiffness_mev() * self.h.sites() as f64;
+        let most = self.within.agree * self.h.stiffness_mev() * self.h.sites() as f64;
         let fits = |p: &Permutation, r: &Matrix| {
             (0..6).all(|k| {
                 let (axis, sense) = (k / 2, k % 2);

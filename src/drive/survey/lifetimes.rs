@@ -4,7 +4,7 @@ use super::{Label, Survey, SurveyProblem};
 use crate::error::Result;
 use crate::landscape::{Landscape, Pass};
 use crate::network::{Network, Parts};
-use crate::rates::{LEAST_BARRIER, ORDER, RateSettings, SaddleRate, Theory};
+use crate::rates::{LEAST_BARRIER, ORDER, RateSettings, SaddleRate, Symmetry, Theory};
 use crate::stationary::ALIKE;
 use crate::symmetry::Group;
 use crate::units::K_B;
@@ -60,8 +60,10 @@ impl Lifetimes {
         group: &Group,
         passes: &[&Pass],
     ) -> Result<Lifetimes> {
+        // all saddles are looked for here: none is counted for another
+        let symmetry = Symmetry::exactly(group);
         let rates = |(k, pass): (usize, &&Pass)| {
-            let rates = pass.rates(land.evaluator(), k, group, settings);
+            let rates = pass.rates(land.evaluator(), k, &symmetry, settings);
             // rates that were stopped on their way look like rates that there are none of
             asked.problem.control.check().map(|()| rates)
         };

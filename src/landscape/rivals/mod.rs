@@ -1,5 +1,6 @@
 //! Where a saddle below the top of the best route may be looked for. One file a rival.
 
+mod alike;
 mod melt;
 mod modes;
 mod near;
@@ -26,9 +27,10 @@ pub(super) fn scouts() -> Vec<Box<dyn Rival>> {
     vec![Box::<near::Near>::default(), Box::<push::Push>::default(), Box::<melt::Melt>::default()]
 }
 
-/// The one that goes before them, through all that it has; that one of its starts brings no news says little.
-pub(super) fn vanguard() -> Box<dyn Rival> {
-    Box::<modes::Modes>::default()
+/// Those that go before them, through all that they have; that one of their starts brings no news says little.
+pub(super) fn vanguard(all: bool) -> Vec<Box<dyn Rival>> {
+    let alike: Box<dyn Rival> = Box::<alike::Alike>::default();
+    if all { vec![Box::<modes::Modes>::default(), alike] } else { vec![alike] }
 }
 
 /// Names states from which climbs may lead to passes below the top.

@@ -21,7 +21,8 @@
 //!
 //! A turn is one of all free spins about an axis that a term singles out, by 2π/n where n such turns keep the energy: v = 2π/n axis × m.
 //! Of several axes the softest is taken, and none where the energy has an axis of its own, about which turns are zero modes. A circle
-//! about the axis so small that the state comes back to where it was is no valley.
+//! about the axis so small that the state comes back to where it was is no valley, nor one across which k_BT moves it as far as to its
+//! centre.
 //!
 //! A valley is integrated so from the k_BT on at which the harmonic integral over one place fails (see `pinning`). The top between two places
 //! is the energy half-way to the next, at rest normal to the valley. The hop to the next place must go on from the hop from the one
@@ -129,7 +130,7 @@ impl<'a> Slide<'a> {
         let mut own: Vec<Vec<f64>> = Vec::new();
         let mut chosen = Vec::new();
         for (k, way) in self.ways.iter().enumerate() {
-            if way.opens_mev() < thermal_mev && free(&way.generator) {
+            if way.is_open(thermal_mev) && free(&way.generator) {
                 let mut rest = way.derivative.clone();
                 remove(&mut rest, &own);
                 if slab::norm(&rest) >= OWN * slab::norm(&way.derivative) {
@@ -157,7 +158,8 @@ impl<'a> Slide<'a> {
 
     /// Every k_BT (meV) that was met at which something changes.
     pub fn levels_mev(&self) -> Vec<f64> {
-        let own = self.ways.iter().map(Way::opens_mev).chain(self.wanders.map(|[from, _]| from));
+        let closes = self.ways.iter().map(|way| way.closes_mev).filter(|mev| mev.is_finite());
+        let own = self.ways.iter().map(Way::opens_mev).chain(closes).chain(self.wanders.map(|[from, _]| from));
         let all = |along: &Rc<Along>| along.by_way.iter().map(Pinning::loosens_mev).reduce(f64::max);
         let each = self.known.values().flat_map(|along| along.by_valley.iter().map(Pinning::loosens_mev));
         own.chain(self.known.values().filter_map(all)).chain(each).collect()

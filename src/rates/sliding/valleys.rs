@@ -107,6 +107,19 @@ impl<'a> Held<'a> {
         move |z| valleys.iter().map(|w| slab::dot(z, &w.along).powi(2) / w.stiffness_mev.max(f64::MIN_POSITIVE)).sum()
     }
 
+    /// The same of one unit direction, whose part down the descent is as soft as that falls.
+    pub fn across(&self, direction: &[f64]) -> f64 {
+        let mut rest = direction.to_vec();
+        let (mut softness, mut whole) = (0.0, 1.0);
+        for descent in &self.against[self.state.zeros.len()..] {
+            let part = slab::dot(direction, descent);
+            softness += part * part / self.state.curvature_mev(descent).abs();
+            whole -= part * part;
+        }
+        remove(&mut rest, &self.against);
+        if whole > LEAST { softness + whole * self.softness(vec![unit(&rest)])(&unit(&rest)) } else { softness }
+    }
+
     /// The factors of a Hessian with a pin for each of some directions.
     fn pinned<'b>(&self, mut hessian: Matrix, directions: impl Iterator<Item = &'b Vec<f64>>) -> (Factors, Vec<Pin>) {
         let mut used = Vec::new();

@@ -1,13 +1,13 @@
 //! The ways in which a state may slide: shifts of its lattice, and a turn about an axis.
 
 use super::pinning::Pinning;
-use super::valleys::{Held, towards, unit};
+use super::valleys::{Held, LEAST, towards, unit};
 use crate::energy::{Evaluator, Hamiltonian};
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::matrix::UNIT;
 use crate::geometry::{Direction, Vector, log, vector};
 use crate::lattice::Lattice;
-use crate::linalg::slab;
+use crate::linalg::{remove, slab};
 use crate::sphere::rotate_sites;
 use crate::stationary::{Point, State};
 use crate::symmetry::{Group, Operation};
@@ -41,6 +41,8 @@ pub(super) struct Way {
     pub hop: Vec<f64>,
     /// What a place costs, the other ways following.
     pub pinning: Pinning,
+    /// k_BT (meV) above which it is no valley: the state is held across it no better than to its radius of curvature.
+    pub closes_mev: f64,
 }
 
 /// The cosine of the angle between ways that begin alike falls short of 1 by this.
@@ -77,7 +79,8 @@ fn shift(h: Evaluator, held: &Held, group: &Group, direction: usize, all: &[usiz
     let cells = shift.motion.shifts_by().map_or(1, |by| by[direction]);
     slab::scale(&mut derivative, cells as f64);
     let pinning = held.pinning(&derivative, top_mev);
-    Some(Way { generator: Generator::Shift(number), derivative, hop: held.tangent(&hop)?, pinning })
+    let hop = held.tangent(&hop)?;
+    Some(Way { generator: Generator::Shift(number), derivative, hop, pinning, closes_mev: f64::INFINITY })
 }
 
 /// A turn with ∂m/∂x (2N) and what a place costs.
@@ -109,8 +112,22 @@ fn turn(h: Evaluator, held: &Held, group: &Group, most_mev: f64) -> Option<Way> 
         let top_mev = held.top_mev(h, half(held.state.m.clone()), along, half)?;
         let pinning = Pinning { top_mev: pinning.top_mev.max(top_mev), ..*pinning };
         let [hop, derivative] = [(); 2].map(|()| derivative.clone());
-        Some(Way { generator: Generator::Turn(*turn), hop, derivative, pinning })
+        let closes_mev = fills_mev(&h, held, turn.axis);
+        Some(Way { generator: Generator::Turn(*turn), hop, derivative, pinning, closes_mev })
     })
+}
+
+/// κR²: k_BT (meV) at which a state moves as far across the circle that a turn makes of it as the circle's radius of curvature R, held
+/// there with κ, which down its descent is the size of that curvature. A small circle about an axis that spins all but point along is filled,
+/// and the state a harmonic well: what it costs to go round tells nothing.
+fn fills_mev(h: &Hamiltonian, held: &Held, axis: Vector) -> f64 {
+    let velocity = turned(h, &held.state.m, axis);
+    let mut inwards = held.state.basis.coordinates(&turned(h, &velocity, axis));
+    remove(&mut inwards, &[unit(&held.state.basis.coordinates(&velocity))]);
+    remove(&mut inwards, &held.state.zeros);
+    let size = slab::norm(&inwards);
+    let radius = slab::dot(&velocity, &velocity) / size;
+    if size > LEAST { radius * radius / held.across(&unit(&inwards)) } else { f64::INFINITY }
 }
 
 /// Whether of two turns that begin alike the first goes on as it begins, by its energy (meV), as far as the smaller of their circles
@@ -136,6 +153,11 @@ impl Way {
             Generator::Shift(_) => self.pinning.loosens_mev().min(self.pinning.top_mev),
             Generator::Turn(_) => self.pinning.top_mev,
         }
+    }
+
+    /// Whether it may be one at a k_BT (meV).
+    pub fn is_open(&self, thermal_mev: f64) -> bool {
+        self.opens_mev() < thermal_mev && thermal_mev <= self.closes_mev
     }
 }
 
