@@ -105,6 +105,23 @@ fn a_film_is_left_over_all_its_corners_however_weak_what_tells_them_apart() {
 }
 
 #[test]
+fn a_ring_turns_over_at_any_of_its_sites_over_either_side() {
+    let ring = |by: f64, disorder: f64| {
+        let k: Vec<String> = (0..6).map(|i| format!("{} meV", 10.0 * (1.0 + disorder * f64::from(i)))).collect();
+        let easy =
+            json!({"anisotropy": {"K": if disorder == 0.0 { json!("10 meV") } else { json!(k) }, "axis": [0, 0, 1]}});
+        let energy =
+            json!([{"exchange": {"J": ["0.5 meV"]}}, easy, anisotropy("-4 meV", [0, 1, 0]), field([by, 0.0, 0.0])]);
+        rates(&solve(&config(energy, json!({"chain": {"sites": 6, "periodic": true}}), up(), 8.0)))
+    };
+    let free = ring(0.0, 0.0);
+    // with its shifts, and without them
+    for (stray, off) in [(ring(1e-5, 0.0), 1e-3), (ring(0.0, 1e-6), 1e-3), (ring(1e-5, 1e-6), 1e-3)] {
+        assert!((0..2).all(|k| (stray[k] / free[k] - 1.0).abs() < off), "{stray:?} {free:?}");
+    }
+}
+
+#[test]
 fn a_skyrmion_leaves_a_film_over_all_its_edges_and_a_quick_landscape_has_them_all() {
     let film = |bx: f64| {
         let terms = [
@@ -133,14 +150,14 @@ fn a_skyrmion_leaves_a_film_over_all_its_edges_and_a_quick_landscape_has_them_al
 #[test]
 fn a_number_of_saddles_goes_with_their_heights() {
     let siblings = Siblings(vec![
-        Sibling { above_mev: 0.0, off_mev: 0.0 },
-        Sibling { above_mev: 2.0, off_mev: 0.5 },
-        Sibling { above_mev: 1e3, off_mev: 1e3 },
+        Sibling { above_mev: 0.0, off_mev: 0.0, places: 1 },
+        Sibling { above_mev: 2.0, off_mev: 0.5, places: 2 },
+        Sibling { above_mev: 1e3, off_mev: 1e3, places: 1 },
     ]);
     let [ln, vague] = siblings.ln_number(2, 1.0);
-    let number = 3.0 + (-2.0f64).exp();
+    let number = 3.0 + 2.0 * (-2.0f64).exp();
     assert!((ln - number.ln()).abs() < 1e-15);
-    assert!((vague - (0.5 * (-2.0f64).exp() / number).ln_1p()).abs() < 1e-15);
+    assert!((vague - ((-2.0f64).exp() / number).ln_1p()).abs() < 1e-15);
     assert_eq!(Siblings::default().ln_number(4, 1.0), [4f64.ln(), 0.0]);
 }
 

@@ -374,10 +374,10 @@ fn rates(stored: &Stored, faults: &mut Faults) {
             let negative = saddle.and_then(|s| s["negative_modes"].as_u64());
             faults.unless(negative == Some(1), || format!("{what} over a saddle with {negative:?} negative modes"));
         }
-        let siblings: Vec<f64> =
-            entry["nearly_equivalent_saddles_above_meV"].as_array().into_iter().flatten().map(number).collect();
+        let near = entry["nearly_equivalent_saddles"].as_array().into_iter().flatten();
+        let siblings: Vec<[f64; 2]> = near.map(|s| [number(&s["above_meV"]), number(&s["saddles"])]).collect();
         let many = |t: f64| {
-            let weights = siblings.iter().map(|above| (-above / (K_B_MEV * t)).exp());
+            let weights = siblings.iter().map(|[above, count]| count * (-above / (K_B_MEV * t)).exp());
             number(&entry["equivalent_saddles"]) + weights.sum::<f64>()
         };
         let first = number(&entry["prefactor_temperature_K"]);

@@ -6,9 +6,10 @@ use crate::energy::Evaluator;
 use crate::landscape::{Doubt, Minimum, Pass, Peak, Saddle};
 use crate::linalg::slab;
 use crate::rates::{
-    Equivalents, KEPT, Kindred, Orbits, RateSettings, Rates, Refusal, SaddleRate, Symmetry, Theory, Turn, Unstable,
-    ZeroKind, ZeroModes, equivalent_saddles, leads_back, refused, siblings, transitions, unstable_mode,
+    APART, Equivalents, KEPT, Kindred, Orbits, RateSettings, Rates, Refusal, SaddleRate, Symmetry, Theory, Turn,
+    Unstable, ZeroKind, ZeroModes, equivalent_saddles, leads_back_by, refused, siblings, transitions, unstable_mode,
 };
+use crate::sphere::SAME;
 use crate::spins::Spins;
 use crate::stationary::{ALIKE, Refined, Spectrum, State};
 use crate::units::K_B;
@@ -103,36 +104,42 @@ impl Slides {
         let along = self.turn.map(|turn| group.with_axis(turn.axis));
         let along = along.as_ref().unwrap_or(group);
         let ends = [links[0].before.spins.as_slice(), links[last - 1].after.spins.as_slice()];
-        let like = |m: &[f64], own: bool| {
-            let sliding = [own, self.minima[0], self.minima[last]];
-            equivalent_saddles(h.lattice(), along, m, ends, sliding, KEPT)
-        };
         let near = symmetry.near.as_ref().map(|near| self.turn.map_or(near.clone(), |turn| near.with_axis(turn.axis)));
         let tops: Vec<&[f64]> = links.iter().map(|l| l.saddle.spins()).collect();
         let inside: Vec<&[f64]> = links[..last - 1].iter().map(|l| l.after.spins.as_slice()).collect();
-        let kindred = |state: &State, unstable: Option<&Unstable>, own: bool| {
-            let counted = if unstable.is_some() { &tops } else { &inside };
-            let like = like(&state.m, own);
+        // of a state, but for what the way back along the path has too
+        let kindred = |state: &State, unstable: Option<&Unstable>, own: bool, back: &[&[f64]]| {
             let sliding = [own, self.minima[0], self.minima[last]];
+            let like = equivalent_saddles(h.lattice(), along, &state.m, ends, sliding, KEPT);
             let near = near.as_ref();
-            let siblings =
-                near.map(|near| siblings(h, [along, near], (state, unstable, 0), ends, sliding, KEPT, counted));
-            (like.clone(), Kindred { alike: like.count, siblings: siblings.unwrap_or_default() })
+            let siblings = near.map(|near| siblings(h, [along, near], (state, unstable, 0), ends, sliding, KEPT, back));
+            (Kindred { alike: like.count, siblings: siblings.unwrap_or_default() }, like)
         };
-        let inner = links[..last - 1].iter().zip(&self.minima[1..]);
-        let inner = inner.map(|(l, own)| kindred(&State::at(h, l.after.spins.as_slice().to_vec()), None, *own));
-        let (between, inside): (Vec<Equivalents>, Vec<Kindred>) = inner.unzip();
-        let tops = links.iter().zip(&self.saddles).map(|(l, own)| {
-            let Refined { state, valley, .. } = &*l.saddle.refined;
-            kindred(state, unstable_mode(state, valley, &state.zeros).as_ref(), *own).1
-        });
-        let saddles = tops.collect();
-        let minima = std::iter::once(Kindred::alone()).chain(inside).chain([Kindred::alone()]).collect();
-        let inner = [&links[0], &links[last - 2]].map(|l| l.after.spins.as_slice());
+        let count = |leads_back: bool| -> (Vec<Kindred>, Vec<(Kindred, Equivalents)>) {
+            let [of_tops, of_inside] = if leads_back { [&tops[..], &inside[..]] } else { [&[][..]; 2] };
+            let saddles = links.iter().zip(&self.saddles).map(|(l, own)| {
+                let Refined { state, valley, .. } = &*l.saddle.refined;
+                kindred(state, unstable_mode(state, valley, &state.zeros).as_ref(), *own, of_tops).0
+            });
+            let minima = inside.iter().zip(&self.minima[1..]);
+            let minima = minima.map(|(m, own)| kindred(&State::at(h, m.to_vec()), None, *own, of_inside));
+            (saddles.collect(), minima.collect())
+        };
+        let inner = [inside[0], inside[last - 2]];
         // of what slides the ends' own volumes hold all places
         let slides = self.minima.iter().chain(&self.saddles).any(|slides| *slides);
-        let leads_back = !slides && leads_back(along, inner, ends);
-        Orbits { above_k, saddles, minima, paths: between[0].clone(), leads_back }
+        let mut leads_back = !slides && leads_back_by(along, inner, ends, SAME);
+        let (mut saddles, mut between) = count(leads_back);
+        let has_siblings = saddles.iter().chain(between.iter().map(|b| &b.0)).any(|kin| !kin.siblings.0.is_empty());
+        if let Some(near) = near.as_ref().filter(|_| leads_back && has_siblings) {
+            // the way back may be a sibling too
+            leads_back = leads_back_by(near, inner, ends, APART);
+            (saddles, between) = count(leads_back);
+        }
+        let paths = between[0].1.clone();
+        let between = between.into_iter().map(|(kin, _)| kin);
+        let minima = std::iter::once(Kindred::alone()).chain(between).chain([Kindred::alone()]).collect();
+        Orbits { above_k, saddles, minima, paths, leads_back }
     }
 }
 

@@ -81,7 +81,7 @@ impl<'a> Run<'a, '_> {
             rejected
                 .insert(0, RejectedPath { guess: name, barrier_mev: Some(first_mev), negative_modes: None, reason });
             best.proof = proof;
-        } else {
+        } else if lower(route.top_mev) {
             best.proof.doubts.push(Doubt::Unassembled { top_mev: route.top_mev, path_mev: first_mev });
         }
         Ok(report)

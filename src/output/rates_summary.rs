@@ -8,7 +8,8 @@
 
 use super::number::Number;
 use crate::rates::{
-    Prefactor, Rates, Refusal, Row, SaddleRate, Theory, TransitionRate, TransitionRow, Way, ZeroKind, ZeroModes,
+    Prefactor, Rates, Refusal, Row, SaddleRate, Sibling, Theory, TransitionRate, TransitionRow, Way, ZeroKind,
+    ZeroModes,
 };
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -34,7 +35,7 @@ pub(super) struct RateEntry {
     equivalent_saddles: usize,
     equivalent_by: String,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    nearly_equivalent_saddles_above_meV: Vec<Number>,
+    nearly_equivalent_saddles: Vec<SiblingEntry>,
     damping: Number,
     g_factor: Number,
     blocking_temperature_1_s_K: Option<Number>,
@@ -56,6 +57,17 @@ pub(super) struct TransitionEntry {
     blocking_temperature_10_years_K: Option<Number>,
     refused: Option<String>,
     pub temperatures: Vec<PassageEntry>,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[allow(non_snake_case)]
+struct SiblingEntry {
+    above_meV: Number,
+    saddles: usize,
+}
+
+fn sibling(s: &Sibling) -> SiblingEntry {
+    SiblingEntry { above_meV: Number(s.above_mev), saddles: s.places }
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -134,7 +146,7 @@ fn saddle(rates: &Rates, r: &SaddleRate) -> RateEntry {
         soft_modes_change_at_K: r.regimes.iter().skip(1).map(|regime| Number(regime.above_k)).collect(),
         equivalent_saddles: told.equivalents.count,
         equivalent_by: told.equivalents.by.clone(),
-        nearly_equivalent_saddles_above_meV: told.siblings.0.iter().map(|s| Number(s.above_mev)).collect(),
+        nearly_equivalent_saddles: told.siblings.0.iter().map(sibling).collect(),
         damping: Number(settings.damping),
         g_factor: Number(settings.g_factor),
         blocking_temperature_1_s_K: r.blocking_k[0].map(Number),

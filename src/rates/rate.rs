@@ -219,8 +219,8 @@ impl SaddleRate {
         ruling(&self.regimes, |regime| regime.above_k, temperature_k)
     }
 
-    /// ln of the rate in 1/s by a theory at a temperature (K), over all saddles that are, or are nearly, equivalent; what the formula gives, however low the
-    /// barrier.
+    /// ln of the rate in 1/s by a theory at a temperature (K), over all saddles that are equivalent, or nearly so; what the formula gives,
+    /// however low the barrier.
     pub fn ln_rate_per_s(&self, theory: Theory, temperature_k: f64) -> Option<f64> {
         let regime = self.at(temperature_k);
         let many = regime.ln_saddles(temperature_k)[0];

@@ -8,7 +8,7 @@
 //! goes to that of an exact symmetry as it vanishes. What the last part of E_g comes to is taken for its error.
 
 use super::determinant::PinnedHessian;
-use super::symmetry::{KEPT_OR_EXCHANGED, free_shifts, largest_steps, slid};
+use super::symmetry::{KEPT_OR_EXCHANGED, free_shifts, largest_steps, places, slid};
 use super::unstable::Unstable;
 use crate::energy::{Evaluator, Hamiltonian};
 use crate::linalg::slab;
@@ -17,7 +17,7 @@ use crate::stationary::State;
 use crate::symmetry::{Group, Operation};
 
 /// Spins of a state differ from those of another by more somewhere (rad); what differs by less is the same, changed by what is weak.
-const APART: f64 = 0.3;
+pub const APART: f64 = 0.3;
 /// Most operations that are tried.
 const MOST: usize = 4096;
 
@@ -34,8 +34,8 @@ impl Symmetry {
     /// Of an energy, see [`Group::of`].
     pub fn of(h: &Hamiltonian, state: &[f64], alike: &[f64]) -> Symmetry {
         let (exact, near) = (Group::of(h, state, alike), Group::nearly(h, state, alike));
-        let order = exact.order();
-        Symmetry { exact, near: Some(near).filter(|near| near.order() > order && near.order() <= MOST) }
+        let is_more = near.order() > exact.order() && (near.orders() == exact.orders() || near.order() <= MOST);
+        Symmetry { exact, near: Some(near).filter(|_| is_more) }
     }
 
     /// The exact one alone: of what all saddles are known of.
@@ -73,6 +73,8 @@ pub struct Sibling {
     pub above_mev: f64,
     /// By how much that may be off (meV).
     pub off_mev: f64,
+    /// Its places: so many there are, at the same height.
+    pub places: usize,
 }
 
 /// All of a state.
@@ -83,8 +85,8 @@ impl Siblings {
     /// ln of the number of states at a k_BT (meV) of which so many are alike, and by how much that may be off.
     pub fn ln_number(&self, alike: usize, thermal_mev: f64) -> [f64; 2] {
         let (mut number, mut vague) = (alike as f64, 0.0);
-        for Sibling { above_mev, off_mev } in &self.0 {
-            let weight = libm::exp(-above_mev / thermal_mev);
+        for Sibling { above_mev, off_mev, places } in &self.0 {
+            let weight = *places as f64 * libm::exp(-above_mev / thermal_mev);
             number += weight;
             vague += weight * (off_mev / thermal_mev).min(1.0);
         }
@@ -105,8 +107,9 @@ pub fn siblings(
     minima_become: &[[usize; 2]],
     counted: &[&[f64]],
 ) -> Siblings {
-    let slides = sliding.contains(&true);
-    if exact.axes().len() > 1 || slides && near.orders() != exact.orders() {
+    // of those that differ by shifts alone one is enough, where all shifts are exact
+    let (slides, by_class) = (sliding.contains(&true), near.orders() == exact.orders());
+    if exact.axes().len() > 1 || slides && !by_class {
         return Siblings::default();
     }
     let steps = free_shifts(exact, minima, [sliding[1], sliding[2]]);
@@ -123,20 +126,19 @@ pub fn siblings(
             })
         })
     };
-    // free shifts are in the volumes
     let operations = |group: &Group, become_these: &[[usize; 2]]| -> Vec<Operation> {
-        let until = if slides { steps.clone() } else { group.orders() };
+        let until = if by_class { steps.clone() } else { group.orders() };
         group.classes_within(&until).filter(|operation| keeps(operation, become_these)).collect()
     };
-    let is_one = |a: &[f64], b: &[f64]| match slides {
+    let is_one = |a: &[f64], b: &[f64]| match by_class {
         true => slid(exact, &steps, a, b, within[0]),
         false => near.takes(&exact.classes()[0], a, b, APART),
     };
     let mut kept: Vec<Vec<f64>> = Vec::new();
-    let known = [&state.m[..]].into_iter().chain(counted.iter().copied());
-    for (operation, m) in operations(exact, KEPT_OR_EXCHANGED).iter().flat_map(|by| known.clone().map(move |m| (by, m)))
-    {
-        let image = operation.apply(m);
+    let own = operations(exact, minima_become).into_iter().map(|by| by.apply(&state.m));
+    let others = if counted.is_empty() { Vec::new() } else { operations(exact, KEPT_OR_EXCHANGED) };
+    let others = others.iter().flat_map(|by| counted.iter().map(|m| by.apply(m)));
+    for image in own.chain(others) {
         if !kept.iter().any(|known| is_one(&image, known)) {
             kept.push(image);
         }
@@ -166,7 +168,10 @@ pub fn siblings(
         let falls_mev = 0.5 * slab::dot(&way, &force);
         let falling = PinnedHessian::new(&there.hessian, &there.zeros, None, kappa).negatives();
         let is_one = rotation_of(&state.field(&way)) < APART && falling <= usize::from(unstable.is_some()) + soft;
-        is_one.then(|| Sibling { above_mev: there.above_mev(&state.point) - falls_mev, off_mev: falls_mev.abs() })
+        let above_mev = there.above_mev(&state.point) - falls_mev;
+        // free shifts of what slides are in the volumes
+        let places = if by_class && !slides { places(exact, &there.m, &steps) } else { 1 };
+        is_one.then_some(Sibling { above_mev, off_mev: falls_mev.abs(), places })
     };
     Siblings(new.into_iter().filter_map(sibling).collect())
 }

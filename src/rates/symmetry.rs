@@ -73,13 +73,13 @@ pub fn equivalent_saddles(
 }
 
 /// Whether operations that make each of two minima the other make of this state one that none of those that keep both makes of `last`:
-/// of the first state on a path between the minima, and of the last. Of states that do not slide.
-pub fn leads_back(group: &Group, [first, last]: [&[f64]; 2], minima: [&[f64]; 2]) -> bool {
+/// of the first state on a path between the minima, and of the last, each spin to less than `off` (rad). Of states that do not slide.
+pub fn leads_back_by(group: &Group, [first, last]: [&[f64]; 2], minima: [&[f64]; 2], off: f64) -> bool {
     if group.axes().len() > 1 {
         return false;
     }
     let steps = free_shifts(group, minima, [false; 2]);
-    let takes = |operation: &Operation, from: usize, to: usize| group.takes(operation, minima[from], minima[to], SAME);
+    let takes = |operation: &Operation, from: usize, to: usize| group.takes(operation, minima[from], minima[to], off);
     // all others are this one after one that keeps both
     let Some(back) = group.classes_within(&steps).find(|by| takes(by, 0, 1) && takes(by, 1, 0)) else {
         return false;
@@ -87,7 +87,7 @@ pub fn leads_back(group: &Group, [first, last]: [&[f64]; 2], minima: [&[f64]; 2]
     let image = back.apply(first);
     !group.classes_within(&steps).any(|by| {
         let keeps = takes(&by, 0, 0) && takes(&by, 1, 1);
-        keeps && slid(group, &steps, &by.apply(last), &image, SAME)
+        keeps && slid(group, &steps, &by.apply(last), &image, off)
     })
 }
 
