@@ -6,8 +6,8 @@ use crate::energy::Evaluator;
 use crate::landscape::{Doubt, Minimum, Pass, Peak, Saddle};
 use crate::linalg::slab;
 use crate::rates::{
-    APART, Equivalents, KEPT, Kindred, Orbits, RateSettings, Rates, Refusal, SaddleRate, Symmetry, Theory, Turn,
-    Unstable, ZeroKind, ZeroModes, equivalent_saddles, leads_back_by, refused, siblings, transitions, unstable_mode,
+    APART, Equivalents, Family, KEPT, Kindred, Orbits, RateSettings, Rates, Refusal, SaddleRate, Symmetry, Theory,
+    Turn, Unstable, ZeroKind, ZeroModes, equivalent_saddles, leads_back_by, refused, transitions, unstable_mode,
 };
 use crate::sphere::SAME;
 use crate::spins::Spins;
@@ -27,6 +27,8 @@ pub struct Known<'a> {
     pub doubts: &'a [Doubt],
     /// What the run came to, if there is no barrier.
     pub no_barrier: Option<&'a Verdict>,
+    /// The symmetry of the energy and the moments, where there are links.
+    pub symmetry: Option<&'a Symmetry>,
 }
 
 impl Known<'_> {
@@ -39,25 +41,23 @@ impl Known<'_> {
 /// The rates over every saddle and over the whole path.
 pub fn of_path(known: &Known, settings: &RateSettings) -> Rates {
     let doubt = known.doubt();
-    let symmetry =
-        known.links.first().map(|l| Symmetry::of(&known.h, l.before.spins.as_slice(), &settings.moments_mub));
-    let saddles: Vec<_> = match symmetry.as_ref().filter(|_| known.no_barrier.is_none()) {
+    let saddles: Vec<_> = match known.symmetry.filter(|_| known.no_barrier.is_none()) {
         None => known.saddles.iter().enumerate().flat_map(|(k, s)| unproven(known, k, s, settings)).collect(),
         Some(symmetry) => known.links.iter().flat_map(|l| proven(known, symmetry, l, settings)).collect(),
     };
-    let orbits = orbits(known, symmetry.as_ref(), &saddles);
+    let orbits = orbits(known, &saddles);
     let transitions = transitions(&saddles, &orbits, settings, doubt.as_deref());
     Rates { settings: settings.clone(), saddles, transitions }
 }
 
 /// How many of its saddles and minima symmetry makes, both ends kept, at all temperatures. A path over one saddle needs no count: the
 /// saddles between the same two minima are counted with it.
-fn orbits(known: &Known, symmetry: Option<&Symmetry>, rates: &[SaddleRate]) -> Vec<Orbits> {
+fn orbits(known: &Known, rates: &[SaddleRate]) -> Vec<Orbits> {
     let alone = |by: &str| {
         let paths = Equivalents { count: 1, by: by.into() };
         vec![Orbits { above_k: 0.0, saddles: Vec::new(), minima: Vec::new(), paths, leads_back: false }]
     };
-    let Some(symmetry) = symmetry.filter(|_| !known.links.is_empty()) else { return alone("not sought") };
+    let Some(symmetry) = known.symmetry.filter(|_| !known.links.is_empty()) else { return alone("not sought") };
     if known.links.len() == 1 || known.doubt().is_some() {
         return alone("counted with the saddle");
     }
@@ -99,20 +99,18 @@ impl Slides {
     }
 
     fn orbits(&self, known: &Known, symmetry: &Symmetry, above_k: f64) -> Orbits {
-        let group = &symmetry.exact;
         let (links, h, last) = (known.links, known.h, known.links.len());
-        let along = self.turn.map(|turn| group.with_axis(turn.axis));
-        let along = along.as_ref().unwrap_or(group);
+        let symmetry = symmetry.along(self.turn);
+        let along = &symmetry.exact;
         let ends = [links[0].before.spins.as_slice(), links[last - 1].after.spins.as_slice()];
-        let near = symmetry.near.as_ref().map(|near| self.turn.map_or(near.clone(), |turn| near.with_axis(turn.axis)));
+        let slide = [self.minima[0], self.minima[last]];
+        let family = Family::of(h, &symmetry, ends, slide, KEPT);
         let tops: Vec<&[f64]> = links.iter().map(|l| l.saddle.spins()).collect();
         let inside: Vec<&[f64]> = links[..last - 1].iter().map(|l| l.after.spins.as_slice()).collect();
         // of a state, but for what the way back along the path has too
         let kindred = |state: &State, unstable: Option<&Unstable>, own: bool, back: &[&[f64]]| {
-            let sliding = [own, self.minima[0], self.minima[last]];
-            let like = equivalent_saddles(h.lattice(), along, &state.m, ends, sliding, KEPT);
-            let near = near.as_ref();
-            let siblings = near.map(|near| siblings(h, [along, near], (state, unstable, 0), ends, sliding, KEPT, back));
+            let like = equivalent_saddles(h.lattice(), along, &state.m, ends, [own, slide[0], slide[1]], KEPT);
+            let siblings = family.as_ref().map(|family| family.siblings((state, unstable, 0), own, back));
             (Kindred { alike: like.count, siblings: siblings.unwrap_or_default() }, like)
         };
         let count = |leads_back: bool| -> (Vec<Kindred>, Vec<(Kindred, Equivalents)>) {
@@ -131,7 +129,7 @@ impl Slides {
         let mut leads_back = !slides && leads_back_by(along, inner, ends, SAME);
         let (mut saddles, mut between) = count(leads_back);
         let has_siblings = saddles.iter().chain(between.iter().map(|b| &b.0)).any(|kin| !kin.siblings.0.is_empty());
-        if let Some(near) = near.as_ref().filter(|_| leads_back && has_siblings) {
+        if let Some(near) = symmetry.near.as_ref().filter(|_| leads_back && has_siblings) {
             // the way back may be a sibling too
             leads_back = leads_back_by(near, inner, ends, APART);
             (saddles, between) = count(leads_back);
@@ -189,7 +187,9 @@ pub fn stored_rates(
         }
     }
     let above_final = h.difference_mev(minima[saddles.len()].as_slice(), initial);
-    Ok(of_path(&Known { h, links: &links, saddles, above_final, doubts: &[], no_barrier: None }, settings))
+    let symmetry = Symmetry::of(&h, initial, &settings.moments_mub);
+    let (doubts, no_barrier, symmetry) = (&[][..], None, Some(&symmetry));
+    Ok(of_path(&Known { h, links: &links, saddles, above_final, doubts, no_barrier, symmetry }, settings))
 }
 
 /// A stored saddle between two minima, its descending mode found anew.

@@ -13,6 +13,7 @@ use crate::energy::Evaluator;
 use crate::landscape::{Doubt, Effort, Minimum, Pass, Saddle};
 use crate::linalg::slab;
 use crate::path::{Path, RESOLVED, is_within};
+use crate::rates::Symmetry;
 use crate::spins::Spins;
 use crate::stationary::{LOWER, RELAXED, Spectrum, relax_to_minimum};
 use crate::threads::{MADE, apiece};
@@ -61,6 +62,7 @@ pub fn outcome(
     proof: Proof,
     search: SearchReport,
     rejected_paths: Vec<RejectedPath>,
+    symmetry: Option<&Symmetry>,
 ) -> Outcome {
     let h = run.problem.evaluator();
     let band = &c.band;
@@ -80,7 +82,9 @@ pub fn outcome(
     };
     let rates = run.problem.rates.as_ref().map(|settings| {
         let no_barrier = barrier.is_none().then_some(&verdict);
-        rates::of_path(&Known { h, links, saddles: &saddles, above_final, doubts: &doubts, no_barrier }, settings)
+        let symmetry = symmetry.filter(|_| !links.is_empty());
+        let known = Known { h, links, saddles: &saddles, above_final, doubts: &doubts, no_barrier, symmetry };
+        rates::of_path(&known, settings)
     });
     let behind = proof.links.iter().zip(places.iter().skip(1).step_by(2));
     let intermediate_minima: Vec<IntermediateMinimum> = match proof.links.len() {

@@ -15,7 +15,7 @@ use crate::geometry::Direction;
 use crate::landscape::{Doubt, Edge, Landscape, Minimum, Pass};
 use crate::path::guess::{FirstGuess, GuessContext, Rotation};
 use crate::path::is_within;
-use crate::rates::{Kin, LEAST_BARRIER, RateSettings};
+use crate::rates::{Kin, LEAST_BARRIER, RateSettings, Symmetry};
 use crate::record::Count;
 use crate::sphere::SAME;
 use crate::spins::Spins;
@@ -141,11 +141,16 @@ impl<'a, 'o> Run<'a, 'o> {
         let scale = self.tools.scales.stiffness_mev;
         let mut rejected: Vec<RejectedPath> = others.iter().map(|c| rejection(c, &best.first, scale)).collect();
         let mut search = self.search(&mut best, &mut rejected)?;
-        (search.lowest_exits_mev, search.exits_from_k) = (self.lowest_exits(&best.proof.links), self.coldest_k());
+        let (links, rates) = (&best.proof.links, self.problem.rates.as_ref());
+        let symmetry = links.first().zip(rates).map(|(first, rates)| {
+            Symmetry::of(&self.problem.hamiltonian, first.before.spins.as_slice(), &rates.moments_mub)
+        });
+        search.lowest_exits_mev = self.lowest_exits(links, symmetry.as_ref());
+        search.exits_from_k = self.coldest_k();
         if self.problem.rates.is_some() {
             self.observer.stage("computing the rates");
         }
-        Ok(report::outcome(&self, best.first, &best.found, best.proof, search, rejected))
+        Ok(report::outcome(&self, best.first, &best.found, best.proof, search, rejected, symmetry.as_ref()))
     }
 
     /// The lowest temperature (K) that rates are asked for at.
@@ -154,7 +159,7 @@ impl<'a, 'o> Run<'a, 'o> {
     }
 
     /// Beside the path over these saddles, of the initial and of the final state (meV above it).
-    fn lowest_exits(&mut self, links: &[Pass]) -> [Option<f64>; 2] {
+    fn lowest_exits(&mut self, links: &[Pass], symmetry: Option<&Symmetry>) -> [Option<f64>; 2] {
         let Some(first) = links.first() else { return [None; 2] };
         let beside = std::iter::once(&first.before).chain(links.iter().map(|link| &link.after));
         let mut minima: Vec<usize> = beside.map(|minimum| self.land.add_minimum(minimum)).collect();
@@ -164,8 +169,7 @@ impl<'a, 'o> Run<'a, 'o> {
         // rates are over the kin of the path's saddles too
         let ends = [&first.before, &links[links.len() - 1].after].map(|minimum| minimum.spins.as_slice());
         let tops: Vec<&[f64]> = links.iter().map(|link| link.saddle.spins()).collect();
-        let rates = self.problem.rates.as_ref();
-        let kin = rates.map(|rates| Kin::of(&self.problem.hamiltonian, ends, &rates.moments_mub));
+        let kin = symmetry.map(|symmetry| Kin::of(symmetry, ends));
         let exit = |minima: &[usize], saddles: &[f64], last: usize| {
             let is_told = |edge: &Edge| kin.as_ref().is_some_and(|kin| kin.holds(last, &tops, &edge.saddle));
             self.land.lowest_exit_mev(minima, saddles, within_mev, &is_told)
@@ -282,7 +286,7 @@ impl<'a, 'o> Run<'a, 'o> {
         let stop = Stop::Converged { rotation: 0.0, tolerance: self.problem.neb.tolerance };
         let c = FirstPath::new("rotation".into(), band, stop);
         let proof = Proof { ends, links: Vec::new(), doubts: vec![Doubt::CostlyTurn] };
-        Ok(Some(report::outcome(self, c, &[], proof, SearchReport::default(), Vec::new())))
+        Ok(Some(report::outcome(self, c, &[], proof, SearchReport::default(), Vec::new(), None)))
     }
 }
 

@@ -18,7 +18,7 @@ use crate::symmetry::{Group, Operation};
 
 /// Images by symmetry of every minimum and pass, at most, and of how many spins; and minima, from which on no more images are added:
 /// so many in a search for a route, and so many in a survey.
-const IMAGES: usize = 64;
+pub(super) const IMAGES: usize = 64;
 const IMAGE_SPINS: usize = 2_000_000;
 const MINIMA: usize = 2000;
 const SURVEYED: usize = 10_000;

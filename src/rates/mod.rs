@@ -52,7 +52,7 @@ pub use passage::{TEN_YEARS_S, blocking_temperature, first_passage, passages};
 pub use rate::{Crossing, LEAST_BARRIER, Prefactor, Regime, Row, SaddleRate, Way, refused, saddle_rates};
 pub use refusal::{Refusal, UnknownModes};
 pub use settings::{RateSettings, Theory, checked_damping, checked_g_factor, checked_temperature};
-pub use siblings::{APART, Kin, Sibling, Siblings, Symmetry, siblings};
+pub use siblings::{APART, Family, Kin, Sibling, Siblings, Symmetry};
 pub use sliding::{Pinning, Turn};
 pub use symmetry::{Equivalents, KEPT, KEPT_OR_EXCHANGED, equivalent_saddles, leads_back_by};
 pub use transition::{Kindred, Orbits, TransitionRate, TransitionRow, transitions};

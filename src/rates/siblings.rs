@@ -8,6 +8,7 @@
 //! goes to that of an exact symmetry as it vanishes. What the last part of E_g comes to is taken for its error.
 
 use super::determinant::PinnedHessian;
+use super::sliding::Turn;
 use super::symmetry::{KEPT_OR_EXCHANGED, free_shifts, largest_steps, places, slid};
 use super::unstable::Unstable;
 use crate::energy::{Evaluator, Hamiltonian};
@@ -15,6 +16,7 @@ use crate::linalg::slab;
 use crate::sphere::rotation_of;
 use crate::stationary::State;
 use crate::symmetry::{Group, Operation};
+use std::borrow::Cow;
 
 /// Spins of a state differ from those of another by more somewhere (rad); what differs by less is the same, changed by what is weak.
 pub const APART: f64 = 0.3;
@@ -22,7 +24,7 @@ pub const APART: f64 = 0.3;
 const MOST: usize = 4096;
 
 /// The exact symmetry of an energy, and that which it would have without what is weak in it.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Symmetry {
     /// Of the energy and the moments.
     pub exact: Group,
@@ -42,27 +44,34 @@ impl Symmetry {
     pub fn exactly(group: &Group) -> Symmetry {
         Symmetry { exact: group.clone(), near: None }
     }
+
+    /// The same where states slide along a turn.
+    pub fn along(&self, turn: Option<Turn>) -> Cow<'_, Symmetry> {
+        let Some(Turn { axis, .. }) = turn else { return Cow::Borrowed(self) };
+        let near = self.near.as_ref().map(|near| near.with_axis(axis));
+        Cow::Owned(Symmetry { exact: self.exact.with_axis(axis), near })
+    }
 }
 
 /// The operations, exact or nearly so, that keep the first and the last state of a path: rates are over what they make of its saddles.
 #[derive(Debug)]
-pub struct Kin {
-    near: Group,
+pub struct Kin<'a> {
+    group: &'a Group,
     keep: [Vec<Operation>; 2],
 }
 
-impl Kin {
+impl<'a> Kin<'a> {
     /// Of the path between two minima.
-    pub fn of(h: &Hamiltonian, ends: [&[f64]; 2], alike: &[f64]) -> Kin {
-        let near = Group::nearly(h, ends[0], alike);
-        let all = if near.order() > MOST { Vec::new() } else { near.classes_within(&near.orders()).collect() };
-        let keep = ends.map(|end| all.iter().filter(|by| near.takes(by, end, end, APART)).cloned().collect());
-        Kin { near, keep }
+    pub fn of(symmetry: &'a Symmetry, ends: [&[f64]; 2]) -> Kin<'a> {
+        let group = symmetry.near.as_ref().unwrap_or(&symmetry.exact);
+        let all = if group.order() > MOST { Vec::new() } else { group.classes_within(&group.orders()).collect() };
+        let keep = ends.map(|end| all.iter().filter(|by| group.takes(by, end, end, APART)).cloned().collect());
+        Kin { group, keep }
     }
 
     /// Whether those that keep the first end (0) or the last (1) make this saddle of one of the path's.
     pub fn holds(&self, end: usize, saddles: &[&[f64]], m: &[f64]) -> bool {
-        self.keep[end].iter().any(|by| saddles.iter().any(|saddle| self.near.takes(by, saddle, m, APART)))
+        self.keep[end].iter().any(|by| saddles.iter().any(|saddle| self.group.takes(by, saddle, m, APART)))
     }
 }
 
@@ -94,84 +103,109 @@ impl Siblings {
     }
 }
 
-/// The states that operations which nearly are of the group make of a stationary one, with its descending mode: those by which two minima
-/// nearly become these of them, but for those that the group itself makes of it, and of others that are `counted`, by operations that keep
-/// or exchange the minima. So many of its modes are `soft`. `sliding` as in
-/// [`equivalent_saddles`](super::equivalent_saddles).
-pub fn siblings(
-    h: Evaluator,
-    [exact, near]: [&Group; 2],
-    (state, unstable, soft): (&State, Option<&Unstable>, usize),
-    minima: [&[f64]; 2],
-    sliding: [bool; 3],
-    minima_become: &[[usize; 2]],
-    counted: &[&[f64]],
-) -> Siblings {
-    // of those that differ by shifts alone one is enough, where all shifts are exact
-    let (slides, by_class) = (sliding.contains(&true), near.orders() == exact.orders());
-    if exact.axes().len() > 1 || slides && !by_class {
-        return Siblings::default();
+/// What the operations of an exact and of a near group make of stationary states that lie between two minima.
+pub struct Family<'a> {
+    h: Evaluator<'a>,
+    exact: &'a Group,
+    near: &'a Group,
+    minima: [&'a [f64]; 2],
+    /// Whether they slide, each.
+    slide: [bool; 2],
+    /// Of those that differ by shifts alone one is enough, where all shifts are exact.
+    by_class: bool,
+    /// Of each shift the first multiple that is free.
+    steps: Vec<usize>,
+    /// By which the minima become, exactly and nearly, what they may.
+    exactly: Vec<Operation>,
+    nearly: Vec<Operation>,
+}
+
+impl<'a> Family<'a> {
+    /// Of minima that may become these of them. Nothing where the symmetry is nearly no more than it is.
+    pub fn of(
+        h: Evaluator<'a>,
+        symmetry: &'a Symmetry,
+        minima: [&'a [f64]; 2],
+        slide: [bool; 2],
+        minima_become: &[[usize; 2]],
+    ) -> Option<Family<'a>> {
+        let exact = &symmetry.exact;
+        let near = symmetry.near.as_ref().filter(|_| exact.axes().len() < 2)?;
+        let (by_class, steps) = (near.orders() == exact.orders(), free_shifts(exact, minima, slide));
+        let [exactly, nearly] = [(); 2].map(|()| Vec::new());
+        let mut family = Family { h, exact, near, minima, slide, by_class, steps, exactly, nearly };
+        family.exactly = family.operations(exact, minima_become);
+        family.nearly = family.operations(near, minima_become);
+        let exactly = &family.exactly;
+        family.nearly.retain(|by| !exactly.iter().any(|own| own.is_same(by)));
+        Some(family)
     }
-    let steps = free_shifts(exact, minima, [sliding[1], sliding[2]]);
-    let off = |m: &[f64], own: bool| if own { APART + 0.6 * largest_steps(h.lattice(), m) } else { APART };
-    let within = [off(&state.m, sliding[0]), off(minima[0], sliding[1]), off(minima[1], sliding[2])];
-    let keeps = |operation: &Operation, become_these: &[[usize; 2]]| {
-        become_these.iter().any(|images| {
-            (0..2).all(|from| {
-                let to = images[from];
-                match sliding[to + 1] {
-                    true => slid(exact, &steps, &operation.apply(minima[from]), minima[to], within[to + 1]),
-                    false => near.takes(operation, minima[from], minima[to], APART),
-                }
-            })
-        })
-    };
-    let operations = |group: &Group, become_these: &[[usize; 2]]| -> Vec<Operation> {
-        let until = if by_class { steps.clone() } else { group.orders() };
-        group.classes_within(&until).filter(|operation| keeps(operation, become_these)).collect()
-    };
-    let is_one = |a: &[f64], b: &[f64]| match by_class {
-        true => slid(exact, &steps, a, b, within[0]),
-        false => near.takes(&exact.classes()[0], a, b, APART),
-    };
-    let mut kept: Vec<Vec<f64>> = Vec::new();
-    let own = operations(exact, minima_become).into_iter().map(|by| by.apply(&state.m));
-    let others = if counted.is_empty() { Vec::new() } else { operations(exact, KEPT_OR_EXCHANGED) };
-    let others = others.iter().flat_map(|by| counted.iter().map(|m| by.apply(m)));
-    for image in own.chain(others) {
-        if !kept.iter().any(|known| is_one(&image, known)) {
-            kept.push(image);
+
+    /// The operations of one of the groups by which the minima become these of them, nearly.
+    fn operations(&self, group: &Group, minima_become: &[[usize; 2]]) -> Vec<Operation> {
+        let off = |k: usize| APART + 0.6 * largest_steps(self.h.lattice(), self.minima[k]);
+        let takes = |by: &Operation, from: usize, to: usize| match self.slide[to] {
+            true => slid(self.exact, &self.steps, &by.apply(self.minima[from]), self.minima[to], off(to)),
+            false => self.near.takes(by, self.minima[from], self.minima[to], APART),
+        };
+        let keeps = |by: &Operation| minima_become.iter().any(|[a, b]| takes(by, 0, *a) && takes(by, 1, *b));
+        let until = if self.by_class { self.steps.clone() } else { group.orders() };
+        group.classes_within(&until).filter(keeps).collect()
+    }
+
+    /// The states that the near group makes of one, with its descending mode and how many of its modes are soft, which may slide itself: but
+    /// for those that the exact one makes of it, and of others that are `counted`, by operations that keep or exchange the minima.
+    pub fn siblings(
+        &self,
+        (state, unstable, soft): (&State, Option<&Unstable>, usize),
+        slides: bool,
+        counted: &[&[f64]],
+    ) -> Siblings {
+        let off = if slides { APART + 0.6 * largest_steps(self.h.lattice(), &state.m) } else { APART };
+        let slides = slides || self.slide.contains(&true);
+        if slides && !self.by_class {
+            return Siblings::default();
         }
-    }
-    let mut new: Vec<(Operation, Vec<f64>)> = Vec::new();
-    for operation in operations(near, minima_become) {
-        let image = operation.apply(&state.m);
-        if !kept.iter().any(|known| is_one(&image, known)) {
-            kept.push(image.clone());
-            new.push((operation, image));
+        let is_one = |a: &[f64], b: &[f64]| match self.by_class {
+            true => slid(self.exact, &self.steps, a, b, off),
+            false => self.near.takes(&self.exact.classes()[0], a, b, APART),
+        };
+        let mut kept: Vec<Vec<f64>> = Vec::new();
+        let mut is_new = |image: &Vec<f64>| {
+            let new = !kept.iter().any(|known| is_one(image, known));
+            kept.extend(Some(image.clone()).filter(|_| new));
+            new
+        };
+        self.exactly.iter().for_each(|by| _ = is_new(&by.apply(&state.m)));
+        let images = self.nearly.iter().map(|by| (by, by.apply(&state.m)));
+        let mut new: Vec<(&Operation, Vec<f64>)> = images.filter(|(_, image)| is_new(image)).collect();
+        if !new.is_empty() && !counted.is_empty() {
+            let all = self.operations(self.exact, KEPT_OR_EXCHANGED);
+            let counted: Vec<Vec<f64>> = all.iter().flat_map(|by| counted.iter().map(|m| by.apply(m))).collect();
+            new.retain(|(_, image)| !counted.iter().any(|known| is_one(image, known)));
         }
-    }
-    if new.is_empty() || h.is_stopped() {
-        return Siblings::default();
-    }
-    let kappa = h.stiffness_mev() / 3.0;
-    let pinned = PinnedHessian::new(&state.hessian, &state.zeros, unstable, kappa);
-    let sibling = |(operation, image): (Operation, Vec<f64>)| {
-        let there = State::at(h, image);
-        let force = state.basis.coordinates(&operation.undone_field(&there.field(&there.slope)));
-        // down across the descent, up along it
-        let mut way = force.clone();
-        pinned.solve(&mut way);
-        if let Some(Unstable { eigenvalue_mev, mode }) = unstable {
-            slab::add_scaled(&mut way, slab::dot(mode, &force) / eigenvalue_mev, mode);
+        if new.is_empty() || self.h.is_stopped() {
+            return Siblings::default();
         }
-        let falls_mev = 0.5 * slab::dot(&way, &force);
-        let falling = PinnedHessian::new(&there.hessian, &there.zeros, None, kappa).negatives();
-        let is_one = rotation_of(&state.field(&way)) < APART && falling <= usize::from(unstable.is_some()) + soft;
-        let above_mev = there.above_mev(&state.point) - falls_mev;
-        // free shifts of what slides are in the volumes
-        let places = if by_class && !slides { places(exact, &there.m, &steps) } else { 1 };
-        is_one.then_some(Sibling { above_mev, off_mev: falls_mev.abs(), places })
-    };
-    Siblings(new.into_iter().filter_map(sibling).collect())
+        let kappa = self.h.stiffness_mev() / 3.0;
+        let pinned = PinnedHessian::new(&state.hessian, &state.zeros, unstable, kappa);
+        let sibling = |(operation, image): (&Operation, Vec<f64>)| {
+            let there = State::at(self.h, image);
+            let force = state.basis.coordinates(&operation.undone_field(&there.field(&there.slope)));
+            // down across the descent, up along it
+            let mut way = force.clone();
+            pinned.solve(&mut way);
+            if let Some(Unstable { eigenvalue_mev, mode }) = unstable {
+                slab::add_scaled(&mut way, slab::dot(mode, &force) / eigenvalue_mev, mode);
+            }
+            let falls_mev = 0.5 * slab::dot(&way, &force);
+            let falling = PinnedHessian::new(&there.hessian, &there.zeros, None, kappa).negatives();
+            let is_one = rotation_of(&state.field(&way)) < APART && falling <= usize::from(unstable.is_some()) + soft;
+            let above_mev = there.above_mev(&state.point) - falls_mev;
+            // free shifts of what slides are in the volumes
+            let places = if self.by_class && !slides { places(self.exact, &there.m, &self.steps) } else { 1 };
+            is_one.then_some(Sibling { above_mev, off_mev: falls_mev.abs(), places })
+        };
+        Siblings(new.into_iter().filter_map(sibling).collect())
+    }
 }

@@ -6,8 +6,8 @@ use super::refusal::no_minimum;
 use super::sliding::{Generator, LEAST, Pinning, Slide, Sliding, Turn};
 use super::symmetry::{free_shifts, places, states_along_turn, states_on_the_way};
 use super::{
-    Crossing, Equivalents, KEPT_OR_EXCHANGED, Refusal, Siblings, Symmetry, UnknownModes, Unstable, ZeroModes,
-    equivalent_saddles, growth_rate, siblings, zero_modes,
+    Crossing, Equivalents, Family, KEPT_OR_EXCHANGED, Refusal, Siblings, Symmetry, UnknownModes, Unstable, ZeroModes,
+    equivalent_saddles, growth_rate, zero_modes,
 };
 use crate::energy::Evaluator;
 use crate::linalg::{orthonormal, remove, slab};
@@ -173,17 +173,15 @@ impl<'a> Beside<'a> {
         if self.h.is_stopped() {
             return Err(Refusal::Stopped);
         }
-        let along = turn.map(|turn| self.group().with_axis(turn.axis));
-        let along = along.as_ref().unwrap_or(self.group());
+        let symmetry = self.symmetry.along(*turn);
+        let along = &symmetry.exact;
         let shifts = sliding.each_ref().map(Sliding::shifts);
         let [saddle, before, after] = self.states.each_ref().map(|state| &state.m[..]);
         let equivalents =
             equivalent_saddles(self.h.lattice(), along, saddle, [before, after], shifts, KEPT_OR_EXCHANGED);
-        let near = self.symmetry.near.as_ref().map(|near| turn.map_or(near.clone(), |turn| near.with_axis(turn.axis)));
-        let siblings = near.map_or_else(Siblings::default, |near| {
-            let own = (&self.states[0], Some(&self.unstable), sliding[0].modes.len());
-            siblings(self.h, [along, &near], own, [before, after], shifts, KEPT_OR_EXCHANGED, &[])
-        });
+        let family = Family::of(self.h, &symmetry, [before, after], [shifts[1], shifts[2]], KEPT_OR_EXCHANGED);
+        let own = (&self.states[0], Some(&self.unstable), sliding[0].modes.len());
+        let siblings = family.map(|family| family.siblings(own, shifts[0], &[])).unwrap_or_default();
         let free = Some(&steps[..]).filter(|_| shifts.contains(&true));
         let well = |k: usize| {
             let well = unknown[k].map_or_else(|| self.well(k, &sliding[k], free, along), Err);

@@ -35,4 +35,5 @@ mod shift;
 
 pub use group::Group;
 pub use operation::Operation;
+pub use search::WEAK;
 pub use shift::Shift;

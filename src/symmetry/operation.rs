@@ -25,6 +25,11 @@ impl Operation {
         self.motion.is_none() && self.moves_sites_alone()
     }
 
+    /// Whether another one does the same.
+    pub fn is_same(&self, other: &Operation) -> bool {
+        self.motion == other.motion && apart(&self.spin, &other.spin) < SAME
+    }
+
     /// Whether every spin that moves is the same at another site.
     pub fn moves_sites_alone(&self) -> bool {
         apart(&self.spin, &UNIT) < SAME

@@ -13,6 +13,9 @@ use crate::linalg::slab;
 use crate::spins::Spins;
 use std::sync::Arc;
 
+/// What changes the force on a spin, or an energy a site, by less than this part of the stiffness is weak: a stray field, a little disorder.
+pub const WEAK: f64 = 1e-2;
+
 /// How much alike two things are.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Alike {
@@ -25,8 +28,8 @@ pub(super) struct Alike {
 impl Alike {
     /// But for rounding.
     pub const EXACTLY: Alike = Alike { agree: 1e-12, noise: 1e-11 };
-    /// But for what is weak beside the stiffness: a stray field, a little disorder.
-    pub const NEARLY: Alike = Alike { agree: 1e-2, noise: 2e-2 };
+    /// But for what is weak.
+    pub const NEARLY: Alike = Alike { agree: WEAK, noise: 2.0 * WEAK };
 }
 
 /// How many operations that move sites are tried at most.

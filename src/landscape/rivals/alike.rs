@@ -2,13 +2,9 @@
 //! route is looked for, of those that are as high as it.
 
 use super::{Cut, Rival};
-use crate::symmetry::{Group, Operation};
+use crate::landscape::graph::IMAGES;
+use crate::symmetry::{Group, Operation, WEAK};
 use rand_chacha::ChaCha8Rng;
-
-/// Operations that are tried at most; about as many images does a search for a route make of a pass.
-const MOST: usize = 64;
-/// The image of a saddle is beside another one where it is as high to this part of the stiffness.
-const BESIDE: f64 = 1e-2;
 
 /// What was tried.
 #[derive(Debug, Default)]
@@ -24,7 +20,7 @@ impl Rival for Alike {
         let (land, h) = (cut.land, cut.land.evaluator());
         let found = || {
             let group = Group::nearly(&h, land.reference(), &[]);
-            group.operations().take(MOST).collect()
+            group.operations().take(IMAGES).collect()
         };
         let operations = self.operations.get_or_insert_with(found);
         let ways = land.passes().len() * operations.len();
@@ -33,7 +29,7 @@ impl Rival for Alike {
             self.next += 1;
             let (image, own) = (by.apply(pass.saddle.spins()), land.height_mev(pass.saddle.spins()));
             let height = land.height_mev(&image);
-            let is_beside = (height - own).abs() < BESIDE * h.stiffness_mev();
+            let is_beside = (height - own).abs() < WEAK * h.stiffness_mev();
             let is_wanted = cut.ends.is_none() || own >= cut.top_mev;
             if is_beside && is_wanted && height < cut.top_mev && !land.has_saddle(&image, height) {
                 return Some(image);
