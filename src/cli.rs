@@ -283,15 +283,15 @@ pub(crate) struct Rate {
     pub results: Vec<PathBuf>,
 
     /// A temperature with its unit; may be given several times
-    #[arg(short = 'T', long, required = true, value_name = "QUANTITY", value_parser = temperature)]
+    #[arg(short = 'T', long, required = true, value_name = "QUANTITY", value_parser = temperature, allow_hyphen_values = true)]
     pub temperature: Vec<Temperature>,
 
     /// Gilbert damping [default: that of the result's config, else 0.1]
-    #[arg(long, value_name = "ALPHA", value_parser = damping)]
+    #[arg(long, value_name = "ALPHA", value_parser = damping, allow_hyphen_values = true)]
     pub damping: Option<f64>,
 
     /// g factor [default: that of the result's config, else 2]
-    #[arg(long, value_name = "G", value_parser = g_factor)]
+    #[arg(long, value_name = "G", value_parser = g_factor, allow_hyphen_values = true)]
     pub g_factor: Option<f64>,
 
     /// htst or langer; may be given twice [default: those of the result's config, else both]

@@ -250,6 +250,11 @@ fn a_folder_without_a_result_or_without_moments_is_refused_in_words() {
     let (code, _, said) = spinneb(folder.path(), &["rate", "results/chain", "-T", "3 K"]);
     assert_eq!(code, Some(2));
     assert!(said.contains("a rate needs the moments of the sites"), "{said}");
+    // a number below zero is a number and no option
+    for (asked, words) in [(["-T", "-3 K"], "temperature"), (["--damping", "-1"], "damping")] {
+        let (code, _, said) = spinneb(folder.path(), &["rate", "results/chain", "-T", "3 K", asked[0], asked[1]]);
+        assert!(code == Some(2) && said.contains(words) && !said.contains("unexpected argument"), "{said}");
+    }
     let config = folder.path().join("results/chain/config.json");
     let changed = fs::read_to_string(&config).unwrap().replace("0.5 meV", "0.6 meV");
     fs::write(&config, changed).unwrap();

@@ -100,6 +100,12 @@ impl Config {
         places(&self.loaded)
     }
 
+    /// A lattice constant in nm, if it is known.
+    #[getter]
+    fn spacing_nm(&self) -> Option<f64> {
+        self.loaded.lattice.spacing_nm
+    }
+
     /// Which sites have no spin.
     #[getter]
     fn vacant(&self) -> Vec<bool> {

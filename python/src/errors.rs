@@ -14,11 +14,16 @@ fn exception(py: Python, name: &str, text: String) -> PyErr {
     }
 }
 
+/// What the command line calls options, as Python's arguments. Whole commands that a text names stay as they are.
+fn in_python(text: &str) -> String {
+    text.replace("use --force", "use force=True").replace(": --force", ": force=True").replace(" with --out", "")
+}
+
 /// `ConfigError` with the text of the command line, the system's own exception, or `SpinnebError`.
 pub fn raised(py: Python, error: Error) -> PyErr {
     match error {
         Error::Several(_) | Error::Config { .. } | Error::Invalid { .. } => {
-            exception(py, "ConfigError", error.to_string())
+            exception(py, "ConfigError", in_python(&error.to_string()))
         }
         Error::Io { source, path } if source.raw_os_error().is_some() => {
             // the system's number makes it FileNotFoundError, PermissionError …
@@ -32,7 +37,7 @@ pub fn raised(py: Python, error: Error) -> PyErr {
                 Err(error) => error,
             }
         }
-        other => exception(py, "SpinnebError", other.to_string()),
+        other => exception(py, "SpinnebError", in_python(&other.to_string())),
     }
 }
 

@@ -48,7 +48,7 @@ def test_numbers_are_named_as_in_the_summary(reversal):
     s, e = reversal.profile
     assert e.max() == pytest.approx(reversal.barrier_meV["forward"], rel=1e-3)
     assert repr(reversal).startswith("<Result chain: barrier 6.2") and "certified" in repr(reversal)
-    assert reversal.places[:, 0].tolist() == list(range(20))
+    assert reversal.places[:, 0].tolist() == list(range(20)) and reversal.places_nm is None
 
 
 def test_a_search_whose_work_was_spent_is_told_of(reversal):
@@ -214,6 +214,8 @@ def test_figures_are_drawn_on_axes(reversal):
     assert reversal.plot(axes, color="k") is axes
     assert len(reversal.plot_spins()) == 3
     assert len(reversal.plot_spins([0, -1])) == 2
+    with pytest.raises(IndexError, match="no image 99: the path has images 0 to"):
+        reversal.plot_spins([0, 99])
     film = sn.System(sn.triangular(6, 6), [sn.exchange(J=["5 meV"]), sn.anisotropy(K="1 meV")])
     assert len(sn.barrier(film, sn.uniform("z"), sn.uniform("-z"), effort="none").plot_spins()) >= 2
     assert len(sn.relax(film, sn.uniform("z")).plot_spins()) == 1
@@ -280,12 +282,27 @@ def test_results_are_saved_and_loaded(reversal, tmp_path):
     assert (folder / "path.pvd").exists() and not (folder / "report.html").exists()
     other = sn.System(sn.chain(10), [sn.exchange(J=["10 meV"]), sn.anisotropy(K="0.5 meV")], name="other")
     other = sn.barrier(other, sn.uniform("z"), sn.uniform("-z"))
-    with pytest.raises((sn.SpinnebError, OSError)):
+    with pytest.raises(sn.SpinnebError, match="use force=True to replace"):
         other.save(folder)
     other.save(folder, force=True, formats=["csv", "npz", "ovf"])
     assert sn.load(folder).name == "other" and not (folder / "report.html").exists()
     with pytest.raises(sn.ConfigError, match="known kinds"):
         other.save(folder, formats=["cvs"], force=True)
+
+
+def test_places_are_known_before_and_after_a_run_in_nm_too():
+    grid = sn.System(
+        sn.grid((4, 3, 1), cell=["2 nm", "4 nm", "1 nm"]), [sn.exchange(A="13 pJ/m"), sn.anisotropy(K="0.5 MJ/m^3")], Ms="800 kA/m"
+    )
+    x, y = np.meshgrid(1 + 2 * np.arange(4), 2 + 4 * np.arange(3))
+    wanted = np.stack([x.ravel(), y.ravel(), np.full(12, 0.5)], axis=1)
+    state = sn.relax(grid, sn.uniform("z"))
+    result = sn.barrier(grid, sn.uniform("z"), sn.uniform("-z"))
+    for places_nm in (grid.places_nm, state.places_nm, result.places_nm):
+        assert np.abs(places_nm - wanted).max() < 1e-12 and not places_nm.flags.writeable
+    assert np.abs(grid.places - wanted / 2).max() < 1e-12
+    atoms = sn.System(sn.triangular(3, 3), [sn.exchange(J=["1 meV"])])
+    assert atoms.places.shape == (9, 3) and atoms.places_nm is None
 
 
 def test_a_run_writes_to_its_folder(chain, tmp_path):
@@ -294,7 +311,7 @@ def test_a_run_writes_to_its_folder(chain, tmp_path):
     table = tmp_path / "s" / "path.csv"
     table.parent.mkdir()
     table.write_text("of another program")
-    with pytest.raises(sn.SpinnebError, match="path.csv"):
+    with pytest.raises(sn.SpinnebError, match=r"path.csv.*force=True to replace[^-]*$"):
         sn.barrier(chain, sn.uniform("z"), sn.uniform("-z"), out=table.parent)
     sn.barrier(chain, sn.uniform("z"), sn.uniform("-z"), out=table.parent, force=True)
     assert sn.load(table.parent).barrier_meV == result.barrier_meV

@@ -22,7 +22,19 @@ Values = Union[str, Sequence[Any], Mapping[str, Any]]
 #: indices of sites, a range {"from": 3, "to": 9}, a shape, or the name of a region
 Selection = Union[Sequence[int], NDArray[np.integer[Any]], Mapping[str, Any], str]
 
+#: numbers
+Array = NDArray[np.float64]
+
 _AXES = {"x": [1, 0, 0], "y": [0, 1, 0], "z": [0, 0, 1]}
+
+
+def in_nm(places: Array, spacing_nm: float | None) -> Array | None:
+    """Places in lattice constants in nm, read-only; None where the length of one is not known."""
+    if spacing_nm is None:
+        return None
+    scaled: Array = places * spacing_nm
+    scaled.flags.writeable = False
+    return scaled
 
 
 def as_direction(value: Any) -> Any:

@@ -178,7 +178,7 @@ def relax(
         files, spins = core.relax(wanted, count, tell)
     told = json.loads(files["relax.json"])["states"]
     places, vacant = np.asarray(core.places), vacant_sites(core)
-    found = tuple(Relaxed(one, np.asarray(m), places, vacant) for one, m in zip(told, spins))
+    found = tuple(Relaxed(one, np.asarray(m), places, vacant, core.spacing_nm) for one, m in zip(told, spins))
     return found[0] if len(states) == 1 else found
 
 

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from . import _core
 from ._html import drawing, paragraph, table
 from ._optional import needs
+from ._values import Array, in_nm
 
 if TYPE_CHECKING:
     import pandas  # type: ignore[import-untyped,unused-ignore]
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Check", "Landscape", "Rates", "Relaxed", "Result", "Saddle"]
 
-Array = NDArray[np.float64]
 Way = Literal["forward", "backward"]
 Theory = Literal["htst", "langer"]
 #: kinds of files that hold all of a result
@@ -228,6 +228,11 @@ class Result:
         return np.asarray(self._core.places)
 
     @property
+    def places_nm(self) -> Array | None:
+        """The same in nm; ``None`` where the lattice was given no length."""
+        return in_nm(self.places, self._core.spacing_nm)
+
+    @property
     def vacant(self) -> NDArray[np.bool_]:
         """Which sites have no spin, (site,): their vectors are +z, and mean nothing."""
         return vacant_sites(self._core)
@@ -295,6 +300,9 @@ class Result:
         tops = [saddle.image for saddle in self.saddles]
         if images is None:
             images = sorted({0, *(tops if len(tops) <= 3 else [int(np.argmax(e))]), last})
+        missing = [k for k in images if not -len(path) <= k <= last]
+        if missing:
+            raise IndexError(f"there is no image {missing[0]}: the path has images 0 to {last}")
         picked = [range(len(path))[k] for k in images]
         words = {0: "initial", last: "final"}
         titles = [f"{words.get(k, 'saddle' if k in tops else f'image {k}')}\n{self._core.told(e[k])} meV" for k in picked]
@@ -398,13 +406,17 @@ def _placed(files: Mapping[str, bytes]) -> Iterator[str]:
 class Relaxed:
     """A state relaxed by itself."""
 
-    def __init__(self, told: Mapping[str, Any], spins: Array, places: Array, vacant: NDArray[np.bool_]) -> None:
+    def __init__(
+        self, told: Mapping[str, Any], spins: Array, places: Array, vacant: NDArray[np.bool_], spacing_nm: float | None = None
+    ) -> None:
         #: as relax.json has it
         self.summary: dict[str, Any] = {key: value for key, value in told.items() if key != "files"}
         #: the vectors, (N, 3), read-only
         self.spins = spins
         #: where the sites are, (N, 3), in lattice constants
         self.places = places
+        #: the same in nm; ``None`` where the lattice was given no length
+        self.places_nm = in_nm(places, spacing_nm)
         #: which sites have no spin, (N,), read-only
         self.vacant = vacant
 

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from . import _core
 from ._html import paragraph, table
-from ._values import AnyState, Guess, Lattice, Values, as_json, as_state, path, plain
+from ._values import AnyState, Array, Guess, Lattice, Values, as_json, as_state, in_nm, path, plain
 from .term import AnyTerm, Term
 
 __all__ = ["System"]
@@ -76,6 +77,24 @@ class System:
     def terms(self) -> list[Term]:
         """The terms of your own."""
         return [term for term in self.energy if isinstance(term, Term)]
+
+    @property
+    def places(self) -> Array:
+        """Where the sites are, (N, 3), in lattice constants; in a chain x is the number of the site."""
+        return np.asarray(self._core().places)
+
+    @property
+    def places_nm(self) -> Array | None:
+        """The same in nm; ``None`` where the lattice was given no length."""
+        core = self._core()
+        return in_nm(np.asarray(core.places), core.spacing_nm)
+
+    def _core(self) -> _core.Config:
+        """It, read; states have no part in it."""
+        from .api import _config
+        from .states import uniform
+
+        return _config(self.replaced(initial=uniform("z"), final=uniform("z")), "relax", None)
 
     def config(self, initial: AnyState | None = None, final: AnyState | None = None, **options: Any) -> dict[str, Any]:
         """The system as a config, with these states and keys in place of its own."""
