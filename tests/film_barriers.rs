@@ -397,3 +397,53 @@ fn islands_without_bonds_between_them_and_films_of_four_sites_have_barriers() {
     // one island after the other: 6 spins, K each
     assert!(found.certified && (found.barrier.unwrap().forward_mev - 1.8).abs() < 1e-9, "{:?}", found.barrier);
 }
+
+/// A film in which a skyrmion rests at a barrier of some 25 meV from going out.
+fn easy_film(cells: [usize; 2], keys: &str, initial: &str, end: &str, effort: Effort) -> Outcome {
+    let energy = r#"{"exchange": {"J": ["10 meV"]}}, {"dmi": {"D": "4 meV", "kind": "interfacial"}},
+        {"anisotropy": {"K": "2.2 meV", "axis": [0, 0, 1]}}"#;
+    let mut problem = problem(&format!(
+        r#"{{"material": {{"name": "test", "moment": "2 mu_B", "energy": [{energy}]}},
+            "lattice": {{"square": {{"cells": {cells:?}{keys}}}}}, "initial": {initial}, "final": {end}}}"#
+    ));
+    problem.search = effort;
+    run(&problem, &mut Silent).unwrap()
+}
+
+/// A certified barrier that is no higher than one of a path made by hand, and as high as its certificate says (meV).
+fn is_no_higher(found: &Outcome, expected_mev: f64) {
+    let barrier = found.barrier.unwrap().forward_mev;
+    assert!(found.certified && (barrier - expected_mev).abs() < 1e-5, "{barrier} {expected_mev}");
+}
+
+#[test]
+fn a_skyrmion_moves_along_a_track_from_place_to_place() {
+    let at = |x: f64| format!(r#"{{"skyrmion": {{"radius": 4, "center": [{x}, 7.5]}}}}"#);
+    for effort in [Effort::None, Effort::Normal] {
+        // out over an edge and in again it is 76.6 meV
+        let found = easy_film([36, 16], "", &at(10.0), &at(24.0), effort);
+        assert!(found.certified && found.barrier.unwrap().forward_mev < 0.02, "{:?}", found.barrier);
+    }
+}
+
+#[test]
+fn more_effort_leaves_no_higher_path_and_a_skyrmion_leaves_over_an_edge() {
+    let spot = r#"{"skyrmion": {"radius": 4}}"#;
+    // where it collapses it is 26.328 meV: to that its drift relaxes too, after some evaluations
+    for effort in [Effort::None, Effort::Normal] {
+        is_no_higher(&easy_film([30, 30], "", spot, UP, effort), 20.588116);
+    }
+}
+
+#[test]
+fn a_skyrmion_goes_out_in_a_hole_of_a_film_without_edges() {
+    let hole = r#", "periodic": true, "shape": {"not": {"disc": {"center": [6, 6], "radius": 3.2}}}"#;
+    let spot = r#"{"skyrmion": {"radius": 4, "center": [17, 17]}}"#;
+    // beside it 26.931 meV
+    for (a, b) in [(spot, UP), (UP, spot)] {
+        let found = easy_film([30, 30], hole, a, b, Effort::Normal);
+        let [forward, backward] = found.barrier.map(|b| [b.forward_mev, b.backward_mev]).unwrap();
+        let out = if a == spot { forward } else { backward };
+        assert!(found.certified && (out - 8.317754).abs() < 1e-5, "{forward} {backward}");
+    }
+}

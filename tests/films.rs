@@ -330,6 +330,15 @@ fn the_natural_paths_of_a_spot_shrink_it_and_let_it_drift_over_open_edges_and_a_
     let h = energy(&torus, 0.6, |_| 0.1, 0.2);
     let found = names(&h, &spot, &up);
     assert!(found.iter().all(|name| name == "geodesic" || name == "shrink"), "{found:?}");
+    let two: Vec<Spins> = [4.0, 14.0]
+        .map(|x| {
+            let spec: StateSpec =
+                serde_json::from_str(&format!(r#"{{"skyrmion": {{"radius": 2, "center": [{x}, 8]}}}}"#)).unwrap();
+            spec.build(&context).unwrap()
+        })
+        .into();
+    let found = names(&energy(&film, 0.6, |_| 0.1, 0.2), &two[0], &two[1]);
+    assert_eq!(found.iter().filter(|name| *name == "translation").count(), 1, "{found:?}");
     let wall = |center: f64| state(&format!(r#"{{"domain_wall": {{"center": {center}, "width": 1}}}}"#), &film);
     let weak = |i: usize| if [5, 13].contains(&(i % 20)) { 0.05 } else { 0.1 };
     let found = names(&energy(&film, 0.0, weak, 0.0), &wall(5.0), &wall(13.0));

@@ -3,7 +3,7 @@
 use crate::common::{Build, solve};
 use crate::rates::{Dense, cold, dot, made, mean, rate, settings, unit, unit_hz, with};
 use spinneb::config::load_text;
-use spinneb::drive::{Outcome, Problem};
+use spinneb::drive::{Outcome, Problem, Silent, run};
 use spinneb::geometry::{Direction, vector};
 use spinneb::rates::{SaddleRate, Theory, Way, ZeroKind};
 use spinneb::units::K_B;
@@ -184,6 +184,32 @@ fn a_saddle_that_turns_freely_is_crossed_as_the_fokker_planck_equation_says() {
         assert!(over < known && over > 1.0 / known, "{damping} {hard}: {over} {known}");
         // where it turns freely no damping makes the rate wrong by more
         assert!(hard > 1.0 || (0.6..1.1).contains(&over), "{damping} {hard}: {over}");
+    }
+}
+
+#[test]
+fn a_ring_of_more_places_than_its_symmetry_makes_is_crossed_where_it_is_straight() {
+    // the hard axis of one spin makes two places of its ring, the tilted axis of the other, which hardly feels it, one
+    let config = |kelvin: f64| {
+        format!(
+            r#"{{"material": {{"name": "two", "moment": "2 mu_B"}},
+                "lattice": {{"chain": {{"sites": 2}}}},
+                "energy": [{{"exchange": {{"J": ["0.02 meV"]}}}},
+                           {{"anisotropy": {{"K": "3 meV", "axis": [0, 0, 1], "sites": [0]}}}},
+                           {{"anisotropy": {{"K": "-0.8 meV", "axis": [1, 0, 0], "sites": [0]}}}},
+                           {{"anisotropy": {{"K": "0.05 meV", "axis": [0, 1, 1], "sites": [1]}}}}],
+                "initial": {{"uniform": {{"direction": [0, 0.1, 1]}}}}, "final": {{"uniform": {{"direction": [0, -0.1, -1]}}}},
+                "rates": {{"temperatures": ["{kelvin} K"], "damping": 0.3}}}}"#
+        )
+    };
+    // mean times (s) of the stochastic Landau–Lifshitz–Gilbert equation
+    for (kelvin, expected) in [(5.0, 4.0e-10), (6.0, 1.43e-10), (8.0, 3.73e-11)] {
+        let loaded = load_text(std::path::Path::new("two.json"), config(kelvin)).unwrap();
+        let outcome = run(&loaded.problem().unwrap(), &mut Silent).unwrap();
+        let passage = &outcome.rates.unwrap().transitions[0].rows[0].passage;
+        let over = passage.ln_lifetime_s().unwrap().exp() / expected;
+        // further saddles between the same two states are not in it: without them it is four times as long
+        assert!((1.0..6.0).contains(&over), "{kelvin} K: {over}");
     }
 }
 

@@ -109,7 +109,8 @@ pub fn describe(guess: &GuessSpec, axis: bool) -> String {
             let place = d.center.as_ref().map_or(String::new(), |center| format!(" {which} {center}"));
             at(about(format!("droplet{of}{place}"), &d.axis), &d.helicity)
         }
-        GuessSpec::Drift(Drift { direction: Some(direction) }) => format!("drift towards {direction}"),
+        GuessSpec::Drift(Drift { onto: Some(place), .. }) => format!("drift onto {place}"),
+        GuessSpec::Drift(Drift { direction: Some(direction), .. }) => format!("drift towards {direction}"),
         GuessSpec::Geodesic(g) => about(guess.name().to_string(), &g.axis),
         other => other.name().to_string(),
     }

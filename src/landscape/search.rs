@@ -2,7 +2,8 @@
 //!
 //! T is the highest saddle of the best route known. A rival names a state from which a saddle below T may be reached; from there a
 //! climb goes to one, descents from it to its two minima, and both go into the landscape: the route may then have a lower T.
-//! News is a lower T, or a saddle of an energy that none had before; the search ends after so many searches in a row without any.
+//! News is a lower T, or a saddle of an energy that none had before; the search ends after so many searches in a row without any, or
+//! after so much work if the last few brought none.
 //! Searches are made in batches, each batch from what is known before it, its searches side by side: what is found does not depend
 //! on how many threads there are.
 //!
@@ -30,6 +31,9 @@ pub const KINDS: usize = 1000;
 const SEED: u64 = 0x5ea2c4;
 /// Searches in a row without news that end a search which found nothing, and joins that bring two minima no nearer to each other.
 pub(super) const QUIET: usize = 24;
+
+/// A search for a route that brought news of late goes on, up to so many times the work.
+const MORE: f64 = 8.0;
 
 /// How long lower passes are looked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -123,7 +127,7 @@ pub struct Settings<'a> {
     pub effort: Effort,
     /// Batches are so many times as large.
     pub shares: usize,
-    /// Most gradients and Hessians of single states.
+    /// Most gradients and Hessians of single states, unless the last searches brought news.
     pub most: Count,
     /// And of the climbs that are made before their work is looked at.
     pub together: Count,
@@ -182,7 +186,9 @@ pub fn search(
         }
         let wanted = aim.quiet(settings.effort, found, land);
         let worked = h.evaluated().since(before);
-        let spent = worked.part_of(settings.most).max(land.kinds() as f64 / settings.most_kinds as f64);
+        // for a route what is still found is worth more work than there is
+        let more = if aim.ends().is_some() && done.quiet < FEW { MORE } else { 1.0 };
+        let spent = (worked.part_of(settings.most) / more).max(land.kinds() as f64 / settings.most_kinds as f64);
         // what comes to its own stop has not missed the work that it has used up
         done.spent = spent >= 1.0 && done.quiet < wanted;
         tell(&Standing { done, wanted, spent, known: [land.minima().len(), land.edges().len()] });

@@ -190,11 +190,11 @@ impl<'a> Beside<'a> {
         Ok(Found { saddle: well(0)?, minima: [well(1), well(2)], equivalents, siblings, turn: *turn })
     }
 
-    /// λ₊ (rad/s) a quarter of the way to the saddle's next place by a turn, where the energy along that has no curvature: as it is for
-    /// what precesses past place after place while it crosses. `gyration` and damping as in [`growth_rate`].
+    /// λ₊ (rad/s) on the way to the saddle's next place by a turn, where the energy along that first has no curvature (of a cosine a quarter of
+    /// the way): as it is for what precesses past place after place while it crosses. `gyration` and damping as in [`growth_rate`].
     pub fn growth_between_places(&self, turn: &Turn, gyration: &[f64], damping: f64) -> Option<f64> {
-        let angle = 0.5 * PI / turn.fold as f64;
         let saddle = &self.states[0];
+        let angle = turn.straightens(&self.h, &saddle.m)?;
         let there = State::at(self.h, turn.by(&self.h, saddle.m.clone(), angle));
         let mut mode = there.basis.coordinates(&turn.by(&self.h, saddle.field(&self.unstable.mode), angle));
         slab::normalise(&mut mode);

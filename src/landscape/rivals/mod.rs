@@ -1,6 +1,7 @@
 //! Where a saddle below the top of the best route may be looked for. One file a rival.
 
 mod alike;
+mod firsts;
 mod melt;
 mod modes;
 mod near;
@@ -30,7 +31,10 @@ pub(super) fn scouts() -> Vec<Box<dyn Rival>> {
 /// Those that go before them, through all that they have; that one of their starts brings no news says little.
 pub(super) fn vanguard(all: bool) -> Vec<Box<dyn Rival>> {
     let alike: Box<dyn Rival> = Box::<alike::Alike>::default();
-    if all { vec![Box::<modes::Modes>::default(), alike] } else { vec![alike] }
+    match all {
+        true => vec![Box::<modes::Modes>::default(), alike],
+        false => vec![Box::<firsts::Firsts>::default(), alike],
+    }
 }
 
 /// Names states from which climbs may lead to passes below the top.

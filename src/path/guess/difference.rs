@@ -71,7 +71,8 @@ impl Difference {
     pub(super) fn hollow(&self, place: Vector, lattice: &Lattice) -> Vector {
         let axes = if self.across.is_empty() { &self.through } else { &self.across };
         let from = self.from(place, lattice);
-        let mut points: Vec<Vector> = (0..lattice.sites).map(|i| axes_of(axes, from(i))).collect();
+        let sites = (0..lattice.sites).filter(|i| !lattice.vacant[*i]);
+        let mut points: Vec<Vector> = sites.map(|i| axes_of(axes, from(i))).collect();
         points.sort_by(|p, q| {
             vector::norm(*p).total_cmp(&vector::norm(*q)).then(p.partial_cmp(q).unwrap_or(std::cmp::Ordering::Equal))
         });

@@ -3,6 +3,7 @@
 //! Spins that point (nearly) opposite ways in the two states all turn about one axis: if each chose its own plane,
 //! neighbours would come apart on the way and the exchange energy would explode.
 
+mod carried;
 mod clock;
 mod difference;
 mod drift;
@@ -10,6 +11,7 @@ mod droplet;
 mod file;
 mod front;
 mod geodesic;
+mod holes;
 mod natural;
 mod nlerp;
 mod noise;
@@ -18,6 +20,7 @@ mod rotation;
 mod shrink;
 mod smooth;
 mod sweep;
+mod translation;
 mod waypoints;
 
 pub use clock::{NEARLY_OPPOSITE, Way, Ways, common_axis, ways};
@@ -32,6 +35,7 @@ pub use rotation::{Rotation, best_turn};
 pub use shrink::Shrink;
 pub use smooth::smooth;
 pub use sweep::{Edge, Sweep, moving_sites};
+pub use translation::Translation;
 pub use waypoints::Waypoints;
 
 use super::Path;
@@ -48,6 +52,7 @@ family! {
         Sweep(Sweep),
         Shrink(Shrink),
         Drift(Drift),
+        Translation(Translation),
         Droplet(Droplet),
         Rotation(Rotation),
         Nlerp(Nlerp),

@@ -2,7 +2,8 @@
 //!
 //! | the states differ | paths |
 //! |---|---|
-//! | in a spot or a tube | geodesic; shrinking about the nearest hollow; drifting over each edge |
+//! | in a spot or a tube | geodesic; shrinking about the nearest hollow; drifting over each edge, and onto the nearest holes |
+//! | in two spots, each in one of them | also the one moved to the other |
 //! | in a band across the lattice | geodesic; a front from either side of it |
 //! | everywhere | geodesic; a front from every edge (face); a droplet from every corner; where directions are periodic a front along each, and where all are a droplet from the middle |
 //!
@@ -13,10 +14,13 @@
 //! energy. Of paths whose energies are the same all along, images of each other by a symmetry, the first stays.
 
 use super::difference::Difference;
-use super::drift::exits;
+use super::drift::{exits, nearest_holes};
 use super::front::{Front, Turning};
 use super::outline::Outline;
-use super::{Drift, Droplet, Edge, Geodesic, GuessContext, GuessSpec, Inside, NoiseSpec, Shrink, Sweep, Ways};
+use super::translation::moved;
+use super::{
+    Drift, Droplet, Edge, Geodesic, GuessContext, GuessSpec, Inside, NoiseSpec, Shrink, Sweep, Translation, Ways,
+};
 use crate::energy::Hamiltonian;
 use crate::geometry::{Direction, Vector, vector};
 use crate::lattice::Lattice;
@@ -66,6 +70,8 @@ enum Route {
     Droplet(Option<Vector>, Inside),
     Shrink,
     Drift(Direction),
+    Onto(Vector),
+    Translation,
 }
 
 impl Route {
@@ -79,7 +85,9 @@ impl Route {
                 GuessSpec::Droplet(Droplet { center, of: *of, axis, helicity, ..Droplet::default() })
             }
             Route::Shrink => GuessSpec::Shrink(Shrink { axis, helicity, ..Shrink::default() }),
-            Route::Drift(direction) => GuessSpec::Drift(Drift { direction: Some(*direction) }),
+            Route::Translation => GuessSpec::Translation(Translation {}),
+            Route::Drift(direction) => GuessSpec::Drift(Drift { direction: Some(*direction), onto: None }),
+            Route::Onto(hole) => GuessSpec::Drift(Drift { direction: None, onto: Some(lattice.place_of(*hole)) }),
         }
     }
 
@@ -92,7 +100,7 @@ impl Route {
         let around = [0.0, PI, FRAC_PI_2, -FRAC_PI_2].map(Sense::AtHelicity);
         match self {
             _ if !choice => vec![Sense::About(Direction::X)],
-            Route::Drift(_) => vec![Sense::About(Direction::X)],
+            Route::Drift(_) | Route::Onto(_) | Route::Translation => vec![Sense::About(Direction::X)],
             Route::Geodesic => axes.collect(),
             _ => axes.chain(around).collect(),
         }
@@ -149,9 +157,11 @@ fn routes(a: &Spins, b: &Spins, h: &Hamiltonian, difference: &Difference) -> Vec
     let lattice = h.lattice();
     let direction = |v: &Vector| Direction::new(*v).ok();
     let mut routes = vec![Route::Geodesic];
+    routes.extend(moved(a, b, lattice).map(|_| Route::Translation));
     if difference.is_spot() {
         routes.push(Route::Shrink);
         routes.extend(exits(a, b, lattice).iter().filter_map(direction).map(Route::Drift));
+        routes.extend(nearest_holes(difference, lattice).into_iter().map(Route::Onto));
         return routes;
     }
     if let [across] = difference.across[..] {

@@ -13,6 +13,9 @@ use crate::stationary::{Point, State};
 use crate::symmetry::{Group, Operation};
 use std::f64::consts::PI;
 
+/// Places at which the energy along a turn is looked at, from a place to the next.
+const LOOKS: usize = 32;
+
 /// What takes a state from a place to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Generator {
@@ -165,6 +168,19 @@ impl Turn {
     /// Half-way to the next place, spins or a field (3N).
     pub fn half(&self, h: &Hamiltonian, v: Vec<f64>) -> Vec<f64> {
         self.by(h, v, PI / self.fold as f64)
+    }
+
+    /// By which angle (rad) a state is turned until its energy along the turn has no curvature any more. The energy of a ring need not be a
+    /// cosine: beside a symmetry that holds there may be one that holds nearly, and more places than it makes.
+    pub fn straightens(&self, h: &Hamiltonian, m: &[f64]) -> Option<f64> {
+        let step = 2.0 * PI / (LOOKS * self.fold) as f64;
+        let height = |k: usize| h.difference_mev(&self.by(h, m.to_vec(), k as f64 * step), m);
+        let heights: Vec<f64> = (0..LOOKS).map(height).collect();
+        let at = |k: usize| heights[k % LOOKS];
+        let bends = |k: usize| at(k + 1) - 2.0 * at(k) + at(k + LOOKS - 1);
+        let first = (1..=LOOKS / 2).find(|k| bends(*k) <= 0.0)?;
+        let [before, after] = [bends(first - 1), bends(first)];
+        (before > 0.0).then(|| step * ((first - 1) as f64 + before / (before - after)))
     }
 
     /// The direction of the turn at these spins, a field (3N).
