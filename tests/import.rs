@@ -413,27 +413,136 @@ fn links_of_vampire_may_be_numbers_or_multiples_of_the_materials() {
     }
 }
 
+/// A film of each format that is imported whole, with room for one more line: its text, with the line in the file of this name.
+fn with_line(format: &str, file: &str, line: &str) -> (TempDir, PathBuf) {
+    let (mut files, first) = match format {
+        "uppasd" => (chain(EXCHANGE, ""), "inpsd.dat"),
+        "vampire" => (vampire(), "input"),
+        "tb2j" => (tb2j(), "exchange.out"),
+        _ => (vec![("a.cfg", "mu_s 1\nn_shells_exchange 1\njij 1\n".to_string())], "a.cfg"),
+    };
+    files.iter_mut().filter(|(name, _)| *name == file).for_each(|(_, text)| *text += &format!("{line}\n"));
+    let folder = folder(&borrowed(&files));
+    let path = folder.path().join(first);
+    (folder, path)
+}
+
+const WITHOUT_ENERGY: &[(&str, &str, &str)] = &[
+    ("vampire", "ladder.mat", "material[1]:density = 1.0"),
+    ("vampire", "ladder.mat", "material[1]:second-order-triaxial-anisotropy-vector = 0,0,0"),
+    ("vampire", "ladder.mat", "material[2]:applied-field-strength = 0.0 !T"),
+    ("vampire", "input", "sim:demagnetisation-factor = 0,0,0"),
+    ("vampire", "input", "sim:maximum-applied-field-strength = 2 !T"),
+    ("vampire", "input", "output:exchange-energy"),
+    ("vampire", "input", "create:sphere"),
+    ("spirit", "a.cfg", "n_biaxial_anisotropy_terms 0"),
+    ("spirit", "a.cfg", "ddi_n_periodic_images 4 4 4"),
+    ("spirit", "a.cfg", "ddi_method none"),
+    ("spirit", "a.cfg", "llg_dt 0.001"),
+    ("uppasd", "inpsd.dat", "demag N"),
+    ("uppasd", "inpsd.dat", "do_dip 0"),
+    ("uppasd", "inpsd.dat", "jij_scale 1.0"),
+    ("uppasd", "inpsd.dat", "do_prn_beff Y"),
+    ("uppasd", "inpsd.dat", "locfiles ./x"),
+];
+
 #[test]
 fn what_has_no_place_in_a_config_is_refused_and_not_left_out() {
-    let spirit = |line: &str| vec![("a.cfg", format!("{line}\nmu_s 1\nn_shells_exchange 1\njij 1\n"))];
-    let uppasd = |line: &str| {
-        let mut files = chain(EXCHANGE, "");
-        files[0].1 += line;
-        files
-    };
-    for (format, files, said) in [
-        ("spirit", spirit("ddi_method fft"), "a.cfg:1:1: ddi_method: dipoles are not imported"),
-        ("spirit", spirit("n_interaction_quadruplets 1"), "is not imported"),
-        ("spirit", spirit("hamiltonian gaussian"), "found \"gaussian\""),
-        ("uppasd", uppasd("bq bqfile\n"), "inpsd.dat:8:1: bq: this is not imported"),
-        ("uppasd", uppasd("do_ralloy 1\n"), "do_ralloy: found \"1\""),
-        ("uppasd", uppasd("do_jtensor 1\n"), "what tensors mean is open"),
-        ("tb2j", vec![("exchange.xml", "<?xml version=\"1.0\"?>".into())], "give exchange.out"),
+    for (format, file, line) in [
+        ("spirit", "a.cfg", "ddi_method fft"),
+        ("spirit", "a.cfg", "n_interaction_quadruplets 1"),
+        ("spirit", "a.cfg", "biaxial_anisotropy_axes_file axes.txt"),
+        ("spirit", "a.cfg", "biaxial_anisotropy_terms_file terms.txt"),
+        ("spirit", "a.cfg", "n_biaxial_anisotropy_axes 1\ni K1x K1y K1z\n0 0 0 1"),
+        ("spirit", "a.cfg", "n_biaxial_anisotropy_terms 2\ni n1 n2 n3 k\n0 1 0 0 -0.5\n0 0 2 0 0.1"),
+        ("uppasd", "inpsd.dat", "bq bqfile"),
+        ("uppasd", "inpsd.dat", "do_ralloy 1"),
+        ("uppasd", "inpsd.dat", "do_dip 2"),
+        ("uppasd", "inpsd.dat", "dm_scale 2.0"),
+        ("uppasd", "inpsd.dat", "demag Y"),
+        ("uppasd", "inpsd.dat", "demag_z Y"),
+        ("uppasd", "inpsd.dat", "demag1 Y"),
+        ("uppasd", "inpsd.dat", "demagfield Y Y Y"),
+        ("uppasd", "inpsd.dat", "locfield ./locfield"),
+        ("vampire", "ladder.mat", "material[1]:second-order-triaxial-anisotropy-vector = 1e-23,0,2e-23"),
+        ("vampire", "ladder.mat", "material[1]:fourth-order-triaxial-anisotropy-vector = 0,0,2e-23"),
+        ("vampire", "ladder.mat", "material[2]:fourth-order-rotational-anisotropy-constant = 3e-24"),
+        ("vampire", "ladder.mat", "material[1]:biquadratic-exchange-matrix[2] = 1e-22"),
+        ("vampire", "ladder.mat", "material[1]:dmi-constant[2] = 1e-22"),
+        ("vampire", "ladder.mat", "material[1]:kitaev-constant[2] = 1e-22"),
+        ("vampire", "ladder.mat", "material[1]:applied-field-strength = 3.0 !T"),
+        ("vampire", "ladder.mat", "material[1]:density = 0.5"),
+        ("vampire", "input", "sim:demagnetisation-factor = 0,0,1"),
+        ("vampire", "input", "anisotropy:enable-bulk-neel-anisotropy"),
+        ("vampire", "input", "dipole:solver = tensor"),
     ] {
-        let folder = folder(&borrowed(&files));
-        let found = read(format, &[folder.path().join(files[0].0)], "").unwrap_err();
+        let (_folder, path) = with_line(format, file, line);
+        let found = read(format, &[path], "").unwrap_err();
+        let keyword = line.split([' ', '\n']).next().unwrap();
+        let named = if format == "vampire" { keyword.replace(['[', ']', '1', '2'], "") } else { keyword.into() };
+        assert!(found.contains(&format!(": {named}: ")) && found.contains(file), "{line}: {found}");
+        assert!(found.contains("imported") && found.contains("take the line out"), "{line}: {found}");
+    }
+    for (format, file, line, said) in [
+        ("spirit", "a.cfg", "hamiltonian gaussian", "found \"gaussian\""),
+        // what is refused is said before files are read for it
+        (
+            "uppasd",
+            "inpsd.dat",
+            "posfile none\ndo_ralloy 1",
+            "inpsd.dat:9:1: do_ralloy: found \"1\": this is not imported",
+        ),
+        ("spirit", "a.cfg", "mu_s x\nddi_method fft", "ddi_method: found \"fft\": dipoles are not imported"),
+        ("uppasd", "inpsd.dat", "do_jtensor 1", "what tensors mean is open"),
+        ("uppasd", "inpsd.dat", "anisotropy jfile\ndo_anisotropy 0", "do_anisotropy: found 0, but a file"),
+    ] {
+        let (_folder, path) = with_line(format, file, line);
+        let found = read(format, &[path], "").unwrap_err();
         assert!(found.contains(said), "{format}: {found}");
     }
+    let folder = folder(&[("exchange.xml", "<?xml version=\"1.0\"?>")]);
+    assert!(read("tb2j", &[folder.path().join("exchange.xml")], "").unwrap_err().contains("give exchange.out"));
+}
+
+#[test]
+fn every_keyword_that_is_not_read_is_told_with_its_line() {
+    for (format, file, line) in WITHOUT_ENERGY {
+        let (_folder, path) = with_line(format, file, line);
+        let model = read(format, std::slice::from_ref(&path), "").unwrap();
+        let text = fs::read_to_string(path.with_file_name(file)).unwrap();
+        let keyword = line.split(' ').next().unwrap().replace(['[', ']', '1', '2'], "");
+        let (start, told) = (format!("not read in {file}: "), format!("{keyword} (line {})", text.lines().count()));
+        let notes: Vec<&String> = model.notes.iter().filter(|note| note.starts_with(&start)).collect();
+        assert!(notes.len() == 1 && notes[0].contains(&told), "{line}: {:?}", model.notes);
+        assert!(model.report().iter().any(|(_, value)| value == notes[0]), "{line}");
+    }
+    // of what was read nothing is told
+    let (_folder, path) = with_line("uppasd", "", "");
+    assert_eq!(read("uppasd", &[path], "").unwrap().notes, Vec::<String>::new());
+    let (_folder, path) = with_line("vampire", "", "");
+    let expected =
+        ["not read in ladder.mat: material:damping-constant (line 3)", "not read in input: sim:temperature (line 10)"];
+    assert_eq!(read("vampire", &[path], "").unwrap().notes, expected);
+}
+
+#[test]
+fn of_a_keyword_that_is_there_twice_the_one_counts_that_the_code_takes() {
+    let (_folder, path) = with_line("uppasd", "inpsd.dat", "ncell 7 1 1\nhfield 0 0 1\nhfield 0 0 3");
+    let model = read("uppasd", &[path], "").unwrap();
+    assert_eq!((model.cells, model.field_t), (Some([7, 1, 1]), [0.0, 0.0, 3.0]));
+    let (_folder, path) = with_line("spirit", "a.cfg", "mu_s 5");
+    assert_eq!(read("spirit", &[path], "").unwrap().atoms[0].moment_mub, 1.0);
+}
+
+#[test]
+fn what_tb2j_writes_beside_its_hamiltonian_is_told() {
+    let mut files = tb2j();
+    files[0].1 = files[0].1.replacen("[Testing!] DMI", "[Testing!] Jprime: 1.000,  B: -0.100\n[Testing!] DMI", 1);
+    let found = model("tb2j", &borrowed(&files), "");
+    let line = files[0].1.lines().position(|line| line.contains("Jprime")).unwrap() + 1;
+    let expected = format!("not read in exchange.out: Jprime (line {line}), B (line {line})");
+    assert!(found.notes.contains(&expected), "{:?}", found.notes);
+    assert!(!model("tb2j", &borrowed(&tb2j()), "").notes.iter().any(|note| note.contains("not read")));
 }
 
 #[test]
@@ -445,6 +554,10 @@ fn what_spirit_itself_does_not_read_is_noted() {
             "hamiltonian heisenberg_pairs\nn_interaction_pairs 1\ni j da db dc Jij\n0 0 1 0 0 1\n",
             Some("n_shells_exchange is not read"),
         ),
+        (
+            "n_interaction_pairs 1\ni j da db dc Jij\n0 0 1 0 0 1\n",
+            Some("n_interaction_pairs is not read, as in Spirit"),
+        ),
         ("", None),
     ] {
         let folder = folder(&[("a.cfg", &format!("{common}{lines}"))]);
@@ -453,6 +566,16 @@ fn what_spirit_itself_does_not_read_is_noted() {
         assert_eq!(found.len(), usize::from(said.is_some()), "{notes:?}");
         assert!(said.is_none_or(|said| found[0].contains(said)), "{notes:?}");
     }
+}
+
+#[test]
+fn what_a_table_of_spirit_takes_the_place_of_is_told() {
+    let input = "mu_s 1\nn_shells_exchange 1\njij 1\nn_anisotropy 1\ni K Kx Ky Kz\n0 2 0 0 1\nanisotropy_magnitude 1\n\
+                 anisotropy_normal 1 0 0\nanisotropy_file none.txt\nexternal_field_magnitude 0\nexternal_field_normal 0 0 1\n";
+    let model = model("spirit", &[("a.cfg", input)], "");
+    close(model.ferromagnet_mev([0.0, 0.0, 1.0])[1], -2.0);
+    let told = "not read in a.cfg: anisotropy_magnitude (line 7), anisotropy_normal (line 8), anisotropy_file (line 9)";
+    assert!(model.notes.iter().any(|note| note == told), "{:?}", model.notes);
 }
 
 #[test]

@@ -11,6 +11,7 @@ mod atoms;
 mod bonds;
 mod config;
 mod energies;
+mod keywords;
 mod report;
 mod spirit;
 mod tb2j;

@@ -13,6 +13,7 @@
 
 use super::atoms::place;
 use super::bonds::{Bond, Listed, added, matrix, merge};
+use super::keywords::{Energies, Keywords, not_read, refuse};
 use super::text::{Line, Text};
 use super::told::{Told, in_words};
 use super::{Anisotropy, Atom, Format, Model, beside, only};
@@ -33,46 +34,68 @@ pub const FORMAT: Format = Format {
 const SHELL: f64 = 1e-3;
 /// Shells that are looked for; the work grows with their cube.
 const MAX_SHELLS: usize = 24;
-/// Keywords of what a config has not, or not from such files.
-const OTHERS: &[&str] = &[
-    "atom_types",
-    "n_defects",
-    "defects_from_file",
-    "n_pinned",
-    "pinned_from_file",
-    "pinning_cell",
-    "n_interaction_quadruplets",
-    "interaction_quadruplets_file",
-    "quadruplets_from_file",
-];
+/// Words of what sets an energy.
+const ENERGIES: Energies = Energies {
+    set: &[
+        "anisotropy",
+        "field",
+        "exchange",
+        "dmi",
+        "pairs",
+        "quadruplet*",
+        "ddi",
+        "gaussian*",
+        "atom_types",
+        "defects",
+        "pinned",
+        "pinning",
+    ],
+    // how dipoles are summed, which ddi_method switches on
+    none: &["images", "radius", "padding"],
+    read: &[
+        "external_field_magnitude",
+        "external_field_normal",
+        "n_anisotropy",
+        "anisotropy_file",
+        "anisotropy_from_file",
+        "anisotropy_magnitude",
+        "anisotropy_normal",
+        "cubic_anisotropy_magnitude",
+        "n_shells_exchange",
+        "n_shells_dmi",
+        PAIRS_COUNT,
+        PAIRS_FILES[0],
+        PAIRS_FILES[1],
+    ],
+};
 
 /// The Hamiltonian of shells of neighbours, which is meant where none is named.
 const SHELLS: &str = "heisenberg_neighbours";
 /// Where the pairs of the other one are.
 const PAIRS_FILES: [&str; 2] = ["interaction_pairs_file", "pairs_from_file"];
+const PAIRS_COUNT: &str = "n_interaction_pairs";
 const NO_MOMENT: &str = "there is no mu_s: moments are 1 μ_B, as in Spirit then";
 
 struct Input<'a> {
     path: &'a Path,
-    text: &'a Text,
-    lines: Vec<Line<'a>>,
+    keys: Keywords<'a>,
 }
 
 fn read(paths: &[PathBuf], told: Told) -> Result<Model> {
+    told.no_cubic()?;
     let path = only(paths, "the input file, input.cfg")?;
     let text = Text::read(path)?;
-    let input = Input { path, text: &text, lines: text.lines(&['#'], &['|']) };
-    input.refuse_others()?;
+    let input = Input { path, keys: Keywords::new(&text, text.lines(&['#'], &['|']), false) };
+    refuse(&input.keys.unread(), &ENERGIES)?;
     let own = Convention { counting: Counting::Once, energy: EnergyForm::Minus, dmi: DmiForm::Minus };
-    told.no_cubic()?;
     let convention = told.over(own);
     let (vectors, scale) = (input.vectors()?, input.single("lattice_constant", 1.0)?);
     if scale <= 0.0 {
-        let line = input.needed("lattice_constant")?;
+        let line = input.keys.needed("lattice_constant")?;
         return Err(line.error(1, "lattice_constant", format!("found {scale}, but a length is positive")));
     }
     let mut atoms = input.atoms()?;
-    let cells = match input.line("n_basis_cells") {
+    let cells = match input.keys.line("n_basis_cells") {
         Some(line) => line.cells(1, "n_basis_cells")?,
         None => [100, 100, 1],
     };
@@ -84,16 +107,16 @@ fn read(paths: &[PathBuf], told: Told) -> Result<Model> {
         "heisenberg_pairs" => input.pairs(atoms.len(), convention)?,
         other => {
             let message = format!("found \"{other}\", but heisenberg_neighbours and heisenberg_pairs are imported");
-            return Err(input.needed("hamiltonian")?.error(1, "hamiltonian", message));
+            return Err(input.keys.needed("hamiltonian")?.error(1, "hamiltonian", message));
         }
     };
     files.extend(pairs);
     let [formula, factors] = in_words(convention, true);
-    let model = Model {
+    let mut model = Model {
         code: "Spirit",
         files,
         vectors,
-        spacing_nm: input.line("lattice_constant").map(|_| 0.1 * scale),
+        spacing_nm: input.keys.line("lattice_constant").map(|_| 0.1 * scale),
         atoms,
         bonds,
         field_t: input.field()?,
@@ -102,82 +125,57 @@ fn read(paths: &[PathBuf], told: Told) -> Result<Model> {
         convention: vec![formula, format!("{factors}; meV; unit vectors; K (n·e)² is written with K")],
         notes: input.notes()?,
     };
-    let of_vectors = model.spacing_nm.is_none() && input.line("bravais_lattice").is_none();
+    model.notes.extend(not_read(&text, &input.keys.unread()));
+    let of_vectors = model.spacing_nm.is_none() && input.keys.line("bravais_lattice").is_none();
     let model = if of_vectors { model.scaled_to_first(1.0) } else { model };
     model.checked(path)
 }
 
 impl<'a> Input<'a> {
-    fn find(&self, keyword: &str) -> Option<usize> {
-        self.lines.iter().position(|line| line.first().eq_ignore_ascii_case(keyword))
-    }
-
-    fn line(&self, keyword: &str) -> Option<&Line<'a>> {
-        self.find(keyword).map(|k| &self.lines[k])
-    }
-
     /// What a user of the file may not expect.
     fn notes(&self) -> Result<Vec<String>> {
         let kind = self.word("hamiltonian", SHELLS)?;
-        let unread: &[&str] = if kind == SHELLS { &PAIRS_FILES } else { &["n_shells_exchange", "n_shells_dmi"] };
-        let unread = unread.iter().filter(|keyword| self.line(keyword).is_some());
+        let pairs = [PAIRS_COUNT, PAIRS_FILES[0], PAIRS_FILES[1]];
+        let unread: &[&str] = if kind == SHELLS { &pairs } else { &["n_shells_exchange", "n_shells_dmi"] };
+        let unread = unread.iter().filter(|keyword| self.keys.line(keyword).is_some());
         let words = |keyword: &&str| {
             format!(
                 "{keyword} is not read, as in Spirit: \"hamiltonian\" is {kind}, {}",
-                match self.line("hamiltonian") {
+                match self.keys.line("hamiltonian") {
                     Some(_) => "as the file says",
                     None => "which it is where the file does not say",
                 }
             )
         };
-        let no_moment = self.line("mu_s").is_none().then(|| NO_MOMENT.to_string());
+        let no_moment = self.keys.line("mu_s").is_none().then(|| NO_MOMENT.to_string());
         Ok(no_moment.into_iter().chain(unread.map(words)).collect())
-    }
-
-    fn needed(&self, keyword: &str) -> Result<&Line<'a>> {
-        self.line(keyword).ok_or_else(|| self.text.ends(format!("there is no \"{keyword}\" in it")))
     }
 
     /// A line after that of a keyword.
     fn after(&self, keyword: &str, k: usize) -> Result<&Line<'a>> {
-        let at = self.find(keyword).unwrap_or(0) + k;
-        self.lines.get(at).ok_or_else(|| self.text.ends(format!("{k} lines are needed behind \"{keyword}\"")))
+        let at = self.keys.find(keyword).unwrap_or(0) + k;
+        self.keys.lines.get(at).ok_or_else(|| self.keys.text.ends(format!("{k} lines are needed behind \"{keyword}\"")))
     }
 
     fn word(&self, keyword: &str, otherwise: &'a str) -> Result<&'a str> {
-        self.line(keyword).map_or(Ok(otherwise), |line| line.word(1, keyword))
+        self.keys.line(keyword).map_or(Ok(otherwise), |line| line.word(1, keyword))
     }
 
     fn single(&self, keyword: &str, otherwise: f64) -> Result<f64> {
-        self.line(keyword).map_or(Ok(otherwise), |line| line.number(1, keyword))
+        self.keys.line(keyword).map_or(Ok(otherwise), |line| line.number(1, keyword))
     }
 
     fn direction(&self, keyword: &str) -> Result<Vector> {
-        let Some(line) = self.line(keyword) else { return Ok([0.0, 0.0, 1.0]) };
+        let Some(line) = self.keys.line(keyword) else { return Ok([0.0, 0.0, 1.0]) };
         let v = line.vector(1, keyword)?;
         vector::unit(v).ok_or_else(|| line.error(1, keyword, "found no direction: all components are 0"))
-    }
-
-    fn refuse_others(&self) -> Result<()> {
-        let way_out = "take the line out to import the rest, and mind that the energy is another one then";
-        for line in &self.lines {
-            let word = line.first().to_ascii_lowercase();
-            if OTHERS.contains(&word.as_str()) && line.get(1) != Some("0") {
-                return Err(line.error(0, &word, format!("this is not imported: {way_out}")));
-            }
-            if word == "ddi_method" && line.get(1) != Some("none") {
-                let message = format!("dipoles are not imported (a config has them along chains): {way_out}");
-                return Err(line.error(0, &word, message));
-            }
-        }
-        Ok(())
     }
 
     fn vectors(&self) -> Result<Matrix> {
         let rows = |keyword| Ok([1, 2, 3].map(|k| self.after(keyword, k).and_then(|line| line.vector(0, keyword))));
         let whole = |[a, b, c]: [Result<Vector>; 3]| Ok([a?, b?, c?]);
-        let Some(line) = self.line("bravais_lattice") else {
-            return match (self.line("bravais_vectors"), self.line("bravais_matrix")) {
+        let Some(line) = self.keys.line("bravais_lattice") else {
+            return match (self.keys.line("bravais_vectors"), self.keys.line("bravais_matrix")) {
                 (Some(_), _) => rows("bravais_vectors").and_then(whole),
                 (_, Some(_)) => Ok(crate::geometry::matrix::transposed(&rows("bravais_matrix").and_then(whole)?)),
                 _ => Ok(UNIT),
@@ -199,22 +197,22 @@ impl<'a> Input<'a> {
     }
 
     fn atoms(&self) -> Result<Vec<Atom>> {
-        if let Some(line) = self.line("basis_file") {
+        if let Some(line) = self.keys.line("basis_file") {
             return Err(line.error(0, "basis_file", "put the \"basis\" into the input file itself"));
         }
-        let count = match self.line("basis") {
+        let count = match self.keys.line("basis") {
             None => 1,
             Some(_) => {
                 let line = self.after("basis", 1)?;
-                let most = self.lines.len();
+                let most = self.keys.lines.len();
                 line.index(0, "basis", 1, most)? + 1
             }
         };
-        let places = (0..count).map(|k| match self.line("basis") {
+        let places = (0..count).map(|k| match self.keys.line("basis") {
             None => Ok([0.0; 3]),
             Some(_) => self.after("basis", 2 + k)?.vector(0, "basis"),
         });
-        let moments = self.line("mu_s");
+        let moments = self.keys.line("mu_s");
         let atom = |(k, at): (usize, Result<Vector>)| {
             let Some(moments) = moments else {
                 return Ok(Atom { at: at?, species: format!("atom_{k}"), moment_mub: 1.0, anisotropies: Vec::new() });
@@ -235,23 +233,27 @@ impl<'a> Input<'a> {
     }
 
     fn boundaries(&self) -> Result<[bool; 3]> {
-        let flags = self.line("boundary_conditions").map_or(Ok([0; 3]), |line| line.shift(1, "boundary_conditions"))?;
+        let flags =
+            self.keys.line("boundary_conditions").map_or(Ok([0; 3]), |line| line.shift(1, "boundary_conditions"))?;
         Ok(flags.map(|flag| flag != 0))
     }
 
     fn field(&self) -> Result<Vector> {
-        let b = self.single("external_field_magnitude", 0.0)?;
-        Ok(if b == 0.0 { [0.0; 3] } else { vector::scale(b, self.direction("external_field_normal")?) })
+        let (b, along) = (self.single("external_field_magnitude", 0.0)?, self.direction("external_field_normal"));
+        Ok(if b == 0.0 { [0.0; 3] } else { vector::scale(b, along?) })
     }
 
     /// A table: what the keyword's line says how long it is, or a file of its own; and that file's name.
     fn table(&self, count: &str, names: &[&str]) -> Result<Option<Table>> {
-        if let Some(at) = self.find(count) {
-            let rows = self.lines[at].index(1, count, 0, self.lines.len() + 1)?;
-            let text = self.text.clone();
-            return Ok(Some(Table { first: self.after(count, 1)?.number, rows: Some(rows), text, file: None }));
+        if let Some(at) = self.keys.find(count) {
+            let rows = self.keys.lines[at].index(1, count, 0, self.keys.lines.len() + 1)?;
+            let text = self.keys.text.clone();
+            let head = self.after(count, 1)?;
+            // a column may be called as a keyword is: Jij
+            self.keys.find(head.first());
+            return Ok(Some(Table { first: head.number, rows: Some(rows), text, file: None }));
         }
-        let Some(line) = names.iter().find_map(|name| self.line(name)) else { return Ok(None) };
+        let Some(line) = names.iter().find_map(|name| self.keys.line(name)) else { return Ok(None) };
         let (keyword, named) = (line.first(), line.word(1, names[0])?);
         // Spirit looks for it from where it was started, which is often the folder above
         let above = self.path.parent().and_then(Path::parent).unwrap_or(Path::new(""));
@@ -290,8 +292,9 @@ impl<'a> Input<'a> {
     }
 
     fn pairs(&self, atoms: usize, convention: Convention) -> Result<(Vec<Bond>, Option<String>)> {
-        let missing = || self.text.ends("there is no \"n_interaction_pairs\" and no \"interaction_pairs_file\" in it");
-        let table = self.table("n_interaction_pairs", &PAIRS_FILES)?.ok_or_else(missing)?;
+        let missing =
+            || self.keys.text.ends("there is no \"n_interaction_pairs\" and no \"interaction_pairs_file\" in it");
+        let table = self.table(PAIRS_COUNT, &PAIRS_FILES)?.ok_or_else(missing)?;
         let mut listed = Vec::new();
         let columns = ["i", "j", "da", "db", "dc", "jij", "dij", "dijx", "dijy", "dijz"];
         table.each(&columns, |row| {
@@ -314,16 +317,16 @@ impl<'a> Input<'a> {
     fn shells(&self, lattice: &Shells, convention: Convention) -> Result<Vec<Bond>> {
         let mut bonds = Vec::new();
         for (count, values, dmi) in [("n_shells_exchange", "jij", false), ("n_shells_dmi", "dij", true)] {
-            let Some(line) = self.line(count) else { continue };
+            let Some(line) = self.keys.line(count) else { continue };
             let shells = line.index(1, count, 0, MAX_SHELLS + 1)?;
             if shells == 0 {
                 continue;
             }
-            let list = self.needed(values)?;
-            let chirality = self.line("dm_chirality").map_or(Ok(1), |line| line.whole(1, "dm_chirality"))?;
+            let list = self.keys.needed(values)?;
+            let chirality = self.keys.line("dm_chirality").map_or(Ok(1), |line| line.whole(1, "dm_chirality"))?;
             if dmi && !matches!(chirality, -2 | -1 | 1 | 2) {
                 let message = format!("found {chirality}, expected 1 or -1 (Bloch), 2 or -2 (Néel)");
-                return Err(self.needed("dm_chirality")?.error(1, "dm_chirality", message));
+                return Err(self.keys.needed("dm_chirality")?.error(1, "dm_chirality", message));
             }
             for (shell, hop, r) in lattice.neighbours(shells) {
                 let value = list.number(1 + shell, values)?;

@@ -10,6 +10,7 @@
 
 use super::atoms::coordinates;
 use super::bonds::{Listed, matrix, merge};
+use super::keywords::{Unread, not_read};
 use super::text::{Line, Text};
 use super::told::{Told, in_words};
 use super::{Anisotropy, Atom, Format, Model, found, only};
@@ -63,7 +64,7 @@ fn read(paths: &[PathBuf], told: Told) -> Result<Model> {
         cells: None,
         periodic: None,
         convention: vec![formula, format!("{factors}, J^ani as J; meV; unit vectors; K (S·e)² is written with K")],
-        notes: Vec::new(),
+        notes: not_read(&text, &file.unread()?).into_iter().collect(),
     };
     model.scaled_to_first(1.0).checked(&path)
 }
@@ -161,6 +162,17 @@ impl<'a> Sections<'a> {
             false => Ok(listed),
         }
     }
+
+    /// What else is written of pairs, such as the B of old files: trials, derivatives and parts, of which TB2J's energy has none.
+    fn unread(&self) -> Result<Vec<Unread<'a>>> {
+        let (_, lines) = self.section("Exchange")?;
+        let mut unread = Vec::new();
+        for line in lines {
+            let others = labels(line).into_iter().filter(|name| !["J_iso", "DMI", "J_ani"].contains(&name.as_str()));
+            unread.extend(others.map(|name| Unread { name, value: String::new(), line: line.clone() }));
+        }
+        Ok(unread)
+    }
 }
 
 /// A line of dashes or equality signs.
@@ -171,6 +183,23 @@ fn is_rule(line: &Line) -> bool {
 /// Where in a line, words without brackets, a name stands; `Testing!` may come before it.
 fn named(line: &Line, name: &str) -> Option<usize> {
     line.words().take(2).position(|word| word.trim_end_matches(':') == name)
+}
+
+/// What stands before the colons of a line: "Jprime" and "B" of `[Testing!] Jprime: 1.0,  B: 0.1`.
+fn labels(line: &Line) -> Vec<String> {
+    let (mut labels, mut name) = (Vec::new(), Vec::new());
+    for word in line.words().filter(|word| !word.ends_with('!')) {
+        match word.strip_suffix(':') {
+            Some(last) => {
+                name.push(last);
+                labels.push(name.join(" "));
+                name.clear();
+            }
+            None if word.parse::<f64>().is_ok() => name.clear(),
+            None => name.push(word),
+        }
+    }
+    labels
 }
 
 fn dmi(block: &[Line]) -> Result<Vector> {

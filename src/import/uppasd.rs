@@ -13,6 +13,7 @@
 
 use super::atoms::{atom_at, coordinates, place};
 use super::bonds::{Listed, added, matrix, merge};
+use super::keywords::{Energies, Keywords, not_read, refuse};
 use super::text::{Line, Text};
 use super::told::{Told, in_words};
 use super::{Anisotropy, Atom, Format, Model, beside, found, only};
@@ -35,43 +36,52 @@ pub const FORMAT: Format = Format {
 const MRY: f64 = 1e-3 * RYDBERG;
 /// How far from where a coupling leads an atom may stand, in the unit of the cell; the program has the same.
 const NEAR: f64 = 0.1;
-/// Keywords of couplings that a config has not, or not from such files.
-const OTHER_TERMS: &[&str] = &[
-    "pd",
-    "bq",
-    "biqdm",
-    "chir",
-    "fourx",
-    "ring",
-    "sa",
-    "exchangedlm",
-    "random_anisotropy",
-    "rdm_model",
-    "ea_model",
-    "positions",
-    "moments",
-    "qdip_files",
-];
-/// Keywords whose value must be this one, if they are given.
-const PLAIN: &[(&str, &[&str])] = &[
-    ("do_ralloy", &["0"]),
-    ("do_dip", &["0"]),
-    ("do_cluster", &["n"]),
-    ("mult_axis", &["n"]),
-    ("do_lsf", &["n"]),
-    ("exc_inter", &["n"]),
-    ("map_multiple", &["f", ".false.", "n"]),
-    ("jij_scale", &["1", "1.0"]),
-    ("dm_scale", &["1", "1.0"]),
-    ("scalefac", &["1", "1.0"]),
-    ("aunits", &["n"]),
-];
+/// Words of what sets an energy; its short ones and its switches are whole keywords.
+const ENERGIES: Energies = Energies {
+    set: &[
+        "demag*",
+        "anisotropy",
+        "exchange*",
+        "dip*",
+        "qdip",
+        "do_ewald",
+        "scale",
+        "scalefac",
+        "model",
+        "pd",
+        "bq*",
+        "biq*",
+        "chir",
+        "fourx",
+        "ring",
+        "sa",
+        "ml",
+        "mml",
+        "mmll",
+        "locfield",
+        "siteatomfield",
+        "do_bpulse",
+        "do_ralloy",
+        "do_cluster",
+        "do_lsf",
+        "ind_mom_flag",
+        "multiscale",
+        "positions",
+        "moments",
+        "mult_axis",
+        "exc_inter",
+        "map_multiple",
+        "aunits",
+    ],
+    // what is printed, and what belongs to do_cluster
+    none: &["prn", "print", "clus"],
+    read: &["exchange", "anisotropy", "do_anisotropy"],
+};
 
 /// `inpsd.dat`.
 struct Input<'a> {
     path: &'a Path,
-    text: &'a Text,
-    lines: Vec<Line<'a>>,
+    keys: Keywords<'a>,
 }
 
 /// What stands where.
@@ -93,14 +103,15 @@ enum Vectors {
 fn read(paths: &[PathBuf], told: Told) -> Result<Model> {
     let path = found(only(paths, "inpsd.dat, or the folder with it")?, &["inpsd.dat"]);
     let text = Text::read(&path)?;
-    let input = Input { path: &path, text: &text, lines: text.lines(&['#', '!', '%'], &[':', ',']) };
-    input.refuse_others()?;
+    let lines = text.lines(&['#', '!', '%'], &[':', ',']);
+    let input = Input { path: &path, keys: Keywords::new(&text, lines, true) };
+    refuse(&input.keys.unread(), &ENERGIES)?;
     let (cell, positions) = input.cell()?;
     let jfile = input.file("exchange")?;
     let dmfile = input.optional("dm")?;
     let own = Convention { counting: Counting::BothDirections, energy: EnergyForm::Minus, dmi: DmiForm::Minus };
     if dmfile.is_some() && told.dmi.is_none() {
-        return Err(input.lines[input.find("dm").unwrap_or(0)].error(0, "dm", SIGN_OF_D));
+        return Err(input.keys.needed("dm")?.error(0, "dm", SIGN_OF_D));
     }
     let convention = told.over(own);
     let style = input.style()?;
@@ -111,30 +122,31 @@ fn read(paths: &[PathBuf], told: Told) -> Result<Model> {
         let plain = Couplings { group: vec![UNIT], ..exchange };
         bonds.extend(merge(dmfile, &plain.dmi(dmfile)?, convention.counting, 0.0)?);
     }
-    let (momfile, kfile) = (input.file("momfile")?, input.optional("anisotropy")?);
+    let (momfile, kfile) = (input.file("momfile")?, input.anisotropy_file()?);
     let mut atoms = moments(&cell, &momfile)?;
     if let Some(kfile) = &kfile {
         anisotropies(kfile, &mut atoms, told)?;
     }
     let [formula, factors] = in_words(convention, dmfile.is_some());
     let files = [Some(&text), Some(&positions), Some(&momfile), Some(&jfile), dmfile.as_ref(), kfile.as_ref()];
-    Model {
+    let mut model = Model {
         code: "UppASD",
         files: files.into_iter().flatten().map(|text| text.file.clone()).collect(),
         vectors: cell.vectors,
         spacing_nm: input.spacing_nm()?,
         atoms,
         bonds: added(bonds),
-        field_t: input.line("hfield").map_or(Ok([0.0; 3]), |line| line.vector(1, "hfield"))?,
-        cells: Some(input.needed("ncell")?.cells(1, "ncell")?),
+        field_t: input.keys.line("hfield").map_or(Ok([0.0; 3]), |line| line.vector(1, "hfield"))?,
+        cells: Some(input.keys.needed("ncell")?.cells(1, "ncell")?),
         periodic: Some(input.boundaries()?),
         convention: vec![
             formula,
             format!("{factors}; mRy = {MRY:.6} meV; unit vectors; K₁ (e·n)² is written with −K₁"),
         ],
         notes: Vec::new(),
-    }
-    .checked(&path)
+    };
+    model.notes.extend(not_read(&text, &input.keys.unread()));
+    model.checked(&path)
 }
 
 const SIGN_OF_D: &str = "the sign of D is open: the manual has −D·(e_i × e_j), and so has the program since May 2023; up to version \
@@ -151,39 +163,39 @@ const SIGN_OF_TENSORS: &str = "what tensors mean is open: the manual has +e·�
                                numbers are taken as mRy";
 
 impl<'a> Input<'a> {
-    fn find(&self, keyword: &str) -> Option<usize> {
-        self.lines.iter().position(|line| line.first().eq_ignore_ascii_case(keyword))
-    }
-
     /// The file that a keyword names, if it is there.
     fn optional(&self, keyword: &str) -> Result<Option<Text>> {
-        self.find(keyword).map(|_| self.file(keyword)).transpose()
-    }
-
-    fn line(&self, keyword: &str) -> Option<&Line<'a>> {
-        self.find(keyword).map(|k| &self.lines[k])
-    }
-
-    fn needed(&self, keyword: &str) -> Result<&Line<'a>> {
-        self.line(keyword).ok_or_else(|| self.text.ends(format!("there is no \"{keyword}\" in it")))
+        self.keys.find(keyword).map(|_| self.file(keyword)).transpose()
     }
 
     /// The word behind a keyword, in lower case.
     fn value(&self, keyword: &str) -> Option<String> {
-        Some(self.line(keyword)?.get(1)?.to_ascii_lowercase())
+        Some(self.keys.line(keyword)?.get(1)?.to_ascii_lowercase())
     }
 
     /// The file that a keyword names, beside this one.
     fn file(&self, keyword: &str) -> Result<Text> {
-        let line = self.needed(keyword)?;
+        let line = self.keys.needed(keyword)?;
         let named = line.word(1, keyword)?;
         let file = beside(self.path, named);
         Text::read(&file).map_err(|e| line.error(1, keyword, format!("the file cannot be read: {e}")))
     }
 
+    /// The file of anisotropies, unless it is named and not to be read.
+    fn anisotropy_file(&self) -> Result<Option<Text>> {
+        let file = self.optional("anisotropy")?;
+        match self.keys.line("do_anisotropy").filter(|line| line.get(1) == Some("0")) {
+            Some(line) if file.is_some() => {
+                let message = "found 0, but a file of anisotropies is named: take the line out that is not meant";
+                Err(line.error(1, "do_anisotropy", message))
+            }
+            _ => Ok(file),
+        }
+    }
+
     /// Whether the file of exchange has tensors, whose sign and unit are those of the program.
     fn tensors(&self, told: Told) -> Result<bool> {
-        let Some(line) = self.line("do_jtensor").filter(|line| line.get(1) != Some("0")) else { return Ok(false) };
+        let Some(line) = self.keys.line("do_jtensor").filter(|line| line.get(1) != Some("0")) else { return Ok(false) };
         if told.energy.is_none() {
             return Err(line.error(0, "do_jtensor", SIGN_OF_TENSORS));
         }
@@ -197,32 +209,11 @@ impl<'a> Input<'a> {
         }
     }
 
-    fn refuse_others(&self) -> Result<()> {
-        for line in &self.lines {
-            let word = line.first().to_ascii_lowercase();
-            if OTHER_TERMS.contains(&word.as_str()) {
-                let message = "this is not imported: take the line out to import the rest, and mind that the energy is another one then";
-                return Err(line.error(0, &word, message));
-            }
-            if let Some((_, fine)) = PLAIN.iter().find(|(name, _)| *name == word) {
-                let value = line.get(1).unwrap_or_default().to_ascii_lowercase();
-                // what is a number may be written in many ways
-                let equal = |f: &&str| **f == value || value.parse::<f64>().ok().is_some_and(|v| f.parse() == Ok(v));
-                if !fine.iter().any(equal) {
-                    let message =
-                        format!("found \"{value}\", but only models with {} are imported", fine[0].to_uppercase());
-                    return Err(line.error(1, &word, message));
-                }
-            }
-        }
-        Ok(())
-    }
-
     /// The cell's vectors: nine numbers, on one line or several.
     fn vectors(&self) -> Result<Matrix> {
-        let first = self.find("cell").ok_or_else(|| self.text.ends("there is no \"cell\" in it"))?;
+        let first = self.keys.find("cell").ok_or_else(|| self.keys.text.ends("there is no \"cell\" in it"))?;
         let mut all: Vec<f64> = Vec::new();
-        for (k, line) in self.lines[first..].iter().enumerate() {
+        for (k, line) in self.keys.lines[first..].iter().enumerate() {
             // words behind the numbers are comments
             let skip = usize::from(k == 0);
             for word in skip..line.count() {
@@ -236,7 +227,7 @@ impl<'a> Input<'a> {
                 return Ok([0, 3, 6].map(|row| [all[row], all[row + 1], all[row + 2]]));
             }
         }
-        Err(self.text.ends(format!("a \"cell\" has 9 numbers, found {}", all.len())))
+        Err(self.keys.text.ends(format!("a \"cell\" has 9 numbers, found {}", all.len())))
     }
 
     fn style(&self) -> Result<Vectors> {
@@ -245,7 +236,7 @@ impl<'a> Input<'a> {
             (None | Some("1"), style) => Ok(style),
             (Some(other), _) => {
                 let message = format!("found \"{other}\", but vectors of maptype 1 and 2 are imported");
-                Err(self.needed("maptype")?.error(1, "maptype", message))
+                Err(self.keys.needed("maptype")?.error(1, "maptype", message))
             }
         }
     }
@@ -256,7 +247,7 @@ impl<'a> Input<'a> {
             Some("d") => Ok(Vectors::Direct),
             Some(other) => {
                 let message = format!("found \"{other}\", expected C (Cartesian) or D (direct)");
-                Err(self.needed("posfiletype")?.error(1, "posfiletype", message))
+                Err(self.keys.needed("posfiletype")?.error(1, "posfiletype", message))
             }
         }
     }
@@ -264,7 +255,11 @@ impl<'a> Input<'a> {
     fn cell(&self) -> Result<(Cell, Text)> {
         let (vectors, posfile) = (self.vectors()?, self.file("posfile")?);
         if crate::geometry::matrix::determinant(&vectors).abs() < 1e-12 {
-            return Err(self.needed("cell")?.error(0, "cell", "the three vectors lie in a plane: they span no cell"));
+            return Err(self.keys.needed("cell")?.error(
+                0,
+                "cell",
+                "the three vectors lie in a plane: they span no cell",
+            ));
         }
         let style = self.posfiletype()?;
         let lines = posfile.lines(&['#', '!'], &[',']);
@@ -286,7 +281,7 @@ impl<'a> Input<'a> {
     }
 
     fn boundaries(&self) -> Result<[bool; 3]> {
-        let Some(line) = self.line("bc") else { return Ok([false; 3]) };
+        let Some(line) = self.keys.line("bc") else { return Ok([false; 3]) };
         let flag = |k: usize| match line.word(k, "BC")? {
             "P" | "p" => Ok(true),
             "0" => Ok(false),
@@ -297,7 +292,7 @@ impl<'a> Input<'a> {
 
     /// `alat`, in m; 1 is what it is if nobody gave it.
     fn spacing_nm(&self) -> Result<Option<f64>> {
-        let Some(line) = self.line("alat") else { return Ok(None) };
+        let Some(line) = self.keys.line("alat") else { return Ok(None) };
         let metres = line.number(1, "alat")?;
         Ok(Some(1e9 * metres).filter(|nm| *nm > 0.0 && metres != 1.0))
     }
@@ -311,7 +306,7 @@ impl<'a> Input<'a> {
             Some("3") => Ok(hexagonal()),
             Some(other) => {
                 let message = format!("found {other:?}, but 0 to 3 are imported: list all couplings, and give 0");
-                Err(self.needed("sym")?.error(1, "sym", message))
+                Err(self.keys.needed("sym")?.error(1, "sym", message))
             }
         }
     }

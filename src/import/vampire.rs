@@ -12,6 +12,7 @@
 //! <https://doi.org/10.1088/0953-8984/26/10/103202>.
 
 use super::bonds::{Bond, Listed, matrix, merge};
+use super::keywords::{Energies, Unread, not_read, refuse};
 use super::text::{Line, Text};
 use super::told::{Told, in_words};
 use super::{Anisotropy, Atom, Format, Model, beside, found};
@@ -30,23 +31,45 @@ pub const FORMAT: Format = Format {
     read,
 };
 
-/// What sets the energy of a material, beyond what is imported.
-const OTHERS: &[&str] = &[
-    "dmi-constant",
-    "fourth-order-uniaxial-anisotropy-constant",
-    "sixth-order-uniaxial-anisotropy-constant",
-    "sixth-order-cubic-anisotropy-constant",
-    "surface-anisotropy-constant",
-    "neel-anisotropy-constant",
-    "lattice-anisotropy-constant",
-    "second-order-biaxial-anisotropy-constant",
-    "biquadratic-exchange",
-    "alloy-host",
-    "alloy-fraction",
-    "non-magnetic",
-    "cubic-anisotropy-direction-1",
-    "cubic-anisotropy-direction-2",
-];
+/// Words of what sets an energy.
+const ENERGIES: Energies = Energies {
+    set: &[
+        "anisotropy",
+        "exchange",
+        "dmi",
+        "constant",
+        "coupling",
+        "triaxial",
+        "field*",
+        "demag*",
+        "dipole",
+        "fmr",
+        "alloy",
+        "magnetic",
+        "material:density",
+        "material:intermixing",
+    ],
+    // what is computed and printed, how far and how often; fields of a program are of its protocol
+    none: &[
+        "damping",
+        "diffusion",
+        "output",
+        "screen",
+        "config",
+        "roughness",
+        "cutoff",
+        "update",
+        "seed",
+        "program",
+        "minimum",
+        "maximum",
+        "equilibration",
+        "increment",
+        "phonon",
+        "sink",
+    ],
+    read: &[],
+};
 
 /// A setting `part:key = value !unit`, or `material[1]:key[2] = value`.
 struct Setting<'a> {
@@ -86,7 +109,8 @@ fn read(paths: &[PathBuf], told: Told) -> Result<Model> {
     }
     told.no_cubic()?;
     let convention = told.over(own);
-    let cell = Cell::read(ucf, &materials(mat)?, convention)?;
+    let (materials, mut notes) = materials(mat)?;
+    let cell = Cell::read(ucf, &materials, convention)?;
     let [formula, factors] = in_words(convention, false);
     let mut model = Model {
         code: "VAMPIRE",
@@ -109,8 +133,9 @@ fn read(paths: &[PathBuf], told: Told) -> Result<Model> {
         notes: Vec::new(),
     };
     if let Some(input) = &files.input {
-        surroundings(input, &mut model)?;
+        notes.extend(surroundings(input, &mut model)?);
     }
+    model.notes = notes;
     model.scaled_to_first(1.0).checked(ucf.file.as_ref())
 }
 
@@ -185,13 +210,23 @@ impl<'a> Setting<'a> {
 
     /// The value with its unit; `otherwise` where there is none.
     fn quantity<Q: std::str::FromStr<Err = Error>>(&self, otherwise: &str) -> Result<Q> {
-        let unit = self.unit.unwrap_or(otherwise).split('/').next().unwrap_or_default().trim();
+        let unit = match self.unit.unwrap_or(otherwise) {
+            "J/T" => "A m^2",
+            // J/atom, J/link
+            other => other.split('/').next().unwrap_or_default().trim(),
+        };
         let unit = match unit {
             "muB" | "mu_B" => "mu_B",
             "A" | "Angstrom" | "Angstroms" => "angstrom",
             other => other,
         };
         format!("{} {unit}", self.value()?).parse().map_err(|e: Error| self.error(e.to_string()))
+    }
+
+    /// What is told of it, where it is not read.
+    fn unread(self) -> Unread<'a> {
+        let (name, value) = (format!("{}:{}", self.part, self.key), self.value.unwrap_or_default().into());
+        Unread { name, value, line: self.line }
     }
 
     fn vector(&self) -> Result<Vector> {
@@ -212,49 +247,56 @@ fn indexed(word: &str) -> Option<(&str, Option<usize>)> {
     Some((name.trim(), Some(number.checked_sub(1)?)))
 }
 
-/// The materials of a file.
-fn materials(text: &Text) -> Result<Vec<Material>> {
-    let mut all: Vec<Material> = Vec::new();
+/// The materials of a file, and what is not read of it.
+fn materials(text: &Text) -> Result<(Vec<Material>, Vec<String>)> {
+    let (mut all, mut unread): (Vec<Material>, Vec<Unread>) = (Vec::new(), Vec::new());
     for setting in settings(text)? {
-        let Some(index) = setting.index.filter(|_| setting.part == "material") else { continue };
-        if index >= 1000 {
-            return Err(setting.error(format!("found material {}, more than there can be", index + 1)));
+        let read = match (setting.part, setting.index) {
+            ("material", Some(index)) if index >= 1000 => {
+                return Err(setting.error(format!("found material {}, more than there can be", index + 1)));
+            }
+            ("material", Some(index)) => {
+                all.resize(all.len().max(index + 1), Material::default());
+                all[index].set(&setting)?
+            }
+            (part, _) => part == "material" && setting.key == "num-materials",
+        };
+        if !read {
+            unread.push(setting.unread());
         }
-        all.resize(all.len().max(index + 1), Material::default());
-        let material = &mut all[index];
+    }
+    refuse(&unread, &ENERGIES)?;
+    Ok((all, not_read(text, &unread).into_iter().collect()))
+}
+
+impl Material {
+    /// Takes a setting; false if it is none that is imported.
+    fn set(&mut self, setting: &Setting) -> Result<bool> {
         match setting.key.as_str() {
-            "material-name" => material.name = Some(setting.value()?.trim_matches('"').replace([' ', '\t'], "_")),
+            "material-name" => self.name = Some(setting.value()?.trim_matches('"').replace([' ', '\t'], "_")),
             "atomic-spin-moment" => {
-                let unit = setting.unit.ok_or_else(|| setting.error("a moment needs its unit behind it: !muB"))?;
-                let moment: Moment = match unit {
-                    "J/T" => Setting { unit: Some("A m^2"), ..setting }.quantity("A m^2")?,
-                    _ => setting.quantity("")?,
-                };
-                material.moment_mub = Some(moment.0);
+                setting.unit.ok_or_else(|| setting.error("a moment needs its unit behind it: !muB"))?;
+                self.moment_mub = Some(setting.quantity::<Moment>("")?.0);
             }
             "uniaxial-anisotropy-constant" | "second-order-uniaxial-anisotropy-constant" => {
-                material.k = setting.quantity::<Energy>("J")?.0;
+                self.k = setting.quantity::<Energy>("J")?.0;
             }
             "uniaxial-anisotropy-direction" => {
                 let axis = Direction::new(setting.vector()?).map_err(|e| setting.error(e.to_string()))?;
-                material.axis = Some(axis);
+                self.axis = Some(axis);
             }
             "cubic-anisotropy-constant" | "fourth-order-cubic-anisotropy-constant" => {
-                material.cubic = setting.quantity::<Energy>("J")?.0;
+                self.cubic = setting.quantity::<Energy>("J")?.0;
             }
-            "exchange-matrix" | "exchange-matrix-1st-nearest-neighbours" => {
+            "exchange-matrix" | "exchange-matrix-1st-nn" | "exchange-matrix-1st-nearest-neighbours" => {
                 let other =
                     setting.other.ok_or_else(|| setting.error("with which material? exchange-matrix[1] = …"))?;
-                material.exchange.insert(other, setting.quantity::<Energy>("J")?.0);
+                self.exchange.insert(other, setting.quantity::<Energy>("J")?.0);
             }
-            other if OTHERS.contains(&other) => {
-                let message = "this is not imported: take the line out to import the rest, and mind that the energy is another one then";
-                return Err(setting.error(message));
-            }
-            _ => {}
+            _ => return Ok(false),
         }
+        Ok(true)
     }
-    Ok(all)
 }
 
 /// The unit cell.
@@ -386,10 +428,38 @@ impl Columns {
     }
 }
 
-/// Size, boundaries and field of the input file; shapes are told of.
-fn surroundings(text: &Text, model: &mut Model) -> Result<()> {
-    let (mut size, mut strength, mut along) = ([None; 3], 0.0, [0.0, 0.0, 1.0]);
-    let mut periodic = [false; 3];
+/// The field of an input file.
+struct Field {
+    strength: f64,
+    along: Vector,
+}
+
+impl Field {
+    const NONE: Field = Field { strength: 0.0, along: [0.0, 0.0, 1.0] };
+
+    /// Takes a setting of the part `sim`; false if it is none of the field.
+    fn set(&mut self, setting: &Setting) -> Result<bool> {
+        match setting.key.as_str() {
+            "applied-field-strength" => self.strength = setting.quantity::<FluxDensity>("T")?.0,
+            "applied-field-unit-vector" => {
+                let v = setting.vector()?;
+                self.along =
+                    vector::unit(v).ok_or_else(|| setting.error("found no direction: all components are 0"))?;
+            }
+            _ => return Ok(false),
+        }
+        Ok(true)
+    }
+
+    fn vector(&self) -> Vector {
+        if self.strength == 0.0 { [0.0; 3] } else { vector::scale(self.strength, self.along) }
+    }
+}
+
+/// Takes size, boundaries and field of the input file; what is not read of it.
+fn surroundings(text: &Text, model: &mut Model) -> Result<Option<String>> {
+    let (mut size, mut periodic, mut field) = ([None; 3], [false; 3], Field::NONE);
+    let mut unread = Vec::new();
     for setting in settings(text)? {
         let last = setting.key.rsplit('-').next().and_then(|d| ["x", "y", "z"].iter().position(|own| *own == d));
         match (setting.part, setting.key.as_str(), last) {
@@ -399,39 +469,27 @@ fn surroundings(text: &Text, model: &mut Model) -> Result<()> {
             }
             ("create", key, Some(d)) if key.starts_with("periodic-boundaries") => periodic[d] = true,
             ("create", "periodic-boundaries", _) => periodic = [true; 3],
-            ("sim", "applied-field-strength", _) => strength = setting.quantity::<FluxDensity>("T")?.0,
-            ("sim", "applied-field-unit-vector", _) => {
-                let v = setting.vector()?;
-                along = vector::unit(v).ok_or_else(|| setting.error("found no direction: all components are 0"))?;
-            }
-            (
-                "create",
-                "sphere" | "ellipsoid" | "cylinder" | "truncated-octahedron" | "cube" | "particle" | "voronoi-film",
-                _,
-            ) => {
-                model.notes.push(format!("create:{} is left out: give the lattice a \"shape\"", setting.key));
-            }
-            ("dipole", _, _) if !model.notes.iter().any(|note| note.starts_with("dipole")) => {
-                model.notes.push("dipole fields are left out: a config has them along chains".into());
-            }
-            _ => {}
+            ("create", "full", _) | ("material", "file" | "unit-cell-file", _) => {}
+            ("sim", _, _) if field.set(&setting)? => {}
+            _ => unread.push(setting.unread()),
         }
     }
-    if let [Some(x), Some(y), Some(z)] = size {
-        let mut cells = [0; 3];
-        for (d, nm) in [x, y, z].into_iter().enumerate() {
-            // the program takes as many cells as the size holds in whole or in part
-            let count = (10.0 * nm / vector::norm(model.vectors[d]) - 1e-9).ceil();
-            if !(1.0..1e7).contains(&count) {
-                return Err(Error::invalid("dimensions:system-size", format!("found {nm} nm, which is {count} cells")));
-            }
-            cells[d] = count as usize;
+    model.cells = cells(size, &model.vectors)?.or(model.cells);
+    (model.periodic, model.field_t) = (Some(periodic), field.vector());
+    refuse(&unread, &ENERGIES)?;
+    Ok(not_read(text, &unread))
+}
+
+/// As many cells as the size (nm) holds in whole or in part, as in the program.
+fn cells(size: [Option<f64>; 3], vectors: &Matrix) -> Result<Option<[usize; 3]>> {
+    let [Some(x), Some(y), Some(z)] = size else { return Ok(None) };
+    let mut cells = [0; 3];
+    for (d, nm) in [x, y, z].into_iter().enumerate() {
+        let count = (10.0 * nm / vector::norm(vectors[d]) - 1e-9).ceil();
+        if !(1.0..1e7).contains(&count) {
+            return Err(Error::invalid("dimensions:system-size", format!("found {nm} nm, which is {count} cells")));
         }
-        model.cells = Some(cells);
+        cells[d] = count as usize;
     }
-    model.periodic = Some(periodic);
-    if strength != 0.0 {
-        model.field_t = vector::scale(strength, along);
-    }
-    Ok(())
+    Ok(Some(cells))
 }
