@@ -495,6 +495,7 @@ fn what_has_no_place_in_a_config_is_refused_and_not_left_out() {
         ("spirit", "a.cfg", "mu_s x\nddi_method fft", "ddi_method: found \"fft\": dipoles are not imported"),
         ("uppasd", "inpsd.dat", "do_jtensor 1", "what tensors mean is open"),
         ("uppasd", "inpsd.dat", "anisotropy jfile\ndo_anisotropy 0", "do_anisotropy: found 0, but a file"),
+        ("vampire", "input", "sim:applied-field-angle-theta = 1.57 !rad", "angles are in degrees"),
     ] {
         let (_folder, path) = with_line(format, file, line);
         let found = read(format, &[path], "").unwrap_err();
@@ -523,6 +524,37 @@ fn every_keyword_that_is_not_read_is_told_with_its_line() {
     let expected =
         ["not read in ladder.mat: material:damping-constant (line 3)", "not read in input: sim:temperature (line 10)"];
     assert_eq!(read("vampire", &[path], "").unwrap().notes, expected);
+}
+
+#[test]
+fn the_field_of_vampire_points_where_the_last_of_its_directions_says() {
+    let h = 0.5 * 3f64.sqrt();
+    for (lines, expected) in [
+        ("", [0.0, 0.0, 2.0]),
+        // θ is the azimuth and φ the polar angle
+        ("sim:applied-field-angle-theta = 90\nsim:applied-field-angle-phi = 90", [0.0, 2.0, 0.0]),
+        ("sim:applied-field-angle-phi = 30", [1.0, 0.0, 2.0 * h]),
+        ("sim:applied-field-angle-theta = 70", [0.0, 0.0, 2.0]),
+        ("sim:applied-field-angle-phi = 90\nsim:applied-field-angle-theta = 60", [1.0, 2.0 * h, 0.0]),
+        ("sim:applied-field-angle-phi = 90\nsim:applied-field-unit-vector = 0,0,-1", [0.0, 0.0, -2.0]),
+        ("sim:applied-field-unit-vector = 0,1,0\nsim:applied-field-angle-theta = 0", [0.0, 0.0, 2.0]),
+    ] {
+        let (_folder, path) = with_line("vampire", "input", lines);
+        let found = read("vampire", &[path], "").unwrap().field_t;
+        (0..3).for_each(|d| close(found[d], expected[d]));
+    }
+}
+
+#[test]
+fn boundaries_of_vampire_may_be_named_together() {
+    for (line, periodic) in [
+        ("create:periodic-boundaries = z", [true, false, true]),
+        ("create:periodic-boundaries = y,z", [true; 3]),
+        ("create:periodic-boundaries", [true; 3]),
+    ] {
+        let (_folder, path) = with_line("vampire", "input", line);
+        assert_eq!(read("vampire", &[path], "").unwrap().periodic, Some(periodic), "{line}");
+    }
 }
 
 #[test]

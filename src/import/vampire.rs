@@ -223,6 +223,20 @@ impl<'a> Setting<'a> {
         format!("{} {unit}", self.value()?).parse().map_err(|e: Error| self.error(e.to_string()))
     }
 
+    /// An angle in degrees, as sine and cosine.
+    fn angle(&self) -> Result<(f64, f64)> {
+        if let Some(unit) = self.unit {
+            return Err(self.error(format!("found \"!{unit}\", but angles are in degrees, without a unit")));
+        }
+        let value = self.value()?;
+        let degrees = value.parse().ok().filter(|x: &f64| x.is_finite());
+        let (sin, cos) =
+            degrees.ok_or_else(|| self.error(format!("found {value:?}, expected degrees")))?.to_radians().sin_cos();
+        // of right angles rounding leaves something
+        let clean = |x: f64| if x.abs() < 1e-15 { 0.0 } else { x };
+        Ok((clean(sin), clean(cos)))
+    }
+
     /// What is told of it, where it is not read.
     fn unread(self) -> Unread<'a> {
         let (name, value) = (format!("{}:{}", self.part, self.key), self.value.unwrap_or_default().into());
@@ -428,14 +442,20 @@ impl Columns {
     }
 }
 
-/// The field of an input file.
+/// The field of an input file. Its direction is what is said last, a vector or two angles: θ is the azimuth and φ the polar angle
+/// in the program (`initialise_variables.cpp`), of which the manual says nothing.
 struct Field {
     strength: f64,
     along: Vector,
+    by_angles: bool,
+    /// Sine and cosine.
+    theta: (f64, f64),
+    phi: (f64, f64),
 }
 
 impl Field {
-    const NONE: Field = Field { strength: 0.0, along: [0.0, 0.0, 1.0] };
+    const NONE: Field =
+        Field { strength: 0.0, along: [0.0, 0.0, 1.0], by_angles: false, theta: (0.0, 1.0), phi: (0.0, 1.0) };
 
     /// Takes a setting of the part `sim`; false if it is none of the field.
     fn set(&mut self, setting: &Setting) -> Result<bool> {
@@ -445,14 +465,19 @@ impl Field {
                 let v = setting.vector()?;
                 self.along =
                     vector::unit(v).ok_or_else(|| setting.error("found no direction: all components are 0"))?;
+                self.by_angles = false;
             }
+            "applied-field-angle-theta" => (self.theta, self.by_angles) = (setting.angle()?, true),
+            "applied-field-angle-phi" => (self.phi, self.by_angles) = (setting.angle()?, true),
             _ => return Ok(false),
         }
         Ok(true)
     }
 
     fn vector(&self) -> Vector {
-        if self.strength == 0.0 { [0.0; 3] } else { vector::scale(self.strength, self.along) }
+        let (theta, phi) = (self.theta, self.phi);
+        let along = if self.by_angles { [phi.0 * theta.1, phi.0 * theta.0, phi.1] } else { self.along };
+        if self.strength == 0.0 { [0.0; 3] } else { vector::scale(self.strength, along) }
     }
 }
 
@@ -468,7 +493,10 @@ fn surroundings(text: &Text, model: &mut Model) -> Result<Option<String>> {
                 size[d] = Some(setting.quantity::<Length>("angstrom")?.0);
             }
             ("create", key, Some(d)) if key.starts_with("periodic-boundaries") => periodic[d] = true,
-            ("create", "periodic-boundaries", _) => periodic = [true; 3],
+            ("create", "periodic-boundaries", _) => {
+                let named = setting.value.filter(|value| !value.is_empty()).unwrap_or("xyz");
+                ["x", "y", "z"].iter().zip(&mut periodic).for_each(|(d, flag)| *flag |= named.contains(d));
+            }
             ("create", "full", _) | ("material", "file" | "unit-cell-file", _) => {}
             ("sim", _, _) if field.set(&setting)? => {}
             _ => unread.push(setting.unread()),
