@@ -204,11 +204,38 @@ fn a_check_prints_the_physics_before_a_run() {
     ] {
         assert!(wire.contains(row), "{row}\n{wire}");
     }
+    // 2K and K/4 of a cubic anisotropy of 5.65e-25 J
+    let ball = said("cubic_nanoparticle");
+    for row in ["stiffness    0.007053 meV", "site barrier 0.000882 meV"] {
+        assert!(ball.contains(row), "{row}\n{ball}");
+    }
     let toy = said("wall_nucleation");
     assert!(toy.contains("wall energy  6.3246 meV") && !toy.contains("warning"), "{toy}");
     let listed = spinneb(&root(), &["list", "materials"]);
     let listed = String::from_utf8(listed.stdout).unwrap();
     assert!(listed.lines().count() >= 18 && listed.contains("5.69 nm") && listed.contains("15.80 mJ/m²"), "{listed}");
+}
+
+#[test]
+fn a_wall_of_a_cubic_material_is_as_wide_as_the_list_of_materials_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let config = r#"{
+        "material": "iron",
+        "lattice": {"chain": {"sites": 200, "spacing": "2 nm", "cross_section": ["2 nm", "2 nm"]}},
+        "initial": {"domain_wall": {"center": 99.5}},
+        "final": {"uniform": {"direction": [0, 0, 1]}}
+    }"#;
+    fs::write(folder.path().join("iron.json"), config).unwrap();
+    let said = String::from_utf8(spinneb(folder.path(), &["check", "iron.json"]).stdout).unwrap();
+    let listed = String::from_utf8(spinneb(folder.path(), &["list", "materials"]).stdout).unwrap();
+    let width = |text: &str| {
+        let before = text.split(" nm").find(|part| part.contains("20.9")).unwrap_or_else(|| panic!("{text}"));
+        before.rsplit(' ').next().unwrap().parse::<f64>().unwrap()
+    };
+    assert!((width(&said) - width(&listed)).abs() < 0.06, "{said}\n{listed}");
+    // a wall without a width of its own has that one: uniform but for some 20 sites
+    let spins = load(&folder.path().join("iron.json"), &[]).unwrap().problem().unwrap().initial;
+    assert!(spins.get(50)[2] > 0.999 && spins.get(150)[2] < -0.999, "{:?} {:?}", spins.get(50), spins.get(150));
 }
 
 #[test]

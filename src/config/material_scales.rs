@@ -3,6 +3,7 @@
 //! ```text
 //! l_ex = √(2A/μ₀Ms²)      δ = √(A/|K|), or √(J/2K) sites      σ = 4√(AK), or 2√(2JK) a chain       (K uniaxial in σ)
 //! ```
+//! 2K is the curvature at the minimum: of a cubic K < 0, whose diagonals are easy, K is ⅔ of it here.
 
 use super::Material;
 use crate::energy::{AnisotropySpec, TermSpec};
@@ -37,7 +38,8 @@ impl MaterialScales {
             if let Some(Profile::Same(ms)) = &material.Ms {
                 scales.exchange_length_nm = positive(1e9 * (2.0 * a / MU_0).sqrt() / ms.0);
             }
-            let k = uniaxial.or(cubic).and_then(density);
+            let of_cubic = |k: f64| if k < 0.0 { 2.0 / 3.0 * k } else { k };
+            let k = uniaxial.and_then(density).or(cubic.and_then(density).map(of_cubic));
             scales.wall_width_nm = k.and_then(|k| positive(1e9 * (a / k.abs()).sqrt()));
             scales.wall_energy_mj_per_m2 = uniaxial.and_then(density).and_then(|k| positive(4e3 * (a * k).sqrt()));
         } else if let (Some(Energy(j)), Some(SiteEnergy::PerSite(Energy(k)))) = (bond(material), uniaxial) {

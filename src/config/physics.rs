@@ -9,10 +9,9 @@
 use super::Loaded;
 use crate::drive::{Problem, Scales};
 use crate::energy::magnetostatics::MU_0_MU_B_SQUARED;
-use crate::energy::{EnergyTerm, Hamiltonian, TermSpec};
+use crate::energy::{EnergyTerm, Hamiltonian, TermSpec, site_anisotropies};
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Vector, vector};
-use crate::linalg::eigenvalues_symmetric;
 
 /// A wall of less than this many sites feels every one of them.
 const NARROW: f64 = 3.0;
@@ -113,15 +112,10 @@ fn exchange_length_nm(loaded: &Loaded, scales: &Scales) -> Option<f64> {
     (length > 0.0 && length.is_finite()).then_some(length)
 }
 
-/// Half the gap between the two lowest curvatures of each site alone: smallest and largest.
+/// The barrier of each site alone, to the reverse of its lowest minimum: smallest and largest.
 fn site_barriers(h: &Hamiltonian) -> [f64; 2] {
-    let zero = vec![0.0; 3 * h.sites()];
-    let own = h.varying_blocks(Components::new(&zero));
-    let gaps = own.as_ref().unwrap_or(h.constant_blocks()).sites().map(|b| {
-        let e = eigenvalues_symmetric(&b.concat(), 3);
-        0.5 * (e[1] - e[0])
-    });
-    let [low, high] = gaps.fold([f64::INFINITY, 0.0], |[low, high], g| [low.min(g), high.max(g)]);
+    let barriers = site_anisotropies(h, false).into_iter().map(|site| site.barrier_mev);
+    let [low, high] = barriers.fold([f64::INFINITY, 0.0], |[low, high], b| [low.min(b), high.max(b)]);
     [low.min(high), high]
 }
 

@@ -1,9 +1,8 @@
 //! The scales of a problem: how stiff its softest mode is, how wide its walls are.
 
-use crate::energy::{Evaluator, Hamiltonian};
-use crate::field::Components;
+use crate::energy::{Evaluator, Hamiltonian, site_anisotropies};
 use crate::lattice::{BondFamily, Lattice};
-use crate::linalg::{eigenvalues_symmetric, orthonormal, slab};
+use crate::linalg::orthonormal;
 use crate::state::StateContext;
 use crate::stationary::{ALIKE, INDEPENDENT, Relaxed, State};
 use crate::threads::both;
@@ -71,25 +70,10 @@ fn softest_mode(h: Evaluator, m: &[f64]) -> f64 {
     State::at(h, m.to_vec()).stiffness_mev(h).unwrap_or(0.0)
 }
 
-/// Median over sites of the gap between the two lowest on-site curvatures: 2K of an easy axis. Magnetostatics count as between
-/// spins that are all alike: the anisotropy of the chain's shape.
+/// Median over sites of the least curvature that a site has of itself at its lowest minimum: 2K of an easy axis. Magnetostatics count as
+/// between spins that are all alike: the anisotropy of the chain's shape.
 fn on_site_gap(h: &Hamiltonian) -> f64 {
-    let zero = vec![0.0; 3 * h.sites()];
-    let own = h.varying_blocks(Components::new(&zero));
-    let blocks = own.as_ref().unwrap_or(h.constant_blocks());
-    let others = h.coupling().pairs().map(|pairs| pairs.sums_of_others());
-    let mut gaps: Vec<f64> = blocks
-        .sites()
-        .enumerate()
-        .map(|(i, b)| {
-            let mut sum = b.concat();
-            if let Some(others) = &others {
-                slab::add_scaled(&mut sum, 1.0, &others[i].concat());
-            }
-            let e = eigenvalues_symmetric(&sum, 3);
-            e[1] - e[0]
-        })
-        .collect();
+    let mut gaps: Vec<f64> = site_anisotropies(h, true).iter().map(|site| site.gap_mev).collect();
     gaps.sort_by(f64::total_cmp);
     gaps[gaps.len() / 2]
 }
