@@ -55,6 +55,8 @@ pub struct Descent {
     pub arrived: bool,
     /// It took as many steps as it might.
     pub given_up: bool,
+    /// Steps by factors taken.
+    pub steps: usize,
     /// Points on the way, each with a spin turned by 0.3 rad or more since the last (more on long chains, so that they
     /// fit into memory).
     pub way: Vec<Vec<f64>>,
@@ -102,6 +104,7 @@ pub fn descend(h: Evaluator, saddle: &State, valley: &[f64], to: Downhill) -> De
         fallen_mev: saddle.above_mev(&walk.here),
         arrived,
         given_up,
+        steps: most - walk.left,
         m: walk.here.m,
         way: walk.trail.into_points(),
     }

@@ -1,5 +1,6 @@
 //! Relaxing a state to its minimum: Newton's method with a shift that keeps the Hessian positive, and descent checked.
 
+use super::descent::{NOISE, STEPS};
 use super::polish::polish;
 use super::tolerances::{
     ALIKE, FIRST_SHIFT, LARGER, LAST_DIGITS, LAST_SHIFT, MANY, NEARLY, ROUNDING, STATIONARY, STRIDE,
@@ -53,7 +54,8 @@ pub struct WayDown {
 }
 
 /// The minimum that `start` relaxes to, with every force component below `tolerance_mev`. Stationary states on the way that are
-/// no minima are left, however many, as long as the energy falls.
+/// no minima are left, however many, as long as the energy falls by more than rounding; where the Hessian is not that of the energy, the
+/// search ends after a bounded number of steps with what it has come to.
 pub fn relax_to_minimum(h: Evaluator, start: &Spins, tolerance_mev: f64) -> Result<Relaxed> {
     relax(h, start, tolerance_mev, |state| (Spectrum::of(h, state, 0), None))
 }
@@ -73,17 +75,22 @@ fn relax(
     let mut left = None;
     let mut steps = 0;
     let mut memory = Matrix::default();
+    let (mut left_to_take, mut in_vain) = (STEPS, 0);
     let (spectrum, stiffness_mev) = loop {
+        let before = steps;
         p = stationary(h, p, tolerance_mev, &mut steps, &mut memory)?;
         let state = State::of(h, p);
         let seen = look(&state);
         let here = &seen.0;
         let (is_saddle, rests) = (here.negative > 0, state.max_torque_mev() <= NEARLY * tolerance_mev);
-        let down = if is_saddle || !rests { way_down(h, &state, rests) } else { None };
-        let Some((below, way)) = down.filter(|(_, way)| way.fallen_mev > 0.0) else {
+        let goes_on = (is_saddle || !rests) && left_to_take > 0 && in_vain <= 1;
+        let down = if goes_on { way_down(h, &state, rests, left_to_take) } else { None };
+        let Some((below, way, taken)) = down.filter(|(_, way, _)| way.fallen_mev > 0.0) else {
             p = state.point;
             break seen;
         };
+        in_vain = if way.fallen_mev > NOISE * h.stiffness_mev() { 0 } else { in_vain + 1 };
+        left_to_take = left_to_take.saturating_sub(1 + steps - before + taken);
         if is_saddle {
             left.get_or_insert(way);
         }
@@ -192,18 +199,99 @@ fn newton(h: Evaluator, p: &Point, shift: f64, memory: &mut Matrix) -> Option<Ve
     positive.then(|| p.field(&x))
 }
 
-/// From a state with a negative direction, or one that Newton's steps were too many for and that does not rest: the minimum below it.
-fn way_down(h: Evaluator, state: &State, rests: bool) -> Option<(Point, WayDown)> {
+/// From a state with a negative direction, or one that Newton's steps were too many for and that does not rest: the minimum below it, and
+/// the steps that it took, no more than `most`.
+fn way_down(h: Evaluator, state: &State, rests: bool, most: usize) -> Option<(Point, WayDown, usize)> {
     let mut mode = state.field(&state.lowest_mode(h)?.vector);
     if !rests && slab::dot(&mode, &state.gradient) > 0.0 {
         slab::scale(&mut mode, -1.0);
     }
-    let to = Downhill { c: h.stiffness_mev(), level_mev: 0.0, beside: &[], most: usize::MAX };
-    let below = Point::at(h, descend(h, state, &mode, to).m);
+    let to = Downhill { c: h.stiffness_mev(), level_mev: 0.0, beside: &[], most };
+    let descent = descend(h, state, &mode, to);
+    let below = Point::at(h, descent.m);
     let turns = Components::new(&mode);
     let largest = (0..h.sites()).max_by(|i, j| vector::norm(turns.get(*i)).total_cmp(&vector::norm(turns.get(*j))));
     let site = largest.unwrap_or(0);
     let way =
         WayDown { site, direction: vector::unit_or(turns.get(site), [0.0; 3]), fallen_mev: state.above_mev(&below) };
-    Some((below, way))
+    Some((below, way, descent.steps))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::control::Control;
+    use crate::energy::{Anisotropy, Blocks, EnergyTerm, Exchange, Hamiltonian};
+    use crate::field::ComponentsMut;
+    use crate::geometry::Direction;
+    use crate::lattice::Chain;
+    use std::ops::Range;
+
+    /// −K (m·z)^p, and what it says of its Hessian, which is wrong: nothing, its opposite, or that it is constant.
+    #[derive(Clone, Copy, Debug)]
+    struct Wrong {
+        k: f64,
+        power: i32,
+        blocks: f64,
+        quadratic: bool,
+    }
+
+    impl EnergyTerm for Wrong {
+        fn name(&self) -> &str {
+            "wrong"
+        }
+
+        fn sites(&self) -> Option<usize> {
+            None
+        }
+
+        fn reference_mev(&self) -> f64 {
+            0.0
+        }
+
+        fn add_gradient(&self, m: Components, mut g: ComponentsMut, density: &mut [f64], range: Range<usize>) {
+            for (k, i) in range.enumerate() {
+                density[k] -= self.k * m.z[i].powi(self.power);
+                g.add(k, [0.0, 0.0, -self.k * f64::from(self.power) * m.z[i].powi(self.power - 1)]);
+            }
+        }
+
+        fn add_hessian_product(&self, _: Components, v: Components, mut out: ComponentsMut) {
+            (0..v.sites()).for_each(|i| out.add(i, [0.0, 0.0, self.blocks * v.z[i]]));
+        }
+
+        fn add_blocks(&self, _: Components, blocks: &mut Blocks) {
+            (0..blocks.site[0].len()).for_each(|i| blocks.add_axial(i, self.blocks, [0.0, 0.0, 1.0]));
+        }
+
+        fn is_quadratic(&self) -> bool {
+            self.quadratic
+        }
+
+        fn axes(&self) -> Vec<Vector> {
+            Vec::new()
+        }
+    }
+
+    #[test]
+    fn a_hessian_that_is_not_that_of_the_energy_ends_in_bounded_work() {
+        let chain = Chain::open(6).resolve().unwrap();
+        for (k, power) in [(-0.3, 4), (0.3, 4), (0.7, 2), (-0.7, 2)] {
+            for blocks in [0.0, -1.0, 1.0, -5.0] {
+                for seed in 0..2 {
+                    let wrong = Wrong { k, power, blocks, quadratic: seed == 0 };
+                    let terms: Vec<Box<dyn EnergyTerm>> = vec![
+                        Box::new(Exchange::uniform(&chain, &[10.0])),
+                        Box::new(Anisotropy::uniform(6, 0.5, Direction::X)),
+                        Box::new(wrong),
+                    ];
+                    let (h, control) = (Hamiltonian::new(&chain, terms).unwrap(), Control::default());
+                    let h = Evaluator::new(&h, &control);
+                    relax_to_minimum(h, &Spins::random(6, seed), 1e-13).unwrap();
+                    let evaluations = h.evaluated().evaluations;
+                    assert!(evaluations < 4 * STEPS, "{wrong:?} {seed}: {evaluations}");
+                }
+            }
+        }
+    }
 }
