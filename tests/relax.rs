@@ -235,6 +235,20 @@ fn a_skyrmion_on_top_of_what_its_lattice_holds_it_by_comes_to_rest() {
 }
 
 #[test]
+fn vacant_sites_have_no_part_in_the_mean_spin() {
+    let folder = folder();
+    let config = r#"{
+        "material": {"name": "film", "energy": [
+            {"exchange": {"J": ["10 meV"]}}, {"anisotropy": {"K": "0.5 meV", "axis": [1, 0, 0]}}]},
+        "lattice": {"square": {"cells": [4, 4], "vacant": {"from": 0, "to": 7}}},
+        "initial": {"uniform": {"direction": [1, 0, 0.1]}}
+    }"#;
+    fs::write(folder.path().join("wall.json"), config).unwrap();
+    let states = relaxed(folder.path(), &[]);
+    assert!((number(&states[0]["mean_spin"][0]) - 1.0).abs() < 1e-12, "{}", states[0]["mean_spin"]);
+}
+
+#[test]
 fn a_wall_that_an_end_far_away_draws_out_of_the_chain_is_followed_there() {
     let folder = folder();
     let config = r#"{

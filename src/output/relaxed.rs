@@ -93,7 +93,7 @@ impl<'a> RelaxReport<'a> {
             flat_modes: minimum.spectrum.flat,
             noise_floor_meV: Number(minimum.spectrum.floor_mev),
             lowest_eigenvalues_meV: minimum.spectrum.lowest_mev.iter().copied().map(Number).collect(),
-            mean_spin: mean(&relaxed.spins.vectors()).map(Number),
+            mean_spin: relaxed.spins.mean(&self.lattice.vacant).map(Number),
             energy_as_given_meV: Number(state.given_mev),
             max_torque_as_given_meV: Number(state.given_torque_mev),
             largest_rotation_rad: Number(relaxed.largest_rotation_rad),
@@ -200,9 +200,4 @@ fn ovf(data: OvfData, report: &RelaxReport, which: &str, spins: &[Vector]) -> Ve
 
 fn vtk(report: &RelaxReport, _: &str, spins: &[Vector]) -> Result<Vec<u8>> {
     Ok(vtk_points(report.lattice).file(&without_idle(report.lattice, spins.to_vec())))
-}
-
-fn mean(spins: &[Vector]) -> Vector {
-    let n = spins.len().max(1) as f64;
-    [0, 1, 2].map(|c| spins.iter().map(|v| v[c]).sum::<f64>() / n)
 }
