@@ -8,8 +8,8 @@ use spinneb::energy::{Anisotropy, EnergyTerm, Exchange, Hamiltonian};
 use spinneb::error::Error;
 use spinneb::geometry::Direction;
 use spinneb::landscape::Effort;
-use spinneb::lattice::Chain;
-use spinneb::path;
+use spinneb::lattice::{Chain, LatticeSpec};
+use spinneb::path::Path as SpinPath;
 use spinneb::rates::{RateSettings, Theory};
 use spinneb::spins::Spins;
 use std::path::Path;
@@ -73,7 +73,7 @@ struct StopAfter {
 impl Observer for StopAfter {
     fn iteration(&mut self, _: &HistoryRow) {}
 
-    fn relaxed(&mut self, _: &path::Path, _: &[HistoryRow]) {
+    fn relaxed(&mut self, _: &SpinPath, _: &[HistoryRow]) {
         self.relaxed += 1;
         if self.relaxed == self.last {
             self.switch.store(true, Ordering::Relaxed);
@@ -117,6 +117,28 @@ fn terms_of_another_lattice_are_refused() {
         for term in [easy_axis(sites), exchange(sites)] {
             let place = term.name().to_string();
             assert_eq!(told(Hamiltonian::new(&chain, vec![term])), format!("{place}: {words}"));
+        }
+    }
+}
+
+#[test]
+fn terms_with_the_bonds_of_another_lattice_of_as_many_sites_are_refused() {
+    let square = |periodic| -> LatticeSpec {
+        serde_json::from_value(json!({"square": {"cells": [6, 6], "periodic": periodic}})).unwrap()
+    };
+    let lattices = [
+        Chain::open(36).resolve().unwrap(),
+        Chain::ring(36).resolve().unwrap(),
+        square([false, false]).resolve().unwrap(),
+        square([true, false]).resolve().unwrap(),
+    ];
+    for (k, lattice) in lattices.iter().enumerate() {
+        for (l, other) in lattices.iter().enumerate() {
+            let made = Hamiltonian::new(lattice, vec![Box::new(Exchange::uniform(other, &[10.0]))]);
+            match k == l {
+                true => assert!(made.is_ok()),
+                false => assert!(told(made).starts_with("exchange: a term of another lattice"), "{k} {l}"),
+            }
         }
     }
 }

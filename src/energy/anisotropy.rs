@@ -121,6 +121,10 @@ impl EnergyTerm for Anisotropy {
         Some(self.k.len())
     }
 
+    fn fits(&self, sites: usize) -> bool {
+        self.k.len() == sites && (self.k2.is_empty() || self.k2.len() == sites)
+    }
+
     fn reference_mev(&self) -> f64 {
         -self.k.iter().chain(&self.k2).map(|k| k.max(0.0)).sum::<f64>()
     }
@@ -162,7 +166,17 @@ impl EnergyTerm for Anisotropy {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::energy::density_of;
+    use crate::energy::{Hamiltonian, density_of};
+    use crate::lattice::Chain;
+
+    #[test]
+    fn constants_of_too_few_or_too_many_sites_are_refused() {
+        let chain = Chain::open(6).resolve().unwrap();
+        for (sites, fits) in [(0, true), (6, true), (3, false), (9, false)] {
+            let term = Anisotropy { axis: [0.0, 0.0, 1.0], k: vec![0.5; 6], k2: vec![0.1; sites] };
+            assert_eq!(Hamiltonian::new(&chain, vec![Box::new(term)]).is_ok(), fits, "{sites}");
+        }
+    }
 
     #[test]
     fn an_easy_axis_costs_k_sine_squared_and_a_hard_axis_k_cosine_squared() {

@@ -95,6 +95,10 @@ impl EnergyTerm for Biquadratic {
         Couplings::sites(&self.families)
     }
 
+    fn fits(&self, sites: usize) -> bool {
+        Couplings::fit(&self.families, sites)
+    }
+
     fn reference_mev(&self) -> f64 {
         self.bonds().map(|(_, b)| -b.max(0.0)).sum()
     }

@@ -17,6 +17,11 @@ impl Couplings {
         all.first().map(|couplings| couplings.mev.len())
     }
 
+    /// Whether each of these has a strength for each of so many sites.
+    pub fn fit(all: &[Couplings], sites: usize) -> bool {
+        all.iter().all(|couplings| couplings.mev.len() == sites)
+    }
+
     /// None yet, on these families of a lattice of so many sites.
     pub fn none(families: Vec<BondFamily>, sites: usize) -> Vec<Couplings> {
         families.into_iter().map(|family| Couplings { family, mev: vec![0.0; sites] }).collect()

@@ -231,6 +231,10 @@ impl EnergyTerm for Dmi {
         Couplings::sites(&self.families)
     }
 
+    fn fits(&self, sites: usize) -> bool {
+        self.directions.len() == self.families.len() && Couplings::fit(&self.families, sites)
+    }
+
     fn reference_mev(&self) -> f64 {
         0.0
     }

@@ -181,6 +181,10 @@ impl EnergyTerm for Exchange {
         Couplings::sites(&self.families)
     }
 
+    fn fits(&self, sites: usize) -> bool {
+        Couplings::fit(&self.families, sites)
+    }
+
     fn reference_mev(&self) -> f64 {
         -self.families.iter().flat_map(|c| &c.mev).map(|j| j.abs()).sum::<f64>()
     }

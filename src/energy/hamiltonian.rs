@@ -5,7 +5,7 @@ use super::{Blocks, Coupling, EnergyTerm, symmetry_axes};
 use crate::error::{Error, Result};
 use crate::field::{Components, ComponentsMut, TILE, project_row, tiles};
 use crate::geometry::{Direction, Vector, vector};
-use crate::lattice::{BondFamily, Lattice};
+use crate::lattice::{BondFamily, Hop, Lattice};
 use crate::linalg::{Layout, slab};
 use crate::spins::Spins;
 use multiversion::multiversion;
@@ -47,13 +47,11 @@ pub struct Hamiltonian {
 const PARALLEL: f64 = 1e-6;
 
 impl Hamiltonian {
-    /// The sum of `terms` on `lattice`; an error where one is of another number of sites, or two reach from all sites to all.
+    /// The sum of `terms` on `lattice`; an error where one does not fit it, by its number of sites, the lengths of its arrays or its bonds,
+    /// or two reach from all sites to all.
     pub fn new(lattice: &Lattice, terms: Vec<Box<dyn EnergyTerm>>) -> Result<Hamiltonian> {
         for term in &terms {
-            if let Some(found) = term.sites().filter(|n| *n != lattice.sites) {
-                let message = format!("a term of {found} sites on a lattice of {}", lattice.sites);
-                return Err(Error::invalid(term.name(), message));
-            }
+            fit(lattice, term.as_ref()).map_err(|message| Error::invalid(term.name(), message))?;
         }
         let mut long = terms.iter().enumerate().filter(|(_, t)| t.coupling().pairs().is_some());
         let (long, second) = (long.next().map(|(k, _)| k), long.next());
@@ -437,6 +435,27 @@ fn distinct<'a>(families: impl Iterator<Item = &'a BondFamily>) -> Vec<BondFamil
 /// Two terms that count the same forces.
 fn twice(first: &str, second: &str) -> Error {
     let what = if first == second {
+/// What of a term does not fit a lattice, in words.
+fn fit(lattice: &Lattice, term: &dyn EnergyTerm) -> std::result::Result<(), String> {
+    let sites = lattice.sites;
+    if let Some(found) = term.sites().filter(|n| *n != sites) {
+        return Err(format!("a term of {found} sites on a lattice of {sites}"));
+    }
+    if !term.fits(sites) {
+        return Err(format!("its arrays are of different lengths: each has an entry for each of the {sites} sites"));
+    }
+    match term.families().into_iter().find(|family| !family.is_of(lattice)) {
+        None => Ok(()),
+        Some(family) => {
+            let Hop { atoms: [from, to], shift } = family.hop;
+            let bonds = format!("bonds from atom {from} to atom {to}, {shift:?} cells on");
+            Err(format!(
+                "a term of another lattice, which has other {bonds}: make it for the lattice of the Hamiltonian"
+            ))
+        }
+    }
+}
+
         format!("\"{first}\" is there twice")
     } else {
         format!("there are both \"{first}\" and \"{second}\"")

@@ -115,6 +115,11 @@ pub trait EnergyTerm: Debug + Send + Sync {
     /// Of how many sites it is; nothing where it fits any lattice.
     fn sites(&self) -> Option<usize>;
 
+    /// Whether all that it has of sites and bonds fits a lattice of so many sites: an entry for each of them in every array.
+    fn fits(&self, sites: usize) -> bool {
+        self.sites().is_none_or(|own| own == sites)
+    }
+
     /// Energy of the reference state (meV), a constant.
     fn reference_mev(&self) -> f64;
 

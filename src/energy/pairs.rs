@@ -315,6 +315,12 @@ impl EnergyTerm for Pairs {
         self.exchange.sites().or(self.dmi.sites()).or_else(rest)
     }
 
+    fn fits(&self, sites: usize) -> bool {
+        self.exchange.fits(sites)
+            && self.dmi.fits(sites)
+            && self.rest.iter().all(|(_, couplings)| couplings.mev.len() == sites)
+    }
+
     fn reference_mev(&self) -> f64 {
         self.exchange.reference_mev()
     }

@@ -64,6 +64,12 @@ impl BondFamily {
         BondFamily { shell, hop, along: lattice.along(hop), segments }
     }
 
+    /// Whether it is what its hop makes of a lattice.
+    pub fn is_of(&self, lattice: &Lattice) -> bool {
+        self.hop.atoms.iter().all(|atom| *atom < lattice.atoms.len())
+            && BondFamily::new(lattice, self.shell, self.hop).segments == self.segments
+    }
+
     /// The segments of a range of sites, cut at its ends.
     pub fn segments(&self, range: Range<usize>) -> impl Iterator<Item = Segment> + '_ {
         let first = self.segments.partition_point(|s| s.sites.end <= range.start);
