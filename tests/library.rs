@@ -10,8 +10,10 @@ use spinneb::geometry::Direction;
 use spinneb::landscape::Effort;
 use spinneb::lattice::{Chain, LatticeSpec};
 use spinneb::path::Path as SpinPath;
+use spinneb::path::guess::NoiseSpec;
 use spinneb::rates::{RateSettings, Theory};
 use spinneb::spins::Spins;
+use spinneb::units::Angle;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -155,7 +157,22 @@ fn problems_that_cannot_be_run_are_refused_before_any_work() {
         let found = told(changed(|p| p.images = Images::Count(n)));
         assert!(found.starts_with(&format!("images: found {n}, but a path has 3")), "{found}");
     }
+    let found = told(changed(|p| p.images = Images::Count(1 << 40)));
+    assert!(found.contains("that memory holds (these need about"), "{found}");
     assert!(Spins::from_components(&[1.0, 2.0, 3.0, 4.0]).is_err());
+}
+
+#[test]
+fn senseless_settings_of_a_run_are_refused() {
+    for x in [f64::NAN, f64::INFINITY, 0.0, -1.0] {
+        assert!(told(changed(|p| p.neb.tolerance = x)).starts_with("neb.tolerance: found "), "{x}");
+    }
+    assert!(told(changed(|p| p.neb.max_evaluations = 0)).starts_with("neb.max_evaluations: found 0"));
+    for x in [f64::NAN, -0.1, 5.0] {
+        assert!(told(changed(|p| p.smooth = Some(x))).starts_with("smooth: found "), "{x}");
+    }
+    let noise = |x| Some(NoiseSpec { amplitude: Angle(x), seed: 1 });
+    assert!(told(changed(|p| p.noise = noise(f64::NAN))).starts_with("noise.amplitude: found "));
 }
 
 #[test]
@@ -174,6 +191,7 @@ fn rates_of_senseless_settings_are_refused() {
         (|r| r.moments_mub = Vec::new(), "rates.moments_mub: found 0 of 20"),
         (|r| r.moments_mub[7] = f64::NAN, "rates.moments_mub[7]: "),
         (|r| r.moments_mub[7] = 0.0, "rates.moments_mub[7]: found 0"),
+        (|r| r.theories = Vec::new(), "rates.theories: found none"),
     ] {
         let found = with(change);
         assert!(found.starts_with(place), "{found}");
@@ -197,5 +215,12 @@ fn surveys_that_cannot_be_made_are_refused() {
     assert!(made(f64::NAN, SITES).starts_with("window_mev: "));
     assert!(made(-1.0, SITES).starts_with("window_mev: found -1"));
     assert!(made(9.0, 3).starts_with("seeds[0]: found 3 spins"));
+    let without = |change: fn(&mut SurveyProblem)| {
+        let mut asked = asked(9.0, SITES);
+        change(&mut asked);
+        told(survey(&asked, &mut Silent).map(|_| ()))
+    };
+    assert!(without(|s| s.shares = 0).starts_with("shares: found 0"));
+    assert!(without(|s| s.problem.rates = Some(rates())).starts_with("problem.rates: "));
     assert!(survey(&asked(9.0, SITES), &mut Silent).is_ok());
 }

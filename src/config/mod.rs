@@ -13,7 +13,6 @@ pub mod library;
 mod load;
 mod material;
 mod material_scales;
-pub mod memory;
 mod name;
 mod neb;
 pub mod neighbours;
@@ -34,6 +33,7 @@ mod strict;
 pub mod sweep;
 pub mod text;
 
+pub use crate::drive::memory;
 pub use built::{States, expected_images, needed_bytes};
 pub use keeping::{Keeping, Say};
 pub use landscape::{GroupConfig, LandscapeConfig};

@@ -1,8 +1,7 @@
 //! How the band is relaxed, and what is done with its saddles.
 
-use crate::drive::NebSettings;
+use crate::drive::{NebSettings, checked_evaluations, checked_tolerance};
 use crate::optimise::OptimiserSpec;
-use crate::words::number;
 use schemars::JsonSchema;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer};
@@ -57,18 +56,9 @@ impl Default for SaddleConfig {
 }
 
 fn tolerance<'de, D: Deserializer<'de>>(d: D) -> Result<f64, D::Error> {
-    let x = f64::deserialize(d)?;
-    match x.is_finite() && x > 0.0 {
-        true => Ok(x),
-        false => {
-            Err(D::Error::custom(format!("found {}, but a tolerance (rad) is greater than 0, such as 1e-6", number(x))))
-        }
-    }
+    checked_tolerance(f64::deserialize(d)?).map_err(D::Error::custom)
 }
 
 fn evaluations<'de, D: Deserializer<'de>>(d: D) -> Result<usize, D::Error> {
-    match usize::deserialize(d)? {
-        0 => Err(D::Error::custom("found 0, but at least 1 evaluation is needed")),
-        n => Ok(n),
-    }
+    checked_evaluations(usize::deserialize(d)?).map_err(D::Error::custom)
 }

@@ -1,8 +1,8 @@
 //! The first path of a config: how many images, from which guess.
 
-use crate::drive::Images;
+use crate::drive::{Images, checked_smoothing};
 use crate::path::guess::{GuessSpec, NoiseSpec};
-use crate::words::{number, quoted};
+use crate::words::quoted;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{self, Visitor};
 use serde::{Deserialize, Deserializer};
@@ -77,10 +77,5 @@ impl<'de> Deserialize<'de> for ImageCount {
 }
 
 fn smooth<'de, D: Deserializer<'de>>(d: D) -> Result<Option<f64>, D::Error> {
-    match Option::<f64>::deserialize(d)? {
-        Some(x) if !(0.0..=1.0).contains(&x) => {
-            Err(de::Error::custom(format!("found {}, but smoothing goes from 0 (none) to 1", number(x))))
-        }
-        x => Ok(x),
-    }
+    Option::<f64>::deserialize(d)?.map(checked_smoothing).transpose().map_err(de::Error::custom)
 }

@@ -6,6 +6,7 @@ mod explore;
 mod first_path;
 mod first_paths;
 mod judge;
+pub mod memory;
 mod outcome;
 mod places;
 mod problem;
@@ -25,7 +26,7 @@ mod verdict;
 
 pub use explore::natural_guesses;
 pub use outcome::*;
-pub use problem::{Images, NebSettings, Problem};
+pub use problem::{Images, NebSettings, Problem, checked_evaluations, checked_smoothing, checked_tolerance};
 pub use rates::{is_said_of_rates, stored_rates, warnings as rates_warnings};
 pub use relaxation::{Goal, Relaxation, image_levels, prominent_maxima, refined};
 pub use relaxed::{RelaxedState, relaxed_state};

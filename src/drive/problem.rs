@@ -1,6 +1,6 @@
 //! What a run is given.
 
-use super::Scales;
+use super::{Scales, memory};
 use crate::control::Control;
 use crate::energy::{Evaluator, Hamiltonian};
 use crate::error::{Error, Result};
@@ -11,6 +11,7 @@ use crate::rates::RateSettings;
 use crate::record::Fingerprint;
 use crate::spins::Spins;
 use crate::state::{Sense, StateContext};
+use crate::words::number;
 
 /// Two states of a lattice, and how to look for the path between them.
 ///
@@ -104,20 +105,33 @@ impl Problem {
         StateContext { sense: self.sense, ..scales.states(&self.hamiltonian) }
     }
 
-    /// An error where an end, the number of images or what is asked of rates is none that a run can have.
+    /// An error where an end, the number of images, a setting or what is asked of rates is none that a run can have.
     pub(super) fn check(&self) -> Result<()> {
         let sites = self.hamiltonian.sites();
         of_so_many_sites(sites, "initial", &self.initial)?;
         of_so_many_sites(sites, "final_state", &self.final_state)?;
         if let Images::Count(n) = self.images {
-            let fits = n.checked_mul(24 * sites).is_some_and(|bytes| isize::try_from(bytes).is_ok());
-            if n < Images::LEAST || !fits {
-                let message =
-                    format!("found {n}, but a path has 3 images or more, both ends counted, that memory holds");
+            let bytes = memory::images_bytes(n, sites);
+            let whose = memory::exceeded(bytes);
+            if n < Images::LEAST || whose.is_some() {
+                let more =
+                    whose.map(|whose| format!(" (these need about {}, more than {whose})", memory::shown(bytes)));
+                let message = format!(
+                    "found {n}, but a path has 3 images or more, both ends counted, that memory holds{}",
+                    more.unwrap_or_default()
+                );
                 return Err(Error::invalid("images", message));
             }
         }
-        self.rates.as_ref().map_or(Ok(()), |rates| rates.check(sites).map_err(|e| e.within("rates")))
+        self.neb.check().map_err(|e| e.within("neb"))?;
+        if let Some(smooth) = self.smooth {
+            checked_smoothing(smooth).map_err(|message| Error::invalid("smooth", message))?;
+        }
+        if let Some(noise) = self.noise.filter(|noise| !noise.amplitude.0.is_finite()) {
+            let message = format!("found {}, but an amplitude is a finite angle", number(noise.amplitude.0));
+            return Err(Error::invalid("noise.amplitude", message));
+        }
+        check_rates(self.rates.as_ref(), sites)
     }
 
     /// What tells it from other problems: its energies, states and settings.
@@ -139,6 +153,40 @@ impl Problem {
     /// Whether the maxima are followed to their saddles.
     pub fn seeks_saddles(&self) -> bool {
         self.refine || self.neb.climb
+    }
+}
+
+/// An error where there are no rates of such settings for so many sites.
+pub(super) fn check_rates(rates: Option<&RateSettings>, sites: usize) -> Result<()> {
+    let Some(rates) = rates else { return Ok(()) };
+    rates.check(sites).map_err(|e| e.within("rates"))?;
+    match rates.theories.is_empty() {
+        true => Err(Error::invalid("rates.theories", "found none: name a theory, or leave the rates out")),
+        false => Ok(()),
+    }
+}
+
+/// The strength of a smoothing, if it can be one.
+pub fn checked_smoothing(x: f64) -> std::result::Result<f64, String> {
+    match (0.0..=1.0).contains(&x) {
+        true => Ok(x),
+        false => Err(format!("found {}, but smoothing goes from 0 (none) to 1", number(x))),
+    }
+}
+
+/// The tolerance of a band (rad), if it can be one.
+pub fn checked_tolerance(x: f64) -> std::result::Result<f64, String> {
+    match x.is_finite() && x > 0.0 {
+        true => Ok(x),
+        false => Err(format!("found {}, but a tolerance (rad) is greater than 0, such as 1e-6", number(x))),
+    }
+}
+
+/// The most evaluations of a band, if there can be so many.
+pub fn checked_evaluations(n: usize) -> std::result::Result<usize, String> {
+    match n {
+        0 => Err("found 0, but at least 1 evaluation is needed".into()),
+        n => Ok(n),
     }
 }
 
@@ -183,6 +231,15 @@ pub struct NebSettings {
     pub max_evaluations: usize,
     /// The method.
     pub optimiser: OptimiserSpec,
+}
+
+impl NebSettings {
+    /// An error where no band can be relaxed so.
+    fn check(&self) -> Result<()> {
+        checked_tolerance(self.tolerance).map_err(|message| Error::invalid("tolerance", message))?;
+        checked_evaluations(self.max_evaluations).map_err(|message| Error::invalid("max_evaluations", message))?;
+        Ok(())
+    }
 }
 
 impl Default for NebSettings {

@@ -12,7 +12,7 @@ pub use found::{FoundMinimum, FoundSaddle, Kind, Survey};
 pub use lifetimes::{Lifetime, Lifetimes};
 pub use unseen::Unseen;
 
-use super::problem::of_so_many_sites;
+use super::problem::{check_rates, of_so_many_sites};
 use super::run::Run;
 use super::{Observer, Problem};
 use crate::energy::recorded_each;
@@ -127,7 +127,7 @@ fn searched<T: Send>(
 }
 
 impl SurveyProblem {
-    /// An error where a state, the window or what is asked of rates is none that a survey can have.
+    /// An error where a state, the window, the number of shares or what is asked of rates is none that a survey can have.
     fn check(&self) -> Result<()> {
         self.problem.check().map_err(|e| e.within("problem"))?;
         let sites = self.problem.hamiltonian.sites();
@@ -138,7 +138,14 @@ impl SurveyProblem {
             let message = format!("found {}, but a window of energies is 0 or greater", number(self.window_mev));
             return Err(Error::invalid("window_mev", message));
         }
-        self.rates.as_ref().map_or(Ok(()), |rates| rates.check(sites).map_err(|e| e.within("rates")))
+        if self.shares == 0 {
+            return Err(Error::invalid("shares", "found 0, but a search that is not split has 1 share"));
+        }
+        if self.problem.rates.is_some() {
+            let message = "these are rates of a single path: those of a landscape are the survey's own \"rates\"";
+            return Err(Error::invalid("problem.rates", message));
+        }
+        check_rates(self.rates.as_ref(), sites)
     }
 
     fn fingerprint(&self) -> crate::record::Fingerprint {
