@@ -79,6 +79,9 @@ impl Spins {
     }
 
     /// The vector on site `i`.
+    ///
+    /// # Panics
+    /// Where there is no such site.
     pub fn get(&self, i: usize) -> Vector {
         [self.m[[0, i]], self.m[[1, i]], self.m[[2, i]]]
     }
@@ -89,6 +92,9 @@ impl Spins {
     }
 
     /// Their mean, vacant sites left out.
+    ///
+    /// # Panics
+    /// Where `vacant` is of fewer sites.
     pub fn mean(&self, vacant: &[bool]) -> Vector {
         let there = || (0..self.sites()).filter(|i| !vacant[*i]);
         let count = there().count().max(1) as f64;

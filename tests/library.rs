@@ -14,6 +14,7 @@ use spinneb::path::guess::NoiseSpec;
 use spinneb::rates::{RateSettings, Theory};
 use spinneb::spins::Spins;
 use spinneb::units::Angle;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -173,6 +174,21 @@ fn senseless_settings_of_a_run_are_refused() {
     }
     let noise = |x| Some(NoiseSpec { amplitude: Angle(x), seed: 1 });
     assert!(told(changed(|p| p.noise = noise(f64::NAN))).starts_with("noise.amplitude: found "));
+}
+
+#[test]
+fn states_and_fields_of_other_sizes_than_the_lattice_panic() {
+    let h = problem().hamiltonian;
+    let panics = |call: &dyn Fn()| catch_unwind(AssertUnwindSafe(call)).is_err();
+    assert!(panics(&|| drop(SpinPath::new(&[]))));
+    assert!(panics(&|| drop(SpinPath::new(&[5, 6].map(|n| Spins::uniform(n, Direction::Z))))));
+    let up = Spins::uniform(SITES, Direction::Z);
+    for sites in [SITES - 1, SITES + 1] {
+        let mut g = vec![0.0; 3 * sites];
+        let short = g.clone();
+        assert!(panics(&|| assert!(h.energy_mev(&short).is_finite())));
+        assert!(catch_unwind(AssertUnwindSafe(|| h.energy_gradient(up.as_slice(), &mut g))).is_err());
+    }
 }
 
 #[test]

@@ -214,7 +214,11 @@ impl Hamiltonian {
     }
 
     /// Energy above the reference (meV), and the Euclidean gradient ∂E/∂m (meV) in `g`.
+    ///
+    /// # Panics
+    /// Where one of the two is not of three numbers a site.
     pub fn energy_gradient(&self, m: &[f64], g: &mut [f64]) -> f64 {
+        self.assert_fields([m, g]);
         let far = self.add_far(m, g);
         let tile = |(first, g): (usize, ComponentsMut)| -> f64 {
             let mut density = [0.0; TILE];
@@ -227,6 +231,9 @@ impl Hamiltonian {
 
     /// The same, and the energy density of every site above the reference (meV). `each` is called for every tile of sites, with
     /// its gradient, as soon as that is known, and with what there is for that tile in `rows`.
+    ///
+    /// # Panics
+    /// Where `m` or `g` is not of three numbers a site, or `density` not of one.
     pub fn density_gradient<R: Send>(
         &self,
         m: &[f64],
@@ -235,6 +242,8 @@ impl Hamiltonian {
         rows: impl Iterator<Item = R>,
         each: impl Fn(Range<usize>, Components, R) + Sync,
     ) -> f64 {
+        self.assert_fields([m, g]);
+        assert_eq!(density.len(), self.sites, "densities are one number a site");
         let far = self.add_far(m, g);
         let tile = |(((first, mut g), density), row): (((usize, ComponentsMut), &mut [f64]), R)| -> f64 {
             density.fill(0.0);
@@ -247,6 +256,13 @@ impl Hamiltonian {
             slab::sum(density)
         };
         self.total(tiles(g).zip(density.chunks_mut(TILE)).zip(rows), tile)
+    }
+
+    /// Fields of another number of sites would be read wrongly without a sign of it.
+    fn assert_fields<const N: usize>(&self, fields: [&[f64]; N]) {
+        for field in fields {
+            assert_eq!(field.len(), 3 * self.sites, "a field is three numbers a site");
+        }
     }
 
     /// The sum of what `tile` gives for every tile of sites; of long chains they are done side by side.
@@ -320,7 +336,11 @@ impl Hamiltonian {
     }
 
     /// Energy density of every site above the reference (meV).
+    ///
+    /// # Panics
+    /// Where `m` is not of three numbers a site.
     pub fn density(&self, m: &[f64]) -> Vec<f64> {
+        self.assert_fields([m]);
         let mut density = vec![0.0; self.sites];
         let mut gradient = [0.0; 3 * ROW];
         for (k, density) in density.chunks_mut(ROW).enumerate() {
@@ -345,11 +365,17 @@ impl Hamiltonian {
     }
 
     /// Total energy (meV).
+    ///
+    /// # Panics
+    /// Where `m` is not of three numbers a site.
     pub fn energy_mev(&self, m: &[f64]) -> f64 {
         self.reference_mev() + slab::sum(&self.density(m))
     }
 
     /// E(a) − E(b) (meV), summed from differences of densities.
+    ///
+    /// # Panics
+    /// Where one of the two is not of three numbers a site.
     pub fn difference_mev(&self, a: &[f64], b: &[f64]) -> f64 {
         let mut d = self.density(a);
         slab::add_scaled(&mut d, -1.0, &self.density(b));
@@ -357,7 +383,11 @@ impl Hamiltonian {
     }
 
     /// H v of the Riemannian Hessian (meV) for a tangent field v: P (A v) − (m·g) v.
+    ///
+    /// # Panics
+    /// Where one of the four is not of three numbers a site.
     pub fn hessian_product(&self, m: &[f64], g: &[f64], v: &[f64], out: &mut [f64]) {
+        self.assert_fields([m, g, v, out]);
         out.fill(0.0);
         let (mc, gc, vc) = (Components::new(m), Components::new(g), Components::new(v));
         for t in &self.terms {
@@ -405,6 +435,27 @@ fn curve(m: Components, g: Components, v: Components, ox: &mut [f64], oy: &mut [
     }
 }
 
+/// What of a term does not fit a lattice, in words.
+fn fit(lattice: &Lattice, term: &dyn EnergyTerm) -> std::result::Result<(), String> {
+    let sites = lattice.sites;
+    if let Some(found) = term.sites().filter(|n| *n != sites) {
+        return Err(format!("a term of {found} sites on a lattice of {sites}"));
+    }
+    if !term.fits(sites) {
+        return Err(format!("its arrays are of different lengths: each has an entry for each of the {sites} sites"));
+    }
+    match term.families().into_iter().find(|family| !family.is_of(lattice)) {
+        None => Ok(()),
+        Some(family) => {
+            let Hop { atoms: [from, to], shift } = family.hop;
+            let bonds = format!("bonds from atom {from} to atom {to}, {shift:?} cells on");
+            Err(format!(
+                "a term of another lattice, which has other {bonds}: make it for the lattice of the Hamiltonian"
+            ))
+        }
+    }
+}
+
 /// The blocks of the quadratic terms, for the bonds of all terms; in a row for all shells up to the furthest.
 fn constant_blocks(lattice: &Lattice, terms: &[Box<dyn EnergyTerm>]) -> Blocks {
     let families = match lattice.is_row() {
@@ -435,27 +486,6 @@ fn distinct<'a>(families: impl Iterator<Item = &'a BondFamily>) -> Vec<BondFamil
 /// Two terms that count the same forces.
 fn twice(first: &str, second: &str) -> Error {
     let what = if first == second {
-/// What of a term does not fit a lattice, in words.
-fn fit(lattice: &Lattice, term: &dyn EnergyTerm) -> std::result::Result<(), String> {
-    let sites = lattice.sites;
-    if let Some(found) = term.sites().filter(|n| *n != sites) {
-        return Err(format!("a term of {found} sites on a lattice of {sites}"));
-    }
-    if !term.fits(sites) {
-        return Err(format!("its arrays are of different lengths: each has an entry for each of the {sites} sites"));
-    }
-    match term.families().into_iter().find(|family| !family.is_of(lattice)) {
-        None => Ok(()),
-        Some(family) => {
-            let Hop { atoms: [from, to], shift } = family.hop;
-            let bonds = format!("bonds from atom {from} to atom {to}, {shift:?} cells on");
-            Err(format!(
-                "a term of another lattice, which has other {bonds}: make it for the lattice of the Hamiltonian"
-            ))
-        }
-    }
-}
-
         format!("\"{first}\" is there twice")
     } else {
         format!("there are both \"{first}\" and \"{second}\"")

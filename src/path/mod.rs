@@ -33,9 +33,14 @@ pub struct Path {
 }
 
 impl Path {
-    /// From at least two configurations of the same number of sites.
+    /// From configurations of the same number of sites, at least two where they lead anywhere.
+    ///
+    /// # Panics
+    /// Where there is none, or they are of different numbers of sites.
     pub fn new(images: &[Spins]) -> Path {
+        assert!(!images.is_empty(), "a path without images");
         let n = images[0].sites();
+        assert!(images.iter().all(|image| image.sites() == n), "images of different numbers of sites");
         let mut m = Array3::zeros((images.len(), 3, n));
         for (k, s) in images.iter().enumerate() {
             m.index_axis_mut(ndarray::Axis(0), k).assign(&s.view());
@@ -64,12 +69,18 @@ impl Path {
     }
 
     /// Image `k`, component-major.
+    ///
+    /// # Panics
+    /// Where there is no such image.
     pub fn image(&self, k: usize) -> &[f64] {
         let n = 3 * self.sites();
         &self.as_slice()[k * n..(k + 1) * n]
     }
 
     /// Image `k` as a configuration.
+    ///
+    /// # Panics
+    /// Where there is no such image.
     pub fn spins(&self, k: usize) -> Spins {
         Spins::from_unit_components(self.image(k))
     }
