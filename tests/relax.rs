@@ -235,6 +235,22 @@ fn a_skyrmion_on_top_of_what_its_lattice_holds_it_by_comes_to_rest() {
 }
 
 #[test]
+fn formats_that_only_a_path_has_are_said_not_to_be_written() {
+    let folder = folder();
+    for (format, code) in [("html", true), ("csv", false), ("npz", false), ("vtk", false), ("ovf_images", false)] {
+        let set = format!("output.formats=[\"{format}\"]");
+        let (_, _, said) = spinneb(folder.path(), &["relax", "wall.json", "--out", format, "--set", &set]);
+        assert_eq!(said.contains(&format!("wall: not written: {format}")), code, "{said}");
+        assert_eq!(fs::read_dir(folder.path().join(format)).unwrap().count(), if code { 1 } else { 2 });
+    }
+    // html is among the formats of a config that names none
+    let silent = WALL.replace(r#"["npz", "ovf", "ovf_text", "csv", "vtk"]"#, r#"["csv", "npz", "ovf", "html"]"#);
+    fs::write(folder.path().join("wall.json"), silent).unwrap();
+    let (_, _, said) = spinneb(folder.path(), &["relax", "wall.json", "--out", "default"]);
+    assert!(!said.contains("not written"), "{said}");
+}
+
+#[test]
 fn vacant_sites_have_no_part_in_the_mean_spin() {
     let folder = folder();
     let config = r#"{

@@ -2,11 +2,11 @@
 
 use super::threads::start_threads;
 use super::{UNFINISHED, in_the_way, note, report, worse};
-use crate::config::{Loaded, load_states};
+use crate::config::{Loaded, OutputConfig, load_states};
 use crate::drive::{RelaxedState, relaxed_state};
 use crate::error::Error;
 use crate::files::disk;
-use crate::output::{RelaxReport, relaxed_file_names};
+use crate::output::{RelaxReport, formats_of_paths, relaxed_file_names};
 use crate::path::is_within;
 use crate::sphere::SAME;
 use anyhow::Result;
@@ -33,7 +33,7 @@ pub struct Relax {
     #[arg(required = true, value_name = "CONFIG")]
     pub configs: Vec<PathBuf>,
 
-    /// Folder for relax.json and the states, in the config's output.formats; with several configs, each gets a folder of its
+    /// Folder for relax.json and the states, in those of the config's output.formats that are not of paths alone; with several configs, each gets a folder of its
     /// name in it [default: nothing is written]
     #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -122,6 +122,11 @@ fn relax_one(arguments: &Relax, config: &Path) -> Result<u8> {
             disk::write_file(&dir.join(&file.name), &file.bytes)?;
         }
         say(&format!("{name}: the states are in {}", dir.display()));
+        let left_out = formats_of_paths(formats);
+        // the default, which nobody wrote, has formats of paths
+        if !left_out.is_empty() && *formats != OutputConfig::default().formats {
+            say(&format!("{name}: not written: {}, which a path has and a single state has not", left_out.join(", ")));
+        }
     }
     print(arguments, &found, directory.is_some())?;
     Ok(if relaxed.iter().all(|(_, state)| state.is_proven()) { 0 } else { UNFINISHED })

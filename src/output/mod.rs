@@ -55,7 +55,7 @@ pub use partial::{StoppedRun, discard_partial, is_partial_left, partial_files, w
 pub use plot::{PLOTS, Plot, PlotFile, PlotTable, WriteTable, describe};
 pub use plot_data::{Lifetimes, Places, PlotData, RateRow};
 pub use rates_csv::RatesCsv;
-pub use relaxed::{RelaxReport, StateReport, relaxed_file_names};
+pub use relaxed::{RelaxReport, StateReport, formats_of_paths, relaxed_file_names};
 pub use report::ReportPage;
 pub use site_cells::SiteCell;
 pub use spin_files::{MinimaOvf, OvfImages, PathNpz, PathOvf, SaddleOvf, SpinsCsv, Vtk};

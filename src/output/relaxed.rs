@@ -132,6 +132,12 @@ pub fn relaxed_file_names(states: &[&str], formats: &[String], lattice: &Lattice
     spins.chain([NUMBERS.to_string()]).collect()
 }
 
+/// Which of these formats no single state is written in: those of paths.
+pub fn formats_of_paths(formats: &[String]) -> Vec<&str> {
+    let of_states = |name: &str| FORMATS.iter().any(|format| format.names.contains(&name));
+    formats.iter().map(String::as_str).filter(|name| !of_states(name)).collect()
+}
+
 /// A way to write a state.
 struct StateFormat {
     /// Its names in `output.formats`.
