@@ -95,10 +95,10 @@ pub(crate) struct Cli {
 const EXAMPLES: &str = "\
 Examples:
   spinneb init                          a config to start from: chain.json
-  spinneb check configs/wall.json       what would run, and whether the config is right
-  spinneb run configs/wall.json         find the path; results in results/wall/
+  spinneb check configs/wall_depinning.json     what would run, and whether the config is right
+  spinneb run configs/wall_depinning.json       find the path; results in results/wall_depinning/
   spinneb list terms                    what can be written in a config
-  spinneb rate results/wall --temperature 300K     how long the states live
+  spinneb rate results/wall_depinning --temperature 300K     how long the states live
   spinneb plot results/a results/b      the energy paths of two results in one figure
 
 Exit codes:

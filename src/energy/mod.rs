@@ -4,8 +4,8 @@
 //! E = − Σ J_ij m_i·m_j + Σ D d̂·(m_i × m_j) − Σ K (m_i·e)² − Σ K₂ (m_i·e)⁴ + Σ K_c (α₁²α₂² + …) − Σ μ_i m_i·B
 //!   + Σ m_iᵀ T_ij m_j − Σ B_ij (m_i·m_j)² − Σ K_ijkl (m_i·m_j)(m_k·m_l)
 //! ```
-//! Every bond is counted once; energies are in meV, moments in μ_B, fields in T. One file a term; to add a term, write
-//! its file and name it in [`TermSpec`].
+//! Every bond is counted once; energies are in meV, moments in μ_B, fields in T. One file a term; to add one, write
+//! its file, name it here (`mod` and `pub use`) and in the `family!` of [`TermSpec`] (`spec.rs`).
 
 mod anisotropy;
 mod biquadratic;
