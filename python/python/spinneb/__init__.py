@@ -19,7 +19,7 @@ from ._values import Energy, Guess, Lattice, Optimiser, Shape, State
 from .api import barrier, check, landscape, load, rates, relax, run
 from .bands import NEBTools
 from .fields import from_field, to_field
-from .guesses import drift, droplet, geodesic, nlerp, rotation, shrink, sweep, waypoints
+from .guesses import drift, droplet, geodesic, nlerp, rotation, shrink, sweep, translation, waypoints
 from .lattices import *
 from .results import Check, Landscape, Rates, Relaxed, Result, Saddle
 from .states import *
@@ -66,4 +66,4 @@ __all__ += lattices.__all__
 __all__ += terms.__all__
 __all__ += states.__all__
 # but for `guesses.file`: the `file` of here is the state
-__all__ += ["drift", "droplet", "geodesic", "nlerp", "rotation", "shrink", "sweep", "waypoints"]
+__all__ += ["drift", "droplet", "geodesic", "nlerp", "rotation", "shrink", "sweep", "translation", "waypoints"]

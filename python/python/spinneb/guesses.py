@@ -15,6 +15,7 @@ __all__ = [
     "sweep",
     "shrink",
     "drift",
+    "translation",
     "droplet",
     "rotation",
     "nlerp",
@@ -95,6 +96,7 @@ def shrink(
 def drift(
     *,
     direction: Direction | None = None,
+    onto: Sequence[Extent] | None = None,
 ) -> Guess:
     """What differs is carried off over an edge: a skyrmion leaves the film.
 
@@ -102,10 +104,21 @@ def drift(
     ----------
     direction
         Where it goes; to the nearest edge if absent.
+    onto
+        In place of a direction: the middle of a hole, or any place, where it goes out.
 
     In a config: ``{"drift": {"direction": [1, 0, 0]}}``
     """
-    return Guess("drift", {"direction": as_direction(direction)})
+    return Guess("drift", {"direction": as_direction(direction), "onto": onto})
+
+
+def translation() -> Guess:
+    """What is in one place in the initial state is carried to its place in the final one: a skyrmion moves along
+    a track.
+
+    In a config: ``{"translation": {}}``
+    """
+    return Guess("translation", {})
 
 
 def droplet(

@@ -1,7 +1,7 @@
 //! What a state holds is [carried](super::carried) to where the other state has it: a skyrmion moves along a track.
 //!
-//! The shift s, in whole cells, is the one after which the sites that differ are the other state's, a_i = b_{i+s}, and the others of them too;
-//! by the shortest way. What lies under it is filled in from around, cell by cell from like cells on either side.
+//! What lies under it is filled in from around, cell by cell from like cells on either side. The shift s, in whole cells, is the one after
+//! which what each state has beside that is the other's, a_i = b_{i+s}, by the shortest way.
 
 use super::carried::{Carried, SEEN};
 use super::difference::Difference;
@@ -15,12 +15,12 @@ use crate::spins::Spins;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// Spins that differ by less (rad) do not tell what has moved.
+/// Spins that differ by less (rad) from what lies around do not tell what has moved.
 const DIFFERS: f64 = 1.0;
 /// What has moved is the same but for so much of its scalar products, in the mean.
 const ALIKE: f64 = 0.2;
-/// Sites that are compared.
-const COMPARED: usize = 64;
+/// Sites of each state that are compared.
+const COMPARED: usize = 32;
 
 /// `{"translation": {}}`.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
@@ -53,35 +53,42 @@ fn along(lattice: &Lattice, shift: Shift) -> Vector {
 
 /// By what a spot of a state has moved in the other one, and what lies under it; nothing if they are no such two states.
 pub(super) fn moved(a: &Spins, b: &Spins, lattice: &Lattice) -> Option<(Shift, Spins)> {
-    let frozen = lattice.is_frozen();
-    let differ: Vec<usize> = (0..a.sites()).filter(|i| !frozen[*i] && angle(a.get(*i), b.get(*i)) > DIFFERS).collect();
-    if differ.is_empty() {
+    let rest = around(a, b, &lattice.is_frozen(), lattice)?;
+    let spot =
+        |m: &Spins| -> Vec<usize> { (0..m.sites()).filter(|i| angle(m.get(*i), rest.get(*i)) > DIFFERS).collect() };
+    let spots = [spot(a), spot(b)];
+    if spots.iter().any(Vec::is_empty) || !Difference::between(a, &rest, lattice).is_spot() {
         return None;
     }
-    let shift = best_shift(a, b, &differ, lattice)?;
-    let rest = around(a, b, &frozen, lattice)?;
-    Difference::between(a, &rest, lattice).is_spot().then_some((shift, rest))
+    Some((best_shift([a, b], &spots, lattice)?, rest))
 }
 
-/// The shift after which most is alike, of equally good ones the shortest.
-fn best_shift(a: &Spins, b: &Spins, differ: &[usize], lattice: &Lattice) -> Option<Shift> {
-    let compared: Vec<usize> = differ.iter().copied().step_by(differ.len().div_ceil(COMPARED)).collect();
-    let most = 2.0 * ALIKE * compared.len() as f64;
-    let unlike = |p: Option<Vector>, q: Option<Vector>| 1.0 - p.zip(q).map_or(-1.0, |(p, q)| vector::dot(p, q));
+/// The shift after which what is in the spots is most alike, of equally good ones the shortest.
+fn best_shift([a, b]: [&Spins; 2], spots: &[Vec<usize>; 2], lattice: &Lattice) -> Option<Shift> {
+    let compared = spots.each_ref().map(|spot| spot.iter().copied().step_by(spot.len().div_ceil(COMPARED)));
+    let pairs = |shift: Shift| {
+        let [of_a, of_b] = compared.clone();
+        let back = shift.map(|n| -n);
+        let to_b = of_a.map(move |i| (Some(i), lattice.shifted(i, shift)));
+        to_b.chain(of_b.map(move |i| (lattice.shifted(i, back), Some(i))))
+    };
+    // what goes outside is as unlike as can be
+    let unlike =
+        |(i, j): (Option<usize>, Option<usize>)| 1.0 - i.zip(j).map_or(-1.0, |(i, j)| vector::dot(a.get(i), b.get(j)));
+    let most = ALIKE * pairs([0; 3]).count() as f64;
     let mut best: Option<(f64, f64, Shift)> = None;
     for shift in shifts(lattice) {
-        let back = shift.map(|n| -n);
+        let limit = best.map_or(most, |(least, ..)| least + 1e-9);
         let mut apart = 0.0;
-        for &i in &compared {
-            apart += unlike(lattice.shifted(i, back).map(|j| a.get(j)), Some(b.get(i)));
-            apart += unlike(Some(a.get(i)), lattice.shifted(i, shift).map(|j| b.get(j)));
-            if apart > best.map_or(most, |(least, ..)| least + 1e-9) {
-                break;
-            }
+        if pairs(shift).any(|pair| {
+            apart += unlike(pair);
+            apart > limit
+        }) {
+            continue;
         }
         let far = vector::norm(along(lattice, shift));
         let is_better = match best {
-            None => apart < most,
+            None => true,
             Some((least, nearest, _)) => apart < least - 1e-9 || apart < least + 1e-9 && far < nearest - 1e-9,
         };
         if is_better {
