@@ -1,13 +1,13 @@
 //! What a run will take, before it runs.
 //!
 //! ```text
-//! gradients = (1 + d)(15 images + 220 + 60 saddles) + 480        time = gradients × 2.5 (one gradient with its factorised Hessian) + figures
+//! gradients = (1 + d)(15 images + 220 + 60 saddles) + 600        time = gradients × 2.5 (one gradient with its factorised Hessian) + figures
 //! ```
 //! A band converges in about 15 gradients of each image, whatever its length (8 to 26 in the shipped configs), and finding the seat of
 //! a saddle, its proof and the descents to its two minima take about 280, of one beside another 60. An automatic path is refined once. One saddle is taken for
 //! granted, but a chain's wall narrower than `PINNED` sites rests on every site that it passes: there are as many saddles, and four images
 //! to each. The search for lower passes takes some
-//! 480, and as much as the path for each of the d domains that its ends consist of, through which it may lead; 0 for both where there
+//! 600, and as much as the path for each of the d domains that its ends consist of, through which it may lead; 0 for both where there
 //! is none. The gradient is measured; eigenvalues and proofs are in the factor 2.5, and figures take what the constants say on a usual
 //! machine. Where factors are very dear few are made, and a gradient goes with solutions by iteration. With these the shipped configs
 //! take what is said within a factor of 3 (`cargo bench --bench estimate`); paths through many minima, and ends that are far from their
@@ -27,8 +27,8 @@ const A_IMAGE: usize = 14;
 /// Gradients for a saddle, and for one beside another: images by symmetry and short stretches cost little.
 const A_SADDLE: usize = 270;
 const ANOTHER: usize = 60;
-/// Gradients for the search below a path: some 24 climbs.
-const A_SEARCH: usize = 480;
+/// Gradients for the search below a path: some 24 to 40 climbs.
+const A_SEARCH: usize = 600;
 /// A wall of less than this many sites has a saddle between any two sites: its energy varies as exp(−π²δ) from one to the next.
 const PINNED: f64 = 2.0;
 /// Images to each of them.
