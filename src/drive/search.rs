@@ -23,6 +23,8 @@ use crate::stationary::{RELAXED, STRIDE, relax_to_minimum};
 /// operations were spent on factorising them, or as often. At `thorough` several times as much of all.
 const SPINS: f64 = 1e7;
 const FLOPS: f64 = 1e9;
+/// And so many times as much while searches bring news.
+const WITH_NEWS: usize = 8;
 /// Climbs are made side by side as long as they take no more than so many times that, a second or so.
 const TOGETHER: f64 = 10.0;
 
@@ -37,7 +39,7 @@ impl<'a> Run<'a, '_> {
         }
         self.observer.stage("looking for lower passes");
         let h = self.problem.evaluator();
-        let most = self.allowance(&best.first.band);
+        let [most, most_with_news] = [1, WITH_NEWS].map(|times| self.allowance(&best.first.band, times));
         let ends = self.minima;
         if ends[0] == ends[1] {
             return Ok(report);
@@ -55,6 +57,7 @@ impl<'a> Run<'a, '_> {
             effort,
             shares: 1,
             most,
+            most_with_news,
             together: self.worth(TOGETHER),
             most_kinds: KINDS,
             c: self.tools.scales.stiffness_mev,
@@ -87,9 +90,9 @@ impl<'a> Run<'a, '_> {
         Ok(report)
     }
 
-    /// What the search may evaluate after all that was evaluated for a band.
-    fn allowance(&self, band: &Band) -> Count {
-        let times = self.problem.search.works();
+    /// What the search may evaluate after all that was evaluated for a band, so many times as much as is usual.
+    fn allowance(&self, band: &Band, times: usize) -> Count {
+        let times = times * self.problem.search.works();
         let Count { evaluations, hessians } = self.worth(1.0);
         let evaluations = evaluations.saturating_mul(times).min(self.left(band));
         Count { evaluations, hessians: hessians.saturating_mul(times) }

@@ -32,9 +32,6 @@ const SEED: u64 = 0x5ea2c4;
 /// Searches in a row without news that end a search which found nothing, and joins that bring two minima no nearer to each other.
 pub(super) const QUIET: usize = 24;
 
-/// A search for a route that brought news of late goes on, up to so many times the work.
-const MORE: f64 = 8.0;
-
 /// How long lower passes are looked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -127,8 +124,10 @@ pub struct Settings<'a> {
     pub effort: Effort,
     /// Batches are so many times as large.
     pub shares: usize,
-    /// Most gradients and Hessians of single states, unless the last searches brought news.
+    /// Most gradients and Hessians of single states.
     pub most: Count,
+    /// And as long as one of the last few searches brought news: what is still found may be worth more.
+    pub most_with_news: Count,
     /// And of the climbs that are made before their work is looked at.
     pub together: Count,
     /// Most kinds of minima: with their number grows what each further climb costs beside what it evaluates.
@@ -186,9 +185,8 @@ pub fn search(
         }
         let wanted = aim.quiet(settings.effort, found, land);
         let worked = h.evaluated().since(before);
-        // for a route what is still found is worth more work than there is
-        let more = if aim.ends().is_some() && done.quiet < FEW { MORE } else { 1.0 };
-        let spent = (worked.part_of(settings.most) / more).max(land.kinds() as f64 / settings.most_kinds as f64);
+        let most = if done.quiet < FEW { settings.most_with_news } else { settings.most };
+        let spent = worked.part_of(most).max(land.kinds() as f64 / settings.most_kinds as f64);
         // what comes to its own stop has not missed the work that it has used up
         done.spent = spent >= 1.0 && done.quiet < wanted;
         tell(&Standing { done, wanted, spent, known: [land.minima().len(), land.edges().len()] });

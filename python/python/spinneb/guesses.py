@@ -113,8 +113,8 @@ def drift(
 
 
 def translation() -> Guess:
-    """What is in one place in the initial state is carried to its place in the final one: a skyrmion moves along
-    a track.
+    """What is in one place in the initial state is carried to its place in the final one: a skyrmion moves
+    along a track.
 
     In a config: ``{"translation": {}}``
     """

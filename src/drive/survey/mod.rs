@@ -215,6 +215,7 @@ impl Run<'_, '_> {
                 effort: asked.effort,
                 shares: asked.shares,
                 most,
+                most_with_news: most,
                 together: Count { evaluations: usize::MAX, hessians: usize::MAX },
                 most_kinds: KINDS * share(asked.effort)[1],
                 c,
