@@ -18,11 +18,7 @@ pub fn way(land: &Landscape, [a, b]: [usize; 2], k: usize, images: usize, contex
         0 => GuessSpec::Geodesic(Geodesic { axis: Some(axis) }),
         k => GuessSpec::Sweep(Sweep { axis: Some(axis), ..edges[k - 1].into() }),
     };
-    if k == 0
-        && !context.states.lattice.is_row()
-        && let Ok(moved) = (Translation {}).path(a, b, images, context)
-    {
-        return Some(moved);
-    }
-    guess.member().path(a, b, images, context).ok()
+    let moves = k == 0 && !context.states.lattice.is_row();
+    let moved = moves.then(|| Translation {}.path(a, b, images, context).ok()).flatten();
+    moved.or_else(|| guess.member().path(a, b, images, context).ok())
 }

@@ -8,7 +8,7 @@ use crate::spins::Spins;
 use std::f64::consts::TAU;
 
 /// Spins that differ by less (rad) do not count.
-const DIFFERS: f64 = 1.0;
+pub(super) const DIFFERS: f64 = 1.0;
 /// A difference goes all the way through along a direction if it is in this part of the rows across it.
 const THROUGH: f64 = 0.9;
 /// Points nearest to the middle among which a hollow is looked for, by the number of dimensions.

@@ -46,8 +46,8 @@ impl FirstGuess for Drift {
         if let Some(onto) = &self.onto {
             return self.onto(onto, [a, b], images, context);
         }
-        let comes_in = is_rougher(b, a, lattice);
-        let carried = if comes_in { Carried::new(b, a, lattice) } else { Carried::new(a, b, lattice) };
+        let (comes_in, [rough, rest]) = by_roughness(a, b, lattice);
+        let carried = Carried::new(rough, rest, lattice);
         let edges = Outline::of(lattice).edges;
         let edges = self.direction.map_or(edges, |direction| vec![direction.vector()]);
         let nearest = edges.into_iter().map(|n| (carried.distance(n), n));
@@ -74,9 +74,8 @@ impl Drift {
         let lattice = context.states.lattice;
         let place = lattice.point(place).map_err(|e| e.within("onto"))?;
         let way = way_to(&Difference::between(a, b, lattice), place, lattice);
-        let comes_in = is_rougher(b, a, lattice);
-        let (from, rest) = if comes_in { (b, a) } else { (a, b) };
-        let mut stops = Carried::new(from, rest, lattice).stops(from, way, STOPS);
+        let (comes_in, [rough, rest]) = by_roughness(a, b, lattice);
+        let mut stops = Carried::new(rough, rest, lattice).stops(rough, way, STOPS);
         stops.push(rest.clone());
         if comes_in {
             stops.reverse();
@@ -85,9 +84,16 @@ impl Drift {
     }
 }
 
+/// Whether what is carried comes in; the state that holds it, and the other one.
+fn by_roughness<'s>(a: &'s Spins, b: &'s Spins, lattice: &Lattice) -> (bool, [&'s Spins; 2]) {
+    let comes_in = is_rougher(b, a, lattice);
+    (comes_in, if comes_in { [b, a] } else { [a, b] })
+}
+
 /// The edges over which what differs can leave: their normals.
 pub(super) fn exits(a: &Spins, b: &Spins, lattice: &Lattice) -> Vec<Vector> {
-    let carried = if is_rougher(b, a, lattice) { Carried::new(b, a, lattice) } else { Carried::new(a, b, lattice) };
+    let (_, [rough, rest]) = by_roughness(a, b, lattice);
+    let carried = Carried::new(rough, rest, lattice);
     let leaves = |n: &Vector| carried.has_left(vector::scale(carried.distance(*n), *n));
     Outline::of(lattice).edges.into_iter().filter(leaves).collect()
 }

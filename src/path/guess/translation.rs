@@ -4,7 +4,7 @@
 //! which what each state has beside that is the other's, a_i = b_{i+s}, by the shortest way.
 
 use super::carried::{Carried, SEEN};
-use super::difference::Difference;
+use super::difference::{DIFFERS, Difference};
 use super::{FirstGuess, GuessContext};
 use crate::error::{Error, Result};
 use crate::geometry::{Vector, angle, vector};
@@ -15,8 +15,6 @@ use crate::spins::Spins;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// Spins that differ by less (rad) from what lies around do not tell what has moved.
-const DIFFERS: f64 = 1.0;
 /// What has moved is the same but for so much of its scalar products, in the mean.
 const ALIKE: f64 = 0.2;
 /// Sites of each state that are compared.
@@ -181,6 +179,10 @@ mod tests {
             assert!(lattice.grid.periodic[0] || off.fold(0.0, f64::max) < 0.1, "{text}");
             let path = Translation {}.path(&a, &b, 9, &context(&lattice)).unwrap();
             assert!(path.image(0) == a.as_slice() && path.image(8) == b.as_slice());
+            // half-way it is half-way
+            let [x, y] = at[0];
+            let middle = lattice.shifted(x + y * lattice.grid.size[0], found.map(|n| n / 2)).unwrap();
+            assert!(vector::dot(path.spins(4).get(middle), free.get(middle)) < -0.5, "{text}");
             // what is carried stays what it is: as many spins point down half-way
             let down = |k: usize| path.spins(k).vectors().iter().filter(|m| m[2] < -0.5).count() as f64;
             assert!(staggered || (down(4) / down(0) - 1.0).abs() < 0.25, "{text}: {} {}", down(4), down(0));
