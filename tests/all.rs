@@ -39,6 +39,7 @@ mod lowest;
 mod media;
 mod modules;
 mod network;
+mod other_saddles;
 mod output;
 mod physics;
 mod plot_command;

@@ -196,7 +196,16 @@ fn rates_of_a_finished_result_are_those_of_a_run_that_asks_for_them() {
     assert_eq!(code, Some(0), "{said}");
     assert!(!said.contains("found anew") && !said.contains("first path"), "{said}");
     assert_eq!(out.lines().count(), 5, "{out}");
-    let (after, wanted) = (summary(plain.path()), summary(asked.path()));
+    let (after, mut wanted) = (summary(plain.path()), summary(asked.path()));
+    // over other saddles times are those of the run that looked for them
+    for row in wanted["transition_rates"]
+        .as_array_mut()
+        .unwrap()
+        .iter_mut()
+        .flat_map(|way| way["temperatures"].as_array_mut().unwrap())
+    {
+        row.as_object_mut().unwrap().retain(|key, _| !key.contains("network"));
+    }
     for key in ["rates", "transition_rates"] {
         agree(&after[key], &wanted[key]);
     }

@@ -7,6 +7,7 @@ mod first_path;
 mod first_paths;
 mod judge;
 pub mod memory;
+mod network;
 mod outcome;
 mod places;
 mod problem;

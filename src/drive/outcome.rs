@@ -1,6 +1,6 @@
 //! What a run found: everything that is written to disk is a function of an [`Outcome`].
 
-use super::rates::exits_not_told;
+use super::rates::{exits_not_told, network_not_told};
 use super::{Problem, StopCode, is_said_of_rates, rates_warnings, stored_rates};
 use crate::hessian::Bound;
 use crate::landscape::Effort;
@@ -106,6 +106,7 @@ impl Outcome {
         let warnings = others
             .chain(rates_warnings(&rates, &self.search, self.barrier, self.highest_climb))
             .chain(colder)
+            .chain(network_not_told(&self.warnings))
             .chain(last.iter().cloned())
             .collect();
         Ok(Outcome { warnings, rates: Some(rates), ..self })

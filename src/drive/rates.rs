@@ -1,6 +1,7 @@
 //! From the proven saddles of a path to its rates.
 
 use super::Verdict;
+use super::network::FIELD;
 use super::outcome::{Barrier, SaddlePoint, SearchReport};
 use crate::energy::Evaluator;
 use crate::landscape::{Doubt, Minimum, Pass, Peak, Saddle};
@@ -209,7 +210,7 @@ fn stored_link(h: Evaluator, saddle: &SaddlePoint, beside: &[Minimum]) -> Pass {
 /// That some numbers are rough.
 const ROUGH: &str = "some rates are rough: \"warnings\" of \"rates\" in summary.json give their range";
 /// That states are left by other ways too.
-const ALONE: &str = "rates and lifetimes are of the path's saddles alone";
+pub const ALONE: &str = "rates and lifetimes are of the path's saddles alone";
 /// How a refusal begins.
 const REFUSAL: &str = "no rate by ";
 
@@ -250,6 +251,12 @@ pub fn exits_not_told(from_k: f64, coldest_k: f64) -> Option<String> {
              may be several; a run at these temperatures tells them: {ALONE}"
         )
     })
+}
+
+/// What is to be said where a run found that a path's own saddles do not tell the times, and rates are asked for anew.
+pub fn network_not_told(before: &[String]) -> Option<String> {
+    let is_told = before.iter().any(|warning| warning.contains(FIELD));
+    is_told.then(|| format!("over other saddles that the run found times are others ({FIELD}), which a run at these temperatures tells: {ALONE}"))
 }
 
 /// What the whole run should say of its rates: each reason for a refusal once, that some numbers are rough, which of its ends are left

@@ -2,6 +2,7 @@
 
 use super::first_path::FirstPath;
 use super::judge::{Judgement, Seen};
+use super::network::NetworkTimes;
 use super::outcome::*;
 use super::places::{Place, in_order, nearest};
 use super::rates::{self, Known};
@@ -30,6 +31,15 @@ pub struct Proof {
     pub links: Vec<Pass>,
     /// What stands against a certificate; nothing if it is given.
     pub doubts: Vec<Doubt>,
+}
+
+/// What its rates are made of, beside its saddles.
+#[derive(Default)]
+pub struct Rated<'a> {
+    /// The symmetry of the energy and the moments, where there are saddles.
+    pub symmetry: Option<&'a Symmetry>,
+    /// The times over all passes that are known, where they were looked for.
+    pub network: Option<NetworkTimes>,
 }
 
 impl Run<'_, '_> {
@@ -62,7 +72,7 @@ pub fn outcome(
     proof: Proof,
     search: SearchReport,
     rejected_paths: Vec<RejectedPath>,
-    symmetry: Option<&Symmetry>,
+    rated: Rated,
 ) -> Outcome {
     let h = run.problem.evaluator();
     let band = &c.band;
@@ -82,9 +92,13 @@ pub fn outcome(
     };
     let rates = run.problem.rates.as_ref().map(|settings| {
         let no_barrier = barrier.is_none().then_some(&verdict);
-        let symmetry = symmetry.filter(|_| !links.is_empty());
+        let symmetry = rated.symmetry.filter(|_| !links.is_empty());
         let known = Known { h, links, saddles: &saddles, above_final, doubts: &doubts, no_barrier, symmetry };
-        rates::of_path(&known, settings)
+        let mut rates = rates::of_path(&known, settings);
+        if let Some(network) = &rated.network {
+            network.put_into(&mut rates);
+        }
+        rates
     });
     let behind = proof.links.iter().zip(places.iter().skip(1).step_by(2));
     let intermediate_minima: Vec<IntermediateMinimum> = match proof.links.len() {
@@ -99,6 +113,8 @@ pub fn outcome(
     });
     let flat = flat_warnings(&proof.ends, &proof.links);
     let of_rates = rates.iter().flat_map(|rates| rates::warnings(rates, &search, barrier, highest_climb));
+    let of_network = rates.iter().zip(&rated.network).flat_map(|(rates, network)| network.warnings(rates));
+    let of_rates = of_rates.chain(of_network);
     let images: Vec<usize> = saddles.iter().map(|saddle| saddle.image).collect();
     let lower = lower_maxima(band.energies_mev(), LOWER * height(band), &images);
     let more = run.problem.images.asked_for().and_then(|asked| more_images(asked, band.images(), saddles.len()));

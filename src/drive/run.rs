@@ -5,7 +5,7 @@ use super::explore::turning_axis;
 use super::first_path::{FirstPath, rejection};
 use super::outcome::*;
 use super::relaxation::{Goal, Relaxation, Tools, height, needs_laplacian};
-use super::report::{self, Proof};
+use super::report::{self, Proof, Rated};
 use super::settled::Settled;
 use super::{Observer, Problem, Scales, Stop};
 use crate::band::{Band, Laplacian, Sweep};
@@ -147,10 +147,15 @@ impl<'a, 'o> Run<'a, 'o> {
         });
         search.lowest_exits_mev = self.lowest_exits(links, symmetry.as_ref());
         search.exits_from_k = self.coldest_k();
+        let network = match best.proof.doubts.is_empty() {
+            true => self.network(links, &best.first.band, symmetry.as_ref())?,
+            false => None,
+        };
         if self.problem.rates.is_some() {
             self.observer.stage("computing the rates");
         }
-        Ok(report::outcome(&self, best.first, &best.found, best.proof, search, rejected, symmetry.as_ref()))
+        let rated = Rated { symmetry: symmetry.as_ref(), network };
+        Ok(report::outcome(&self, best.first, &best.found, best.proof, search, rejected, rated))
     }
 
     /// The lowest temperature (K) that rates are asked for at.
@@ -286,7 +291,7 @@ impl<'a, 'o> Run<'a, 'o> {
         let stop = Stop::Converged { rotation: 0.0, tolerance: self.problem.neb.tolerance };
         let c = FirstPath::new("rotation".into(), band, stop);
         let proof = Proof { ends, links: Vec::new(), doubts: vec![Doubt::CostlyTurn] };
-        Ok(Some(report::outcome(self, c, &[], proof, SearchReport::default(), Vec::new(), None)))
+        Ok(Some(report::outcome(self, c, &[], proof, SearchReport::default(), Vec::new(), Rated::default())))
     }
 }
 

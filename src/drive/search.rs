@@ -99,7 +99,7 @@ impl<'a> Run<'a, '_> {
     }
 
     /// So many times the work that is little, or as much as there was.
-    fn worth(&self, times: f64) -> Count {
+    pub(super) fn worth(&self, times: f64) -> Count {
         let h = self.problem.evaluator();
         let own = self.evaluated();
         let little = |of: f64, one: f64| (times * of / one) as usize;

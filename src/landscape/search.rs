@@ -82,6 +82,8 @@ pub enum Aim {
     Route([usize; 2], f64),
     /// All minima and passes no higher than this above the lowest minimum (meV).
     All(f64),
+    /// All minima and passes below this height (meV above the landscape's reference).
+    Below(f64),
 }
 
 impl Aim {
@@ -90,6 +92,7 @@ impl Aim {
         match self {
             Aim::Route([from, to], known_mev) => land.top_mev(from, to).unwrap_or(known_mev),
             Aim::All(window_mev) => land.lowest_mev() + window_mev,
+            Aim::Below(height_mev) => height_mev,
         }
     }
 
@@ -97,14 +100,14 @@ impl Aim {
     fn below_mev(self, land: &Landscape, top_mev: f64) -> f64 {
         match self {
             Aim::Route(..) => top_mev - land.tolerance_mev(top_mev),
-            Aim::All(_) => top_mev,
+            Aim::All(_) | Aim::Below(_) => top_mev,
         }
     }
 
     fn ends(self) -> Option<[usize; 2]> {
         match self {
             Aim::Route(ends, _) => Some(ends),
-            Aim::All(_) => None,
+            Aim::All(_) | Aim::Below(_) => None,
         }
     }
 
@@ -112,7 +115,7 @@ impl Aim {
     fn quiet(self, effort: Effort, found: usize, land: &Landscape) -> usize {
         match self {
             Aim::Route(..) => effort.quiet(found),
-            Aim::All(_) => effort.quiet(1).max(effort.a_pass() * land.passes_below(self.top_mev(land))),
+            Aim::All(_) | Aim::Below(_) => effort.quiet(1).max(effort.a_pass() * land.passes_below(self.top_mev(land))),
         }
     }
 }
@@ -174,7 +177,7 @@ pub fn search(
     let mut done = Searched::default();
     let mut turns = match aim {
         Aim::Route(..) => Turns::of(vanguard(false), rivals(h.lattice())),
-        Aim::All(_) => Turns::of(vanguard(true), scouts()),
+        Aim::All(_) | Aim::Below(_) => Turns::of(vanguard(true), scouts()),
     };
     let (mut lowest, mut found) = (f64::INFINITY, 0);
     let before = h.evaluated();

@@ -11,7 +11,8 @@
 //! doi:10.1287/opre.33.5.1107.
 
 use crate::linalg::log_sum;
-use std::collections::{BTreeMap, BTreeSet};
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
 
 /// The states that are left.
 struct States {
@@ -32,10 +33,13 @@ pub(super) fn ln_first_passage_s(ln_rates: &[BTreeMap<usize, f64>], from: usize,
     let inner = on_the_way(ln_rates, from, &target)?;
     let mut states = States::of(ln_rates, &inner);
     let mut left: BTreeSet<usize> = inner.into_iter().filter(|k| *k != from).collect();
-    // that with the fewest ways through it first
-    while let Some(x) = left.iter().copied().min_by_key(|k| states.before[*k].len() * states.onward[*k].len()) {
-        left.remove(&x);
-        states.take_out(x);
+    // that with the fewest ways through it first; what changed since a state was put in is seen when its turn comes
+    let mut turns: BinaryHeap<_> = left.iter().map(|k| Reverse((states.ways(*k), *k))).collect();
+    while let Some(Reverse((ways, x))) = turns.pop() {
+        if ways == states.ways(x) && left.remove(&x) {
+            let touched = states.take_out(x);
+            turns.extend(touched.into_iter().filter(|k| left.contains(k)).map(|k| Reverse((states.ways(k), k))));
+        }
     }
     Some(states.ln_time[from] - states.ln_leaves(from))
 }
@@ -85,13 +89,19 @@ impl States {
         self.onward[x].iter().filter(|(j, _)| **j != x).fold(f64::NEG_INFINITY, |sum, (_, ln)| log_sum(sum, *ln))
     }
 
-    fn take_out(&mut self, x: usize) {
+    /// How many ways lead through a state.
+    fn ways(&self, x: usize) -> usize {
+        self.before[x].len() * self.onward[x].len()
+    }
+
+    /// Takes a state out; those that lead to it, and those that it leads to.
+    fn take_out(&mut self, x: usize) -> BTreeSet<usize> {
         let leaves = self.ln_leaves(x);
         let (through, own) = (std::mem::take(&mut self.onward[x]), std::mem::take(&mut self.before[x]));
         for (j, _) in through.iter().filter(|(j, _)| **j != x) {
             self.before[*j].remove(&x);
         }
-        for i in own.into_iter().filter(|i| *i != x) {
+        for &i in own.iter().filter(|i| **i != x) {
             let Some(to_x) = self.onward[i].remove(&x) else { continue };
             let part = to_x - leaves;
             self.ln_time[i] = log_sum(self.ln_time[i], part + self.ln_time[x]);
@@ -101,5 +111,6 @@ impl States {
                 self.before[j].insert(i);
             }
         }
+        own.into_iter().chain(through.into_keys()).collect()
     }
 }

@@ -4,12 +4,13 @@
 //! all of them are null, and `reason` says so. `known_within_factor`: a rate or time may be larger or smaller by that. Of a
 //! translation `volume_rad` is by the derivative, which the rates are made of, and `hop_volume_rad` by the finite hop. What a
 //! prefactor is made of is told as it is at `prefactor_temperature_K`, and in `soft_modes_change_at_K` where the soft modes are others,
-//! and prefactors with them.
+//! and prefactors with them. `network_first_passage_s` is over all passes that the search found, other saddles between the path's minima
+//! and minima beside it among them; absent where none were looked for.
 
 use super::number::Number;
 use crate::rates::{
-    Prefactor, Rates, Refusal, Row, SaddleRate, Sibling, Theory, TransitionRate, TransitionRow, Way, ZeroKind,
-    ZeroModes,
+    NetworkTime, Prefactor, Rates, Refusal, Row, SaddleRate, Sibling, Theory, TransitionRate, TransitionRow, Way,
+    ZeroKind, ZeroModes,
 };
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -110,6 +111,12 @@ pub(super) struct PassageEntry {
     first_passage_s: Option<Number>,
     pub log10_first_passage_s: Option<Number>,
     pub known_within_factor: Option<Number>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    network_first_passage_s: Option<Number>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    log10_network_first_passage_s: Option<Number>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    network_known_within_factor: Option<Number>,
     reason: Option<String>,
 }
 
@@ -167,7 +174,7 @@ fn transition(t: &TransitionRate) -> TransitionEntry {
         blocking_temperature_1_s_K: t.blocking_k[0].map(Number),
         blocking_temperature_10_years_K: t.blocking_k[1].map(Number),
         refused: t.refused.as_ref().map(Refusal::to_string),
-        temperatures: t.rows.iter().map(passage).collect(),
+        temperatures: t.rows.iter().enumerate().map(|(k, row)| passage(row, t.network.get(k))).collect(),
     }
 }
 
@@ -196,7 +203,8 @@ fn temperature(row: &Row) -> TemperatureEntry {
     }
 }
 
-fn passage(row: &TransitionRow) -> PassageEntry {
+fn passage(row: &TransitionRow, network: Option<&NetworkTime>) -> PassageEntry {
+    let ln_network_s = network.and_then(NetworkTime::ln_s);
     let (whole, first) = (&row.passage, &row.escape);
     let reason = match (&whole.reason, &first.reason) {
         (None, Some(reason)) => Some(format!("no escape over the first saddle alone: {reason}")),
@@ -212,6 +220,9 @@ fn passage(row: &TransitionRow) -> PassageEntry {
         first_passage_s: exp(whole.ln_lifetime_s()),
         log10_first_passage_s: log10(whole.ln_lifetime_s()),
         known_within_factor: whole.known_within.and_then(held),
+        network_first_passage_s: exp(ln_network_s),
+        log10_network_first_passage_s: log10(ln_network_s),
+        network_known_within_factor: network.and_then(|network| network.known_within).and_then(held),
         reason,
     }
 }

@@ -55,7 +55,7 @@ pub use settings::{RateSettings, Theory, checked_damping, checked_g_factor, chec
 pub use siblings::{APART, Family, Kin, Sibling, Siblings, Symmetry};
 pub use sliding::{Pinning, Turn};
 pub use symmetry::{Equivalents, KEPT, KEPT_OR_EXCHANGED, equivalent_saddles, leads_back_by};
-pub use transition::{Kindred, Orbits, TransitionRate, TransitionRow, transitions};
+pub use transition::{Kindred, NetworkTime, Orbits, TransitionRate, TransitionRow, transitions};
 pub use unstable::{Unstable, unstable_mode};
 pub use validity::{LOW_BARRIER, ORDER, Validity, digits};
 use zero_modes::zero_modes;

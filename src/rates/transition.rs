@@ -62,6 +62,24 @@ pub struct TransitionRow {
     pub escape: Row,
 }
 
+/// The mean first passage to the other end over all passes that are known, at one temperature.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NetworkTime {
+    /// Temperature (K).
+    pub temperature_k: f64,
+    /// ln of the mean time (s), by theory: HTST, Langer.
+    pub ln_time_s: [Option<f64>; 2],
+    /// It may be longer or shorter by this factor.
+    pub known_within: Option<f64>,
+}
+
+impl NetworkTime {
+    /// ln of the time (s), Langer's where there is one.
+    pub fn ln_s(&self) -> Option<f64> {
+        self.ln_time_s[1].or(self.ln_time_s[0])
+    }
+}
+
 /// The whole way from one end to the other, through the minima between.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TransitionRate {
@@ -75,6 +93,8 @@ pub struct TransitionRate {
     pub barrier_mev: f64,
     /// One row a temperature.
     pub rows: Vec<TransitionRow>,
+    /// The times of the network of all passes that are known, a temperature each; empty where none was looked for.
+    pub network: Vec<NetworkTime>,
     /// Temperature (K) at which the mean first passage takes 1 s, and at which it takes ten years.
     pub blocking_k: [Option<f64>; 2],
     /// Why there is no rate; nothing if there is one.
@@ -220,7 +240,16 @@ fn transition(
             Equivalents { count: 2 * first.paths.count, by: format!("{}, and the way back along each", first.paths.by) }
         }
     };
-    TransitionRate { way, saddles: path.onward.len(), equivalents, barrier_mev, rows, blocking_k, refused }
+    TransitionRate {
+        way,
+        saddles: path.onward.len(),
+        equivalents,
+        barrier_mev,
+        rows,
+        network: Vec::new(),
+        blocking_k,
+        refused,
+    }
 }
 
 /// The numbers at a temperature (K).

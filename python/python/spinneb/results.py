@@ -532,6 +532,11 @@ class Rates:
             return np.array([_or_nan(row["log10_first_passage_s"]) for row in self._rows(way)], dtype=np.float64)
         return np.array([_time_s(row, "first_passage_s") for row in self._rows(way)], dtype=np.float64)
 
+    def network_lifetimes_s(self, way: Way = "forward") -> Array:
+        """The same over all saddles that the run found, also those that are not the path's own; NaN where none were looked for."""
+        found = [row if row.get("log10_network_first_passage_s") is not None else None for row in self._rows(way)]
+        return np.array([np.nan if row is None else _time_s(row, "network_first_passage_s") for row in found], dtype=np.float64)
+
     @property
     def reasons(self) -> list[str | None]:
         """Why there is no lifetime at each temperature; None where there is one."""

@@ -1,9 +1,10 @@
 //! What a survey found: states by energy, those of a kind (that symmetry makes of one) side by side.
 
-use super::lifetimes::Lifetimes;
+use super::lifetimes::{Lifetimes, groups};
 use super::{Effort, SurveyProblem, Unseen};
 use crate::error::Result;
 use crate::landscape::{Landscape, Searched, Seen};
+use crate::rates::Symmetry;
 use crate::spins::Spins;
 use crate::stationary::Spectrum;
 use crate::symmetry::Group;
@@ -91,6 +92,15 @@ pub struct Survey {
     pub warnings: Vec<String>,
 }
 
+/// A survey with where it comes from.
+pub(in crate::drive) struct Told {
+    pub survey: Survey,
+    /// The pass of each kind of saddles.
+    pub passes: Vec<usize>,
+    /// The minimum that each of the landscape is; `usize::MAX` for those that are not in it.
+    pub number: Vec<usize>,
+}
+
 impl Survey {
     pub(super) fn of(
         asked: &SurveyProblem,
@@ -99,35 +109,42 @@ impl Survey {
         (seeds, unseen): (usize, Unseen),
         searched: Searched,
     ) -> Result<Survey> {
-        let lowest = land.lowest_mev();
-        let view = View { land, group, lowest, top: lowest + asked.window_mev };
-        let (minimum_kinds, minima, number) = view.minima();
-        let (mut saddle_kinds, saddles, passes) = view.saddles(&number);
-        saddle_kinds.par_iter_mut().zip(&passes).for_each(|(kind, pass)| {
+        let Told { survey, passes, .. } = Survey::up_to(land, group, land.lowest_mev() + asked.window_mev, searched);
+        let mut survey = Survey { effort: asked.effort, shares: asked.shares, seeds, unseen, ..survey };
+        let spectra = survey.saddle_kinds.par_iter_mut().zip(&passes);
+        spectra.for_each(|(kind, pass)| {
             kind.spectrum.lowest_mev = land.passes()[*pass].lowest_eigenvalues_mev(land.evaluator());
         });
-        let mut survey = Survey {
-            minimum_kinds,
-            saddle_kinds,
-            minima,
-            saddles,
-            effort: asked.effort,
-            searched,
-            shares: asked.shares,
-            seeds,
-            unseen,
-            symmetry_order: group.order(),
-            lifetimes: None,
-            warnings: Vec::new(),
-        };
         survey.judge(asked.window_mev);
         if let Some(settings) = &asked.rates {
-            let passes: Vec<_> = passes.into_iter().map(|k| &land.passes()[k]).collect();
-            let lifetimes = Lifetimes::of(&survey, asked, settings, land, group, &passes)?;
+            let groups = groups(&survey, asked);
+            let lifetimes = Lifetimes::of(&survey, groups, settings, land, &Symmetry::exactly(group), &passes)?;
             survey.warnings.extend(lifetimes.warnings(&survey, &asked.groups));
             survey.lifetimes = Some(lifetimes);
         }
         Ok(survey)
+    }
+
+    /// What a landscape holds up to a height (meV above its reference), with as much of it as symmetry makes.
+    pub(in crate::drive) fn up_to(land: &Landscape, group: &Group, top: f64, searched: Searched) -> Told {
+        let view = View { land, group, lowest: land.lowest_mev(), top };
+        let (minimum_kinds, minima, number) = view.minima();
+        let (saddle_kinds, saddles, passes) = view.saddles(&number);
+        let survey = Survey {
+            minimum_kinds,
+            saddle_kinds,
+            minima,
+            saddles,
+            effort: Effort::default(),
+            searched,
+            shares: 1,
+            seeds: 0,
+            unseen: Unseen::default(),
+            symmetry_order: group.order(),
+            lifetimes: None,
+            warnings: Vec::new(),
+        };
+        Told { survey, passes, number }
     }
 
     /// The kind of a minimum.

@@ -1,12 +1,11 @@
 //! How long the states of a survey live: rates over every saddle, and the times of the network that they make.
 
 use super::{Label, Survey, SurveyProblem};
-use crate::error::Result;
-use crate::landscape::{Landscape, Pass};
+use crate::error::{Error, Result};
+use crate::landscape::Landscape;
 use crate::network::{Network, Parts};
 use crate::rates::{LEAST_BARRIER, ORDER, RateSettings, SaddleRate, Symmetry, Theory};
 use crate::stationary::ALIKE;
-use crate::symmetry::Group;
 use crate::units::K_B;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -52,23 +51,23 @@ pub struct Lifetimes {
 }
 
 impl Lifetimes {
-    pub(super) fn of(
+    /// Out of groups of minima and among them, over the passes of these numbers, a kind of saddles each. All saddles are looked for
+    /// here: by its symmetry none is counted for another.
+    pub(in crate::drive) fn of(
         survey: &Survey,
-        asked: &SurveyProblem,
+        groups: Vec<(String, Vec<usize>)>,
         settings: &RateSettings,
         land: &Landscape,
-        group: &Group,
-        passes: &[&Pass],
+        symmetry: &Symmetry,
+        passes: &[usize],
     ) -> Result<Lifetimes> {
-        // all saddles are looked for here: none is counted for another
-        let symmetry = Symmetry::exactly(group);
-        let rates = |(k, pass): (usize, &&Pass)| {
-            let rates = pass.rates(land.evaluator(), k, &symmetry, settings);
+        let h = land.evaluator();
+        let rates = |(k, pass): (usize, &usize)| {
+            let rates = land.passes()[*pass].rates(h, k, symmetry, settings);
             // rates that were stopped on their way look like rates that there are none of
-            asked.problem.control.check().map(|()| rates)
+            if h.is_stopped() { Err(Error::Stopped) } else { Ok(rates) }
         };
         let saddles = passes.iter().enumerate().map(rates).collect::<Result<_>>()?;
-        let groups = groups(survey, asked);
         let mut found = Lifetimes { settings: settings.clone(), groups, saddles, rows: Vec::new() };
         // most temperatures have the same states and passes as the one before
         let (mut known, mut transitions) = ((Vec::new(), Vec::new()), Vec::new());
@@ -300,7 +299,7 @@ fn rated(both: &[SaddleRate; 2], theory: Theory, temperature_k: f64) -> bool {
 }
 
 /// Named groups with the minima that they hold; where none are named, each of the lowest minima by itself.
-fn groups(survey: &Survey, asked: &SurveyProblem) -> Vec<(String, Vec<usize>)> {
+pub(super) fn groups(survey: &Survey, asked: &SurveyProblem) -> Vec<(String, Vec<usize>)> {
     if asked.groups.is_empty() {
         return (0..survey.minima.len().min(LOWEST)).map(|k| (format!("minimum {k}"), vec![k])).collect();
     }

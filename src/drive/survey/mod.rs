@@ -8,6 +8,7 @@ mod found;
 mod lifetimes;
 mod unseen;
 
+pub(super) use found::Told;
 pub use found::{FoundMinimum, FoundSaddle, Kind, Survey};
 pub use lifetimes::{Lifetime, Lifetimes};
 pub use unseen::Unseen;
