@@ -121,6 +121,7 @@ fn states_joined_by_a_flat_valley_have_a_certified_barrier_of_zero_and_the_reaso
         let outcome = solve(&problem);
         assert_eq!(outcome.stop_code, StopCode::FlatValley, "{} {:?}", outcome.stop_reason, outcome.warnings);
         assert!(outcome.certified && outcome.converged && outcome.stop_reason.contains("no barrier"));
+        assert!(outcome.stop_reason.contains("flat to rounding (") && outcome.stop_reason.contains(" meV)"));
         assert!(forward(&outcome) == 0.0 && outcome.saddles.is_empty());
     }
 }

@@ -31,9 +31,7 @@ impl Seen<'_> {
     /// about its saddles.
     pub fn judge(&self, c: &FirstPath, mut doubts: Vec<Doubt>) -> Judgement {
         if self.is_flat(&c.band) {
-            // what no saddle search could find or prove there does not count against it
-            let barrier = Some(Barrier { forward_mev: 0.0, backward_mev: 0.0 });
-            return Judgement { verdict: Verdict::FlatValley, barrier, doubts: Vec::new() };
+            return of_flat(&c.band);
         }
         if self.is_of_higher_index(c) {
             doubts.push(Doubt::HigherIndex);
@@ -74,4 +72,19 @@ impl Seen<'_> {
             && c.found.as_ref().is_some_and(|f| f.refined.index() > 1)
             && self.saddles.iter().all(|s| s.negative_modes != Some(1))
     }
+}
+
+/// Of a path that is flat to rounding: what no saddle search could find or prove there does not count against it, but rounding that
+/// may hide a barrier does.
+fn of_flat(band: &Band) -> Judgement {
+    let (h, path) = (band.hamiltonian(), band.path());
+    let images = (0..path.images()).map(|k| path.image(k));
+    let (verdict, barrier) = match h.hiding_rounding_mev(images) {
+        Some(rounding_mev) => (Verdict::BelowRounding { rounding_mev }, None),
+        None => {
+            let none = Barrier { forward_mev: 0.0, backward_mev: 0.0 };
+            (Verdict::FlatValley { rounding_mev: h.rounding_mev() }, Some(none))
+        }
+    };
+    Judgement { verdict, barrier, doubts: Vec::new() }
 }

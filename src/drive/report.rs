@@ -84,7 +84,7 @@ pub fn outcome(
     let Judgement { verdict, barrier, doubts } = seen.judge(&c, proof.doubts);
     // nothing is crossed in a flat valley
     let (saddles, links) = match verdict {
-        Verdict::FlatValley => (Vec::new(), &[][..]),
+        Verdict::FlatValley { .. } | Verdict::BelowRounding { .. } => (Vec::new(), &[][..]),
         _ => {
             tell_eigenvalues(h, &mut saddles, &proof.links);
             (saddles, &proof.links[..])
@@ -118,8 +118,9 @@ pub fn outcome(
     let images: Vec<usize> = saddles.iter().map(|saddle| saddle.image).collect();
     let lower = lower_maxima(band.energies_mev(), LOWER * height(band), &images);
     let more = run.problem.images.asked_for().and_then(|asked| more_images(asked, band.images(), saddles.len()));
-    let warnings =
-        run.told(more.into_iter().chain(doubts.iter().map(Doubt::warning).chain(flat).chain(lower).chain(of_rates)));
+    let hidden = matches!(verdict, Verdict::BelowRounding { .. }).then(|| format!("not certified: {verdict}"));
+    let doubtful = doubts.iter().map(Doubt::warning).chain(hidden);
+    let warnings = run.told(more.into_iter().chain(doubtful).chain(flat).chain(lower).chain(of_rates));
     let (certified, iterations) = (doubts.is_empty() && barrier.is_some(), band.evaluations());
     let beside = links.iter().flat_map(|link| [&link.before, &link.after]).chain(&proof.ends);
     let spectra = links.iter().map(|link| &link.spectrum).chain(beside.map(|minimum| &minimum.spectrum));

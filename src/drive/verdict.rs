@@ -21,6 +21,8 @@ pub enum StopCode {
     SameMinimum,
     /// The ends are joined by a valley flat to rounding: the barrier is zero.
     FlatValley,
+    /// The path is flat to the rounding of its energies, which is large enough to hide a barrier.
+    BelowRounding,
     /// The path rises to no maximum between its ends: the barrier is the higher end.
     NoMaximum,
     /// Only a saddle with more than one descending mode was found, which is no barrier.
@@ -38,8 +40,16 @@ pub enum Verdict {
     Path(Stop),
     /// The path rises to no maximum between its ends: the barrier is the higher end.
     NoMaximum(Stop),
-    /// The ends are joined by a valley flat to rounding: the barrier is zero.
-    FlatValley,
+    /// The ends are joined by a valley flat to this rounding of its energies (meV): the barrier is zero.
+    FlatValley {
+        /// What the energies are uncertain by (meV).
+        rounding_mev: f64,
+    },
+    /// The path is flat to this rounding of its energies (meV), which is large enough to hide a barrier: none is known.
+    BelowRounding {
+        /// What the energies are uncertain by (meV).
+        rounding_mev: f64,
+    },
     /// Only a saddle with more than one descending mode was found, which is no barrier.
     HigherIndex(Stop),
     /// The highest point of the path is an end that was kept as given, which is no barrier.
@@ -59,7 +69,8 @@ impl Verdict {
             Verdict::Path(Stop::Stalled { .. }) => StopCode::Stalled,
             Verdict::Path(Stop::NotFinite) => StopCode::NotFinite,
             Verdict::NoMaximum(_) => StopCode::NoMaximum,
-            Verdict::FlatValley => StopCode::FlatValley,
+            Verdict::FlatValley { .. } => StopCode::FlatValley,
+            Verdict::BelowRounding { .. } => StopCode::BelowRounding,
             Verdict::HigherIndex(_) => StopCode::HigherIndex,
             Verdict::KeptEnd(..) => StopCode::KeptEnd,
             Verdict::SameMinimum => StopCode::SameMinimum,
@@ -71,7 +82,7 @@ impl Verdict {
     pub fn is_converged(&self) -> bool {
         match self {
             Verdict::Path(stop) | Verdict::NoMaximum(stop) => stop.is_converged(),
-            Verdict::FlatValley => true,
+            Verdict::FlatValley { .. } => true,
             _ => false,
         }
     }
@@ -85,9 +96,15 @@ impl fmt::Display for Verdict {
                 f,
                 "{stop}; the path rises to no maximum between its ends, so there is no barrier beyond the higher end"
             ),
-            Verdict::FlatValley => {
-                f.write_str("a valley that is flat to rounding joins the two minima: there is no barrier")
-            }
+            Verdict::FlatValley { rounding_mev } => write!(
+                f,
+                "a valley that is flat to rounding ({rounding_mev:.0e} meV) joins the two minima: there is no barrier"
+            ),
+            Verdict::BelowRounding { rounding_mev } => write!(
+                f,
+                "the path is flat to the rounding of its energies, {rounding_mev:.1e} meV, which may hide a barrier: a term that \
+                 changes along it is no larger than that for a spin"
+            ),
             Verdict::HigherIndex(stop) => {
                 write!(f, "{stop}; only a saddle of higher index was found, which is no barrier")
             }

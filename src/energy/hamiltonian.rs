@@ -45,6 +45,8 @@ pub struct Hamiltonian {
 
 /// Unit vectors whose vector product is shorter are parallel.
 const PARALLEL: f64 = 1e-6;
+/// A sum of the energies of sites is uncertain by this part of them: some ulp.
+const ROUNDED: f64 = 8.0 * f64::EPSILON;
 
 impl Hamiltonian {
     /// The sum of `terms` on `lattice`; an error where one does not fit it, by its number of sites, the lengths of its arrays or its bonds,
@@ -77,15 +79,10 @@ impl Hamiltonian {
             reach,
             stiffness: 0.0,
         };
-        let diagonal = |b: super::blocks::Block| b[0][0].abs() + b[1][1].abs() + b[2][2].abs();
-        h.stiffness = h.blocks.sites().map(diagonal).fold(1e-280, f64::max);
-        // a cubic anisotropy has no torque and no gradient along its axes, and some between them
-        let between = (!h.is_quadratic()).then(|| Direction::new([1.0, 2.0, 3.0])).and_then(Result::ok);
-        for axis in [Direction::X, Direction::Y, Direction::Z].into_iter().chain(between) {
-            let mut g = vec![0.0; 3 * sites];
-            h.energy_gradient(Spins::uniform(sites, axis).as_slice(), &mut g);
-            h.stiffness = h.stiffness.max(slab::max_abs(&g));
-        }
+        let gradient = |m: &[f64], g: &mut [f64]| {
+            h.energy_gradient(m, g);
+        };
+        h.stiffness = stiffness_mev(&h.blocks, h.is_quadratic(), gradient);
         Ok(h)
     }
 
@@ -171,6 +168,36 @@ impl Hamiltonian {
         self.stiffness
     }
 
+    /// The same of a term alone.
+    fn term_stiffness_mev(&self, term: &Box<dyn EnergyTerm>) -> f64 {
+        let blocks = constant_blocks(&self.lattice, std::slice::from_ref(term));
+        stiffness_mev(&blocks, term.is_quadratic(), |m, g| {
+            let mut density = vec![0.0; self.sites];
+            term.add_gradient(Components::new(m), ComponentsMut::new(g), &mut density, 0..self.sites);
+        })
+    }
+
+    /// The rounding error (meV) of the energies of these configurations, where it may hide a barrier between them: a term that differs
+    /// among them, by more than its own rounding, is not stiffer for a spin than that error. Nothing where no such term is there.
+    pub fn hiding_rounding_mev<'a>(&self, configurations: impl Iterator<Item = &'a [f64]> + Clone) -> Option<f64> {
+        let largest = |sizes: &mut dyn Iterator<Item = f64>| sizes.fold(0.0, f64::max);
+        let rounding = |stiffness: f64, size: f64| ROUNDED * (stiffness * self.sites as f64).max(size);
+        let all = largest(&mut configurations.clone().map(|m| size(&self.density(m))));
+        let error = rounding(self.stiffness, all);
+        let may_be_hidden = |term: &Box<dyn EnergyTerm>| {
+            let stiffness = self.term_stiffness_mev(term);
+            let densities: Vec<Vec<f64>> =
+                configurations.clone().map(|m| super::density_of(term.as_ref(), m)).collect();
+            let own = rounding(stiffness, largest(&mut densities.iter().map(|density| size(density))));
+            let rises = |density: &Vec<f64>| {
+                let rise: f64 = density.iter().zip(&densities[0]).map(|(here, first)| here - first).sum();
+                rise.abs() > own
+            };
+            stiffness <= error && densities.iter().any(rises)
+        };
+        self.terms.iter().any(may_be_hidden).then_some(error)
+    }
+
     /// What the Hessian is uncertain by (meV), rounding apart: what long-ranged and custom terms leave out.
     pub fn hessian_error_mev(&self) -> f64 {
         self.coupling().error_mev() + self.terms.iter().map(|t| t.hessian_error_mev()).sum::<f64>()
@@ -178,7 +205,7 @@ impl Hamiltonian {
 
     /// What the energy of a configuration is uncertain by (meV): a site's share of it by some ulp of the largest stiffness.
     pub fn rounding_mev(&self) -> f64 {
-        8.0 * f64::EPSILON * self.stiffness * self.sites as f64
+        ROUNDED * self.stiffness * self.sites as f64
     }
 
     /// Unit vectors about which a rotation of all spins leaves every term as it is: none, one, or x, y and z.
@@ -435,6 +462,27 @@ fn curve(m: Components, g: Components, v: Components, ox: &mut [f64], oy: &mut [
     }
 }
 
+/// The largest stiffness or torque that a site can feel (meV), roughly, of terms with these constant blocks and this gradient.
+fn stiffness_mev(blocks: &Blocks, is_quadratic: bool, gradient: impl Fn(&[f64], &mut [f64])) -> f64 {
+    let diagonal = |b: super::blocks::Block| b[0][0].abs() + b[1][1].abs() + b[2][2].abs();
+    let of_blocks = blocks.sites().map(diagonal).fold(1e-280, f64::max);
+    let sites = blocks.sites().count();
+    // a cubic anisotropy has no torque and no gradient along its axes, and some between them
+    let between = (!is_quadratic).then(|| Direction::new([1.0, 2.0, 3.0])).and_then(Result::ok);
+    let axes = [Direction::X, Direction::Y, Direction::Z].into_iter().chain(between);
+    let largest = axes.map(|axis| {
+        let mut g = vec![0.0; 3 * sites];
+        gradient(Spins::uniform(sites, axis).as_slice(), &mut g);
+        slab::max_abs(&g)
+    });
+    largest.fold(of_blocks, f64::max)
+}
+
+/// The sum of the sizes of densities.
+fn size(density: &[f64]) -> f64 {
+    density.iter().map(|e| e.abs()).sum()
+}
+
 /// What of a term does not fit a lattice, in words.
 fn fit(lattice: &Lattice, term: &dyn EnergyTerm) -> std::result::Result<(), String> {
     let sites = lattice.sites;
@@ -494,4 +542,29 @@ fn twice(first: &str, second: &str) -> Error {
         "energy",
         format!("{what}, of the material or here: keep one, or the moments act on each other twice"),
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::energy::test_terms::{hamiltonian, lattice};
+
+    #[test]
+    fn rounding_hides_what_a_term_no_stiffer_than_that_would_make() {
+        let lattice = lattice(r#"{"chain": {"sites": 12}}"#);
+        let turn = |h: &Hamiltonian, axes: [Direction; 2]| {
+            let states = axes.map(|axis| Spins::uniform(h.sites(), axis));
+            h.hiding_rounding_mev(states.iter().map(Spins::as_slice))
+        };
+        let of = |j: &str| {
+            let exchange = format!(r#"{{"exchange": {{"J": ["{j}"]}}}}"#);
+            hamiltonian(&lattice, &[&exchange, r#"{"anisotropy": {"K": "0.5 meV", "axis": [0, 0, 1]}}"#])
+        };
+        let [weak, strong] = ["10 meV", "1e14 meV"].map(of);
+        let out_of_the_axis = [Direction::Z, Direction::X];
+        assert_eq!(turn(&weak, out_of_the_axis), None);
+        assert!(turn(&strong, out_of_the_axis).is_some_and(|mev| mev > 1.0));
+        // about the axis no term changes, so none is hidden
+        assert_eq!(turn(&strong, [Direction::X, Direction::Y]), None);
+    }
 }
