@@ -171,7 +171,7 @@ def test_lifetimes_are_an_arrhenius_plot(chain, reversal):
     assert [text.get_text() for text in axes.texts] == ["1 s"] and axes.get_legend() is None
     field = chain.replaced(energy=[*chain.energy, sn.zeeman(B=["0 T", "0 T", "0.3 T"])])
     both = sn.rates(sn.barrier(field, sn.uniform("z"), sn.uniform("-z")), [2.0, 4.0, 20.0]).plot()
-    assert [text.get_text() for text in both.get_legend().get_texts()] == ["forward", "backward", "barrier below 5 kT"]
+    assert [text.get_text() for text in both.get_legend().get_texts()] == ["forward", "backward", "barrier below 5 $k_BT$"]
     assert "0.01 K: 10^3138 s" in repr(sn.rates(reversal, 0.01))
     none = sn.rates(reversal, 300).plot()
     assert "no lifetime" in none.texts[0].get_text()

@@ -1,13 +1,14 @@
 //! `arrhenius.svg` and `.png`: mean times from both ends against 1000/T, on a logarithmic scale.
 //!
 //! The mean first passage to the other end by both theories; with minima on the way also the mean escape over the first saddle. The
-//! numbers are those of `rates.csv`, in the rows of the whole path. Where the barrier is below [`LOW_BARRIER`] k_BT they are grey:
-//! there the theories fail by and by, and below k_BT there are none. What lies beyond [`LONGEST_S`] or below [`SHORTEST_S`] is left
-//! out. Levels of 1 s and ten years are marked. One temperature makes no figure.
+//! numbers are those of `rates.csv`, in the rows of the whole path. Where the barrier is below [`LOW_BARRIER`] k_BT they are grey,
+//! or pale where it is so at all temperatures: there the theories fail by and by, and below k_BT there are none. What lies beyond
+//! [`LONGEST_S`] or below [`SHORTEST_S`] is left out, and counted. Levels of 1 s and ten years are marked. One temperature makes no
+//! figure.
 
 use super::canvas::{
     BLUE, Canvas, Colour, Frame, GREY, LinePlot, Look, Marker, Obstacles, Point, Rect, SMALL_PT, Series, THIN_PT, Text,
-    VERMILLION,
+    VERMILLION, WHITE, mix,
 };
 use super::{Lifetimes, Plot, PlotData, RateRow};
 use crate::error::Result;
@@ -19,6 +20,8 @@ const LONGEST_S: f64 = 1e25;
 const SHORTEST_S: f64 = 1e-15;
 /// Up to so many temperatures are marked each.
 const FEW: usize = 12;
+/// What of the colour of a pale line is white.
+const PALE: f64 = 0.55;
 
 /// Lifetimes over temperature as a figure.
 #[derive(Clone, Copy, Debug)]
@@ -62,6 +65,7 @@ fn plot(lifetimes: &[Lifetimes]) -> LinePlot {
     let axis = if stops { "Mean time (s)" } else { "Mean lifetime (s)" };
     let mut plot = LinePlot::new("1000 K / T", axis).log_y();
     plot.legend_above = stops;
+    let mut outside = 0;
     for t in lifetimes.iter().filter(|t| both_differ || t.way == Way::Forward) {
         let colour = if t.way == Way::Forward { BLUE } else { VERMILLION };
         let htst_colour = if both_differ { colour } else { VERMILLION };
@@ -70,20 +74,38 @@ fn plot(lifetimes: &[Lifetimes]) -> LinePlot {
             false => what.to_string(),
         };
         let passage = |theory: &str| name(&if stops { format!("First passage, {theory}") } else { theory.to_string() });
-        let langer = curves(&t.rows, |r| times(r)[0], passage("Langer"), colour, None);
-        let htst = curves(&t.rows, |r| times(r)[1], passage("HTST"), htst_colour, Some((3.0, 2.0)));
-        plot.series.extend(langer.into_iter().chain(htst));
+        let mut add = |kind: usize, label: String, colour: Colour, dash: Option<(f64, f64)>| {
+            let known = t.rows.iter().filter_map(|r| times(r)[kind]);
+            outside += known.filter(|time| !is_drawn(*time)).count();
+            plot.series.extend(curves(&t.rows, |r| times(r)[kind], label, colour, dash));
+        };
+        add(0, passage("Langer"), colour, None);
+        add(1, passage("HTST"), htst_colour, Some((3.0, 2.0)));
         if stops {
-            let dots = Some((0.8, 1.6));
-            plot.series.extend(curves(&t.rows, |r| times(r)[2], name("First escape"), colour, dots));
+            add(2, name("First escape"), colour, Some((0.8, 1.6)));
         }
     }
     // grey lines lie below the others, and one entry at the end of the legend stands for all
     plot.series.sort_by_key(|s| s.label.is_some());
-    if let Some(point) = plot.series.first().filter(|s| s.label.is_none()).map(|s| s.points[0]) {
-        plot.series.push(Series::line(vec![point]).label(format!("Barrier below {LOW_BARRIER} kT")).colour(GREY));
-    }
+    let Some(point) = plot.series.first().map(|s| s.points[0]) else { return plot };
+    let is_pale = |s: &Series| s.label.is_some() && ![BLUE, VERMILLION].map(Some).contains(&s.colour);
+    let low = match (plot.series.iter().any(|s| s.label.is_none()), plot.series.iter().any(is_pale)) {
+        (false, false) => None,
+        (true, false) => Some("Barrier"),
+        (false, true) => Some("Pale: barrier"),
+        (true, true) => Some("Grey, pale: barrier"),
+    };
+    let low = low.map(|which| format!("{which} below {LOW_BARRIER} k_{{B}}T"));
+    plot.series.extend(low.map(|words| Series::line(vec![point]).label(words).colour(GREY)));
+    plot.series.extend(beyond(outside, "rates.csv", point));
     plot
+}
+
+/// An entry of the legend, of no line, that so many times are beyond what a figure shows, and in which table they are.
+pub(super) fn beyond(times: usize, table: &str, place: Point) -> Option<Series> {
+    let points = if times == 1 { "point" } else { "points" };
+    let words = format!("{times} {points} beyond, in {table}");
+    (times > 0).then(|| Series { width: None, ..Series::line(vec![place]).label(words) })
 }
 
 /// Axes, levels and curves, and the places that these take.
@@ -132,7 +154,7 @@ fn times(r: &RateRow) -> [Option<f64>; 3] {
 }
 
 /// Whether a time (s) is within what a figure shows.
-fn is_drawn(time_s: f64) -> bool {
+pub(super) fn is_drawn(time_s: f64) -> bool {
     (SHORTEST_S..=LONGEST_S).contains(&time_s)
 }
 
@@ -167,8 +189,11 @@ fn curves(
     let line =
         |part: &[(f64, f64, bool)]| Series { dash, marker, ..Series::line(part.iter().map(|p| (p.0, p.1)).collect()) };
     let grey = (low > 0).then(|| line(&points[..(low + 1).min(points.len())]).colour(GREY));
-    let known = (low < points.len()).then(|| line(&points[low..]).label(label).colour(colour));
-    grey.into_iter().chain(known).collect()
+    if low == points.len() {
+        // what is low all along keeps its name, and a colour of its own
+        return grey.map(|line| line.label(label).colour(mix(colour, WHITE, PALE))).into_iter().collect();
+    }
+    grey.into_iter().chain([line(&points[low..]).label(label).colour(colour)]).collect()
 }
 
 #[cfg(test)]
@@ -193,6 +218,18 @@ mod tests {
     }
 
     #[test]
+    fn times_that_are_not_drawn_are_counted() {
+        let count = |barrier_k| {
+            let names = plot(&[lifetimes(Way::Forward, barrier_k)]).series.into_iter().filter_map(|s| s.label);
+            names.last()
+        };
+        assert_eq!(count(300.0).as_deref(), Some("Barrier below 5 k_{B}T"));
+        // above 1e25 s: at 5, 10 and 15 K, by both theories
+        assert_eq!(count(1500.0).as_deref(), Some("6 points beyond, in rates.csv"));
+        assert_eq!(count(20.0).as_deref(), Some("Pale: barrier below 5 k_{B}T"));
+    }
+
+    #[test]
     fn neither_legend_nor_names_of_levels_are_on_a_curve() {
         for width in [60.0, 85.0, 120.0] {
             let look = Look::new(Style::Paper, Some(width)).unwrap();
@@ -205,8 +242,8 @@ mod tests {
                 for (words, room) in canvas.texts() {
                     assert_eq!(curves.hits(&room), 0, "{words:?} of {forward} K and {backward} K, {width} mm");
                 }
-                // of a barrier of 20 K all is grey
-                let want = if forward == backward || forward == 20.0 { 1 } else { 2 };
+                // of a barrier of 20 K all is pale, with its name
+                let want = if forward == backward { 1 } else { 2 };
                 assert_eq!(canvas.texts().iter().filter(|(words, _)| words.starts_with("Langer")).count(), want);
             }
         }

@@ -183,11 +183,18 @@ def lifetimes(ways: Mapping[str, tuple[Array, Array, NDArray[np.bool_]]], ax: Ax
 
     ax = plt.subplots(figsize=(4.8, 3.2), layout="constrained")[1] if ax is None else ax
     drawn = {name: (1000 / t, *_drawn(log10_s, low)) for name, (t, log10_s, low) in ways.items()}
-    for (name, (x, sure, _)), color in zip(drawn.items(), (CURVE, TOP)):
-        ax.plot(x, sure, **{"color": color, "marker": "o", "ms": 4, "label": name, **style})
+    partly = []
+    for (name, (x, sure, low)), color in zip(drawn.items(), (CURVE, TOP)):
+        if np.isfinite(sure).any():
+            ax.plot(x, sure, **{"color": color, "marker": "o", "ms": 4, "label": name, **style})
+            partly.append((x, low))
+        elif np.isfinite(low).any():
+            # what is low all along keeps its name, in a pale colour
+            label = f"{name}, barrier below 5 $k_BT$"
+            ax.plot(x, low, **{"color": color, "marker": "o", "ms": 4, "alpha": 0.45, "label": label, **style})
     grey = {**style, "color": "0.6", "marker": "o", "ms": 4, "zorder": 1}
-    for k, (x, _, low) in enumerate(one for one in drawn.values() if np.isfinite(one[2]).any()):
-        ax.plot(x, low, **{**grey, "label": "_" if k else "barrier below 5 kT"})
+    for k, (x, low) in enumerate(one for one in partly if np.isfinite(one[1]).any()):
+        ax.plot(x, low, **{**grey, "label": "_" if k else "barrier below 5 $k_BT$"})
     ax.set_yscale("log")
     ax.set_xlabel("1000 K / T")
     ax.set_ylabel("mean lifetime (s)")
@@ -198,7 +205,8 @@ def lifetimes(ways: Mapping[str, tuple[Array, Array, NDArray[np.bool_]]], ax: Ax
             ticks([])
             ticks([], minor=True)
         ax.annotate("no lifetime from 10⁻¹⁵ s to 10²⁵ s", (0.5, 0.5), xycoords="axes fraction", ha="center")
-    if len(ax.get_legend_handles_labels()[1]) > 1:
+    labels = len(ax.get_legend_handles_labels()[1])
+    if labels > 1 or (labels and not partly):
         ax.legend(fontsize="small", frameon=False)
     return ax
 
@@ -220,4 +228,7 @@ def _levels(ax: Axes) -> None:
     for seconds, words in [(1.0, "1 s"), (10 * 365.25 * 86400, "10 years")]:
         if bottom < seconds < top:
             ax.axhline(seconds, color="0.7", lw=0.8, ls="--", zorder=0)
-            ax.annotate(words, (0.01, seconds), xycoords=("axes fraction", "data"), ha="left", va="bottom", fontsize="small", color="0.4")
+            # above the line, unless the frame would cross the words
+            under = np.log(seconds / bottom) > 0.9 * np.log(top / bottom)
+            ax.annotate(words, (0.01, seconds), xycoords=("axes fraction", "data"), ha="left", va="top" if under else "bottom",
+                        fontsize="small", color="0.4")

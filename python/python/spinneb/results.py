@@ -572,8 +572,8 @@ class Rates:
     def plot(self, ax: Axes | None = None, **style: Any) -> Axes:
         """Mean lifetimes (s, on a logarithmic scale) against 1000 K / T, on matplotlib axes, as arrhenius.png has them.
 
-        Both ways, where they differ. Grey where a barrier is below 5 kT, as the theories need more; times below 1e-15 s or beyond
-        1e25 s are left out. ``style`` goes to the curves (``color=``, ``label=``, ``linewidth=`` …).
+        Both ways, where they differ. Grey where a barrier is below 5 k_BT, or pale where it is so all along, as the theories need
+        more; times below 1e-15 s or beyond 1e25 s are left out. ``style`` goes to the curves (``color=``, ``label=``, ``linewidth=`` …).
         """
         from .plotting import lifetimes
 
