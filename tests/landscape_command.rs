@@ -88,6 +88,16 @@ fn a_spin_with_two_axes_has_two_minima_and_two_saddles() {
 }
 
 #[test]
+fn groups_that_hold_the_same_minima_are_said() {
+    let overlapping = chain(1).replace("\"to\": -0.5", "\"to\": 1");
+    let (document, folder) = landscape(&overlapping, &["--force"]);
+    let told = "the groups down and up hold 1 minimum in common: a state that is in both";
+    let told_too = "the groups up and down hold 1 minimum in common: a state that is in both";
+    let warnings = [&document, &json(&folder.path().join("found/summary.json"))].map(|of| of["warnings"].to_string());
+    assert!(warnings.iter().all(|said| said.contains(told) || said.contains(told_too)), "{warnings:?}");
+}
+
+#[test]
 fn lifetimes_between_up_and_down_are_those_of_a_run_between_them() {
     for sites in [1, 8] {
         // below the wall through the harder axis, whose descents end on the other wall's ridge and go on to either side

@@ -2,9 +2,10 @@
 
 use super::points::{ShareOf, share};
 use super::progress::Progress;
+use super::run::no_figure;
 use super::signals::Signals;
 use super::threads::start_threads;
-use super::{Interval, Looking, UNFINISHED, interval, note, report};
+use super::{Interval, Looking, UNFINISHED, at_least_one, interval, note, report};
 use crate::config::{Keeping, Loaded, discard_leftovers, load_landscape};
 use crate::drive::survey::{Survey, survey};
 use crate::error::Error;
@@ -49,7 +50,7 @@ pub struct Arguments {
     pub out: Option<PathBuf>,
 
     /// Number of threads; results do not depend on it [default: all cores]
-    #[arg(short, long, value_name = "N")]
+    #[arg(short, long, value_name = "N", value_parser = at_least_one)]
     pub threads: Option<NonZeroUsize>,
 
     /// Change a value of the config first, as in `run`; may be given several times
@@ -143,7 +144,12 @@ pub fn landscape(arguments: &Arguments) -> Result<u8> {
     if let Err(error) = discard_leftovers(&directory) {
         report(&error.into());
     }
-    found.warnings.iter().for_each(|warning| say(&format!("{name}: warning: {warning}")));
+    let warnings = loaded.survey_report(&found)?.warnings();
+    warnings.iter().for_each(|warning| say(&format!("{name}: warning: {warning}")));
+    let temperatures = found.lifetimes.as_ref().map_or(0, |lifetimes| lifetimes.settings.temperatures_k.len());
+    if let Some(words) = no_figure(&directory, "lifetimes", temperatures, &loaded.config.output.plots) {
+        say(&format!("{name}: {words}"));
+    }
     print(arguments.json, name, &directory)
 }
 
@@ -175,11 +181,11 @@ pub(super) fn print(as_json: bool, name: &str, directory: &Path) -> Result<u8> {
     let code = if summary["converged"] == true { 0 } else { UNFINISHED };
     let count = |key: &str| summary[key].as_u64().unwrap_or(0);
     let words = format!(
-        "{name}: {} minima of {} kinds, {} saddles of {} kinds; {}; results in {}",
-        count("minima"),
-        count("kinds_of_minima"),
-        count("saddles"),
-        count("kinds_of_saddles"),
+        "{name}: {} of {}, {} of {}; {}; results in {}",
+        numbered(count("minima"), "minimum", "minima"),
+        numbered(count("kinds_of_minima"), "kind", "kinds"),
+        numbered(count("saddles"), "saddle", "saddles"),
+        numbered(count("kinds_of_saddles"), "kind", "kinds"),
         summary["stop_reason"].as_str().unwrap_or_default(),
         directory.display()
     );
@@ -200,4 +206,9 @@ pub(super) fn print(as_json: bool, name: &str, directory: &Path) -> Result<u8> {
     };
     writeln!(io::stdout(), "{line}")?;
     Ok(code)
+}
+
+/// A number of things, with their name.
+fn numbered(count: u64, one: &str, several: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { several })
 }

@@ -153,7 +153,8 @@ fn finish(arguments: &Collect, loaded: &Loaded, there: &ShareHead, directory: &P
     discard_leftovers(directory)?;
     Shares::discard(directory)?;
     if !arguments.quiet {
-        found.warnings.iter().for_each(|warning| note(&format!("{name}: warning: {warning}")));
+        let warnings = loaded.survey_report(&found)?.warnings();
+        warnings.iter().for_each(|warning| note(&format!("{name}: warning: {warning}")));
     }
     print(arguments.json, name, directory)
 }

@@ -4,7 +4,9 @@
 use super::LandscapeReport;
 use crate::error::Result;
 use crate::network::{Branch, Tree};
-use crate::output::canvas::{Align, Axis, BLACK, BLUE, Canvas, Frame, GREY, MM, Rect, SMALL_PT, THIN_PT, Text, Ticks};
+use crate::output::canvas::{
+    Align, Axis, BLACK, BLUE, Canvas, Frame, GREY, MM, Point, Rect, SMALL_PT, THIN_PT, Text, Ticks,
+};
 
 /// Height of the figure (mm).
 const HEIGHT_MM: f64 = 64.0;
@@ -14,6 +16,8 @@ const ALIKE: f64 = 1e-9;
 const LINE_PT: f64 = 0.7;
 /// Room for a number below a minimum (pt).
 const PITCH: f64 = 11.0;
+/// So many of the lowest minima have their numbers where not all have.
+const LOWEST: usize = 8;
 
 pub(super) fn draw(report: &LandscapeReport) -> Result<Option<Canvas>> {
     let s = report.survey;
@@ -38,13 +42,14 @@ pub(super) fn draw(report: &LandscapeReport) -> Result<Option<Canvas>> {
     let frame = Frame { rect, x, y, ticks: Ticks::Outward };
     frame.draw_y(&mut canvas, "Energy (meV)")?;
     canvas.line(&[(rect.x0, rect.y0), (rect.x0, rect.y1)], THIN_PT, BLACK);
-    let mut drawing = Drawing { canvas, frame, next: 0.0, numbered: rect.width() > PITCH * minima.len() as f64 };
+    let mut drawing = Drawing { canvas, frame, next: 0.0, leaves: Vec::new() };
     for branch in &tree.branches {
         // what no pass joins with anything ends above in the open
         let x = drawing.branch(branch)?;
         let above = if branch.energy < high { high } else { 1.05 * high };
         drawing.line((x, branch.energy), (x, above), tree.branches.len() > 1);
     }
+    drawing.number(rect.width() > PITCH * minima.len() as f64)?;
     Ok(Some(drawing.canvas))
 }
 
@@ -53,7 +58,8 @@ struct Drawing {
     frame: Frame,
     /// Where the next minimum stands.
     next: f64,
-    numbered: bool,
+    /// The minima that were drawn, and the places of their ends.
+    leaves: Vec<(usize, Point)>,
 }
 
 impl Drawing {
@@ -62,10 +68,7 @@ impl Drawing {
         if let Some(minimum) = branch.minimum {
             let x = self.next + 0.5;
             self.next += 1.0;
-            if let (true, Some((px, py))) = (self.numbered, self.frame.place((x, branch.energy))) {
-                let text = Text::new(minimum.to_string(), SMALL_PT).align(Align::Centre).colour(BLUE);
-                self.canvas.text((px, py + SMALL_PT + 1.0), text)?;
-            }
+            self.leaves.extend(self.frame.place((x, branch.energy)).map(|end| (minimum, end)));
             return Ok(x);
         }
         let mut places = Vec::new();
@@ -77,6 +80,21 @@ impl Drawing {
         let [first, last] = [places[0], places[places.len() - 1]];
         self.line((first, branch.energy), (last, branch.energy), false);
         Ok(0.5 * (first + last))
+    }
+
+    /// Writes the numbers of all minima; or, where these have no room, of the lowest, which have the lowest numbers, as far as they have.
+    fn number(&mut self, all: bool) -> Result<()> {
+        self.leaves.sort_by_key(|(minimum, _)| *minimum);
+        let mut taken: Vec<(f64, f64)> = Vec::new();
+        for (minimum, (x, y)) in std::mem::take(&mut self.leaves) {
+            let text = Text::new(minimum.to_string(), SMALL_PT).align(Align::Centre).colour(BLUE);
+            let half = 0.5 * text.width()? + 1.0;
+            if all || (taken.len() < LOWEST && taken.iter().all(|(other, room)| (x - other).abs() > half + room)) {
+                taken.push((x, half));
+                self.canvas.text((x, y + SMALL_PT + 1.0), text)?;
+            }
+        }
+        Ok(())
     }
 
     fn line(&mut self, from: (f64, f64), to: (f64, f64), open: bool) {

@@ -25,7 +25,7 @@ struct Document<'a> {
     lifetimes: Option<Vec<LifetimeEntry<'a>>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     groups: Option<BTreeMap<&'a str, &'a [usize]>>,
-    warnings: &'a [String],
+    warnings: Vec<String>,
 }
 
 #[derive(Serialize)]
@@ -131,7 +131,7 @@ pub fn render(report: &LandscapeReport) -> Result<Vec<u8>> {
         saddles: (0..s.saddle_kinds.len()).map(|id| saddle(report, id)).collect(),
         lifetimes: lifetimes.map(|l| l.rows.iter().map(lifetime).collect()),
         groups: lifetimes.map(|l| l.groups.iter().map(|(name, states)| (name.as_str(), &states[..])).collect()),
-        warnings: &s.warnings,
+        warnings: report.warnings(),
     };
     json("landscape.json", &document)
 }

@@ -86,7 +86,7 @@ struct Summary<'a> {
     kinds_of_saddles: usize,
     minima: usize,
     saddles: usize,
-    warnings: &'a [String],
+    warnings: Vec<String>,
 }
 
 impl LandscapeReport<'_> {
@@ -100,6 +100,25 @@ impl LandscapeReport<'_> {
                 s.searched.searches
             ),
         }
+    }
+
+    /// What is to be said of it: what the search says, and which groups hold the same minima.
+    pub fn warnings(&self) -> Vec<String> {
+        let groups = self.survey.lifetimes.as_ref().map_or(&[][..], |lifetimes| &lifetimes.groups);
+        let shared = |k: usize| {
+            let (name, states) = &groups[k];
+            groups[k + 1..].iter().filter_map(move |(other, others)| {
+                let both = states.iter().filter(|state| others.contains(state)).count();
+                (both > 0).then(|| {
+                    let minima = if both == 1 { "minimum" } else { "minima" };
+                    format!(
+                        "the groups {name} and {other} hold {both} {minima} in common: a state that is in both takes no time \
+                         from one to the other, so none is told"
+                    )
+                })
+            })
+        };
+        self.survey.warnings.iter().cloned().chain((0..groups.len()).flat_map(shared)).collect()
     }
 
     /// All files, `summary.json` last.
@@ -138,7 +157,7 @@ impl LandscapeReport<'_> {
             kinds_of_saddles: s.saddle_kinds.len(),
             minima: s.minima.len(),
             saddles: s.saddles.len(),
-            warnings: &s.warnings,
+            warnings: self.warnings(),
         };
         json(MARK, &summary)
     }

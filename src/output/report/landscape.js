@@ -124,14 +124,12 @@ class Network {
   }
 }
 
-const power = log10 => (Math.abs(log10) < 300 ? number(10 ** log10, 4) : `10^${number(log10, 5)}`);
-
 function lifetimes() {
-  const time = log10 => (log10 === null ? "–" : power(log10));
+  const range = l => (l.known_within_factor ? `× or ÷ ${number(l.known_within_factor, 2)}` : "–");
   const why = data.lifetimes.some(l => l.reason) ? ["Why there is none"] : [];
-  const rows = data.lifetimes.map(l => [l.from, l.to ?? "anywhere", number(l.temperature_K, 5), number(l.climb_meV, 6), time(l.log10_htst_time_s), time(l.log10_langer_time_s), ...why.map(() => l.reason ?? "–")]);
-  const headings = ["From", "To", "T (K)", "Climb (meV)", "HTST (s)", "Langer (s)", ...why];
-  section("Lifetimes", table("Mean times over the whole network, minima between counted; \"anywhere\": until the group is left", headings, rows, [6]));
+  const rows = data.lifetimes.map(l => [l.from, l.to ?? "anywhere", number(l.temperature_K, 5), number(l.climb_meV, 6), time(l, "htst_time_s"), time(l, "langer_time_s"), range(l), ...why.map(() => l.reason ?? "–")]);
+  const headings = ["From", "To", "T (K)", "Climb (meV)", "HTST (s)", "Langer (s)", "Known within", ...why];
+  section("Lifetimes", table("Mean times over the whole network, minima between counted; \"anywhere\": until the group is left", headings, rows, [7]));
 }
 
 function kinds(title, list, states, word) {

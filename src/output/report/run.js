@@ -8,7 +8,7 @@ function introduce() {
   const notes = [];
   if (path.sites.length < sites) notes.push(`Of ${sites} sites ${path.sites.length} are drawn, evenly spaced: what happens between them is not seen.`);
   if (path.images.length < images) notes.push(`Of ${images} images ${path.images.length} are shown.`);
-  if (data.profile_points > path.curve.s.length) notes.push(`Of the curve's ${data.profile_points} points every ${Math.ceil(data.profile_points / path.curve.s.length)}th is drawn.`);
+  if (data.profile_points > path.curve.s.length) notes.push(`Of the curve's ${data.profile_points} points one in ${Math.ceil(data.profile_points / path.curve.s.length)} is drawn.`);
   notes.push("Spins between two images turn along great circles; all numbers in full are in the files beside this page.");
   if (periodic) notes.push("The ring is drawn as one, but its spins keep the directions they have in a straight chain.");
   $("notes").textContent = notes.join(" ");

@@ -75,14 +75,20 @@ function stationary(path, go) {
   section("Minima and saddles", table(caption, headings, path.stops.map(row)));
 }
 
+/** 10 to a power, in digits. */
+function power(log10, digits) {
+  const whole = Math.floor(log10);
+  return Math.abs(log10) < 300 ? number(10 ** log10, digits) : `${number(10 ** (log10 - whole), digits)} × 10^${whole}`;
+}
+
+/** How many digits of a rate or a time are known. */
+const shown = t => (t.known_within_factor ? clamp(Math.ceil(-Math.log10(Math.max(t.known_within_factor - 1, 1e-12))), 1, 4) : 1);
+
+/** A time of which the logarithm is given. */
+const time = (t, key) => (t[`log10_${key}`] === null ? "–" : power(t[`log10_${key}`], shown(t)));
+
 function rates(summary) {
-  const power = (log10, digits) => {
-    const whole = Math.floor(log10);
-    return Math.abs(log10) < 300 ? number(10 ** log10, digits) : `${number(10 ** (log10 - whole), digits)} × 10^${whole}`;
-  };
-  // as many digits as are known, and grey where the barrier is below 5 k_BT
-  const shown = t => (t.known_within_factor ? clamp(Math.ceil(-Math.log10(Math.max(t.known_within_factor - 1, 1e-12))), 1, 4) : 1);
-  const time = (t, key) => (t[`log10_${key}`] === null ? "–" : power(t[`log10_${key}`], shown(t)));
+  // grey where the barrier is below 5 k_BT
   const rough = (t, text) => (t.barrier_over_kT < 5 ? make("span", { class: "rough" }, text) : text);
   const range = t => (t.known_within_factor ? `× or ÷ ${number(t.known_within_factor, 2)}` : (t.reason ?? "–"));
   const row = (head, t) => [...head, ...[number(t.temperature_K, 5), number(t.barrier_over_kT, 4), number(t.htst_rate_per_s, shown(t)),
