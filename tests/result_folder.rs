@@ -360,3 +360,23 @@ fn a_failed_write_leaves_the_old_result_as_it_was() {
     assert!(folder::write_result(dir.path(), &new(&bad, None)).is_err());
     assert_eq!((names(dir.path()), table(dir.path())), (vec!["path.csv".into(), "summary.json".into()], "old".into()));
 }
+
+#[test]
+fn a_file_of_somebody_with_the_name_of_a_note_is_refused_and_stays_and_one_that_was_left_is_taken_away() {
+    let top = tempfile::tempdir().unwrap();
+    let note = top.path().join(".spinneb.writing");
+    for mine in ["work of years", "{}", "[1, 2]"] {
+        fs::write(&note, mine).unwrap();
+        let (kind, words) = kind_of(folder::prepare(top.path(), &intent("0.2.0", "abc", None, &[])));
+        assert!(kind == ErrorKind::AlreadyExists && words.contains("is none: take it away"), "{words}");
+        kind_of(folder::write_result(top.path(), &new(&result("abc", "new"), None)));
+        kind_of(folder::discard_note(top.path()));
+        assert_eq!(fs::read_to_string(&note).unwrap(), mine);
+    }
+    for left in ["", r#"{"earlier_of": null, "files": {"path.csv": ["12"]}}"#] {
+        fs::write(&note, left).unwrap();
+        folder::write_result(top.path(), &NewResult { keep_earlier: false, ..new(&result("abc", "new"), None) })
+            .unwrap();
+        assert_eq!(names(top.path()), ["path.csv", "summary.json"]);
+    }
+}

@@ -189,8 +189,23 @@ pub fn add(dir: &Path, files: &[File], may_be: impl Fn(&File, &[u8]) -> bool, fo
 /// Whether a writer left its note there, and takes it away. Nobody else may write there meanwhile.
 pub fn discard_note(dir: &Path) -> Result<()> {
     match disk::kind(&dir.join(NOTE))? {
-        Kind::File => disk::remove(&dir.join(NOTE)),
+        Kind::File => read_note(dir).and_then(|_| disk::remove(&dir.join(NOTE))),
         _ => Ok(()),
+    }
+}
+
+/// What the note of a writer says, if there is one; whatever else has its name is an error.
+fn read_note(dir: &Path) -> Result<Owned> {
+    let path = dir.join(NOTE);
+    match disk::kind(&path)? {
+        Kind::Nothing => Ok(Owned::default()),
+        Kind::File => match disk::read(&path)? {
+            // a power cut may leave it empty
+            bytes if bytes.is_empty() => Ok(Owned::default()),
+            bytes => serde_json::from_slice(&bytes)
+                .map_err(|_| refused(&path, "has the name of a note of this program's, and is none: take it away")),
+        },
+        _ => Err(refused(&path, "is a symbolic link, a folder or a device: take it away")),
     }
 }
 
@@ -235,12 +250,7 @@ struct Staged {
 
 impl Folder {
     fn open(dir: &Path) -> Result<Folder> {
-        let note = match disk::kind(&dir.join(NOTE))? {
-            Kind::Nothing => Owned::default(),
-            Kind::File => serde_json::from_slice(&disk::read(&dir.join(NOTE))?).unwrap_or_default(),
-            _ => return Err(refused(&dir.join(NOTE), "is a symbolic link, a folder or a device: take it away")),
-        };
-        let mut folder = Folder { dir: dir.into(), owned: note, stored: None, unreadable: None };
+        let mut folder = Folder { dir: dir.into(), owned: read_note(dir)?, stored: None, unreadable: None };
         let path = dir.join(MARK);
         match disk::kind(&path)? {
             Kind::Nothing => {}

@@ -8,6 +8,9 @@ use std::path::{Path, PathBuf};
 
 /// The file that is locked; it is there only while somebody works in the folder, or after a kill.
 const NAME: &str = ".spinneb.lock";
+/// What a holder writes into it: the number of its process, and where that is.
+const PROCESS: &str = "process ";
+const ON: &str = " on ";
 /// How often a lock is tried whose file the last holder just took away.
 const TRIES: usize = 100;
 
@@ -37,6 +40,12 @@ impl Lock {
                 Err(TryLockError::Error(e)) => return Err(io_error(e)),
             };
             if is_still(&file, &path) {
+                if !is_signed(&file).map_err(io_error)? {
+                    return Err(disk::refused(
+                        &path,
+                        "has the name of a lock of this program's, and is none: take it away",
+                    ));
+                }
                 let mut lock = Lock { path, file, sure };
                 // who holds it is a courtesy to others
                 let _ = lock.sign();
@@ -61,8 +70,8 @@ impl Lock {
         self.file.rewind()?;
         let host = fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
         let host = host.trim();
-        let place = if host.is_empty() { String::new() } else { format!(" on {host}") };
-        self.file.write_all(format!("process {}{place}", std::process::id()).as_bytes())
+        let place = if host.is_empty() { String::new() } else { format!("{ON}{host}") };
+        self.file.write_all(format!("{PROCESS}{}{place}", std::process::id()).as_bytes())
     }
 }
 
@@ -86,6 +95,15 @@ fn is_still(file: &File, path: &Path) -> bool {
 #[cfg(not(unix))]
 fn is_still(_: &File, _: &Path) -> bool {
     true
+}
+
+/// Whether a file of a lock's name is one that a holder left, or new: whatever else is there is somebody's own.
+fn is_signed(mut file: &File) -> io::Result<bool> {
+    let mut bytes = Vec::new();
+    file.read_to_end(&mut bytes)?;
+    let text = String::from_utf8_lossy(&bytes);
+    let number = text.strip_prefix(PROCESS).map(|rest| rest.split_once(ON).map_or(rest, |(number, _)| number));
+    Ok(text.is_empty() || number.is_some_and(|number| number.parse::<u32>().is_ok()))
 }
 
 fn held(directory: &Path, mut file: File) -> Error {
@@ -114,6 +132,22 @@ mod tests {
         // a file that a killed run left is no lock
         fs::write(folder.path().join(NAME), "process 1").unwrap();
         Lock::of(folder.path()).unwrap();
+    }
+
+    #[test]
+    fn a_file_of_somebody_with_the_name_of_a_lock_stays_as_it_is() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(NAME);
+        for own in ["work of years", "process of 1929", "process "] {
+            fs::write(&path, own).unwrap();
+            let Err(Error::Io { source, .. }) = Lock::of(folder.path()) else { panic!("locked {own:?}") };
+            assert_eq!(source.kind(), ErrorKind::AlreadyExists);
+            assert_eq!(fs::read_to_string(&path).unwrap(), own);
+        }
+        for left in ["", "process 12", "process 12 on a host"] {
+            fs::write(&path, left).unwrap();
+            Lock::of(folder.path()).unwrap();
+        }
     }
 
     #[test]
