@@ -164,7 +164,7 @@ fn a_point_that_fails_and_one_without_a_proof_are_told_and_do_not_stop_the_other
     fs::create_dir_all(folder.path().join("results/many")).unwrap();
     fs::write(folder.path().join("results/many/max_evaluations_1__K_0.2meV"), "a file").unwrap();
     let (code, out, said) = spinneb(folder.path(), &["sweep", "many.json", "--json"]);
-    assert_eq!(code, Some(1), "{said}");
+    assert_eq!(code, Some(2), "{said}");
     let states: Vec<Value> = out.lines().map(|l| serde_json::from_str::<Value>(l).unwrap()["state"].clone()).collect();
     assert_eq!(
         states,

@@ -159,6 +159,10 @@ impl Sweep {
         })?;
         let config_file = config.display().to_string();
         for (path, value) in &content.set {
+            if let Some(swept) = overwrites(&keys, path) {
+                let words = format!("every point sets this by {} again, so it would have no effect", quoted(swept));
+                return Err(here(&[key("set"), key(path)], words));
+            }
             base = apply_set(&config_file, &base, &[format!("{path}={value}")])
                 .map_err(|e| blame::carried(e, |message| here(&[key("set"), key(path)], message)))?;
         }
@@ -244,6 +248,12 @@ fn swept_steps(key: &str, others: &[SweptKey]) -> std::result::Result<Vec<Step>,
         Some(other) => Err(format!("this key and {} set the same value", quoted(&other.key))),
         None => Ok(own),
     }
+}
+
+/// The swept key that sets what this path names, or something around it.
+fn overwrites<'a>(keys: &'a [SweptKey], path: &str) -> Option<&'a str> {
+    let own: Vec<Step> = steps(path)?.iter().map(indexed).collect();
+    keys.iter().find(|swept| own.starts_with(&swept.steps)).map(|swept| swept.key.as_str())
 }
 
 /// An index that is written `.2` as an index.

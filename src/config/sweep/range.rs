@@ -164,11 +164,10 @@ impl<'de> Deserialize<'de> for Values {
             fn visit_seq<A: SeqAccess<'de>>(self, mut s: A) -> Result<Values, A::Error> {
                 let mut list: Vec<Value> = Vec::new();
                 while let Some(value) = s.next_element()? {
-                    if list.contains(&value) {
-                        return Err(A::Error::custom(format!(
-                            "the value {} is listed twice",
-                            quoted(&value.to_string())
-                        )));
+                    if let Some(earlier) = list.iter().find(|earlier| is_same(earlier, &value)) {
+                        let [value, earlier] = [&value, earlier].map(|v| quoted(&v.to_string()));
+                        let as_what = if value == earlier { String::new() } else { format!(", first as {earlier}") };
+                        return Err(A::Error::custom(format!("the value {value} is listed twice{as_what}")));
                     }
                     list.push(value);
                 }
@@ -184,6 +183,19 @@ impl<'de> Deserialize<'de> for Values {
             }
         }
         d.deserialize_any(Seen)
+    }
+}
+
+/// Whether two values are one: as numbers, or as quantities in whatever unit, to the digits that a range has.
+fn is_same(a: &Value, b: &Value) -> bool {
+    let alike = |x: f64, y: f64| rounded(x, DIGITS) == rounded(y, DIGITS);
+    let quantity = |v: &Value| v.as_str().and_then(|text| AnyQuantity::new(text).ok());
+    if let (Some(x), Some(y)) = (a.as_f64(), b.as_f64()) {
+        return x == y;
+    }
+    match (quantity(a), quantity(b)) {
+        (Some(p), Some(q)) => q.value_as(&p).is_ok_and(|q| alike(p.value, q)),
+        _ => a == b,
     }
 }
 
@@ -223,6 +235,9 @@ mod tests {
             (json!({"from": 1, "to": 2, "points": 3, "scale": "cubic"}), "unknown variant `cubic`"),
             (json!([]), "found an empty list"),
             (json!([1, 2, 1]), "listed twice"),
+            (json!([1, 2, 1.0]), "listed twice"),
+            (json!(["1 T", "0.3 T", "1000 mT"]), "\"1000 mT\" is listed twice, first as \"1 T\""),
+            (json!(["0.3 T", "300 mT"]), "listed twice"),
             (json!("1 meV"), "a list of values"),
         ] {
             let said = values(range).unwrap_err();

@@ -169,6 +169,10 @@ fn what_is_wrong_with_the_file_is_said_at_its_place() {
             r#"{"config": "chain.json", "grid": {"lattice.chain.sites": {"from": 1, "to": 2e5, "points": 1e5}}}"#,
             "points",
         ),
+        (
+            r#"{"config": "chain.json", "set": {"energy.0.anisotropy.K": 1}, "grid": {"energy[0].anisotropy.K": [1]}}"#,
+            "every point sets this by \"energy[0].anisotropy.K\" again",
+        ),
     ] {
         let said = said(text);
         assert!(said.starts_with("many.json:1:") && said.contains(words), "{said}");

@@ -100,7 +100,7 @@ impl Map {
         let bar = Rect { x0: rect.x1 + GAP, x1: rect.x1 + GAP + BAR_WIDTH, ..rect };
         colour_bar(&mut canvas, bar, "Mean first passage (s)", &labels, colour)?;
         if self.log10_s.iter().flatten().any(Option::is_none) {
-            let words = "Grey: no lifetime (barrier below kT, or not proven)";
+            let words = "Grey: no lifetime (barrier below k_{B}T, or not proven)";
             canvas.text((rect.x0, canvas.height() - 3.0), Text::new(words, SMALL_PT))?;
         }
         Ok(canvas)
@@ -134,12 +134,15 @@ impl Map {
             let wanted = frame.rect.x0 + frame.rect.width() * if n % 2 == 0 { 0.35 } else { 0.65 };
             let middle = |[a, b]: &[(f64, f64); 2]| (0.5 * (a.0 + b.0), 0.5 * (a.1 + b.1));
             let off = |line: &&[(f64, f64); 2]| (middle(line).0 - wanted).abs();
-            let Some((x, y)) = lines.iter().min_by(|p, q| off(p).total_cmp(&off(q))).map(middle) else { continue };
+            let mut places: Vec<&[(f64, f64); 2]> = lines.iter().collect();
+            places.sort_by(|p, q| off(p).total_cmp(&off(q)));
             let (half, high) = (0.5 * wide + 1.5, 0.5 * SMALL_PT + 0.8);
-            let own = Rect { x0: x - half, y0: y - high, x1: x + half, y1: y + high };
-            if frame.rect.encloses(&own) && labels.iter().all(|(other, _)| own.is_apart_from(other)) {
-                labels.push((own, name));
-            }
+            let about = |(x, y): (f64, f64)| Rect { x0: x - half, y0: y - high, x1: x + half, y1: y + high };
+            let is_free = |own: &Rect| {
+                frame.rect.encloses(own) && labels.iter().all(|(other, _): &(Rect, String)| own.is_apart_from(other))
+            };
+            let own = places.into_iter().map(|line| about(middle(line))).find(is_free);
+            labels.extend(own.map(|own| (own, name)));
         }
         for (own, name) in labels {
             canvas.fill(own, WHITE);

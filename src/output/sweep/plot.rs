@@ -39,7 +39,7 @@ pub fn draw_sweep(index: &SweepIndex, states: &[PointState]) -> Result<Option<Ca
         numbers: Some((0..states.len()).map(|k| k as f64).collect()),
     };
     let x = along.map_or(&counted, |k| &parameters[k]);
-    let mut plot = LinePlot::new(&x.title, "Barrier (meV)");
+    let mut plot = LinePlot::new(&x.title, "Forward barrier (meV)");
     if along.is_some_and(|k| index.keys[k].log) {
         plot = plot.log_x();
     }
