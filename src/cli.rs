@@ -104,7 +104,7 @@ Examples:
 Exit codes:
   0    converged and certified
   3    finished without that: results are written and say why
-  2    the command line or a config is wrong
+  2    the command line or a config is wrong, or its results cannot go where they are to
   130  interrupted (143 terminated)
   1    anything else, such as a disk that is full";
 
@@ -214,7 +214,7 @@ pub(crate) struct Run {
     pub out: Option<PathBuf>,
 
     /// Number of threads; results do not depend on it [default: all cores]
-    #[arg(short, long, value_name = "N")]
+    #[arg(short, long, value_name = "N", value_parser = at_least_one)]
     pub threads: Option<NonZeroUsize>,
 
     /// Change a value of the config; may be given several times
@@ -299,7 +299,7 @@ pub(crate) struct Rate {
     pub theory: Vec<Theory>,
 
     /// Number of threads; results do not depend on it [default: all cores]
-    #[arg(short, long, value_name = "N")]
+    #[arg(short, long, value_name = "N", value_parser = at_least_one)]
     pub threads: Option<NonZeroUsize>,
 
     /// No progress and no messages, only errors and results
@@ -356,6 +356,11 @@ fn damping(text: &str) -> Result<f64, String> {
 
 fn g_factor(text: &str) -> Result<f64, String> {
     crate::rates::checked_g_factor(plain_number(text)?)
+}
+
+/// How many of what there has to be one of.
+fn at_least_one(text: &str) -> Result<NonZeroUsize, String> {
+    text.parse().map_err(|_| format!("found {text:?}, expected a whole number, 1 or more"))
 }
 
 fn plain_number(text: &str) -> Result<f64, String> {
@@ -480,9 +485,15 @@ pub(crate) fn report(error: &anyhow::Error) -> u8 {
     }
     match error.downcast_ref::<Error>() {
         Some(Error::Several(_) | Error::Config { .. } | Error::Invalid { .. }) => USAGE,
-        Some(Error::Io { source, .. }) if source.kind() == ErrorKind::AlreadyExists => USAGE,
+        Some(Error::Io { source, .. }) if is_of_the_place(source.kind()) => USAGE,
         _ => 1,
     }
+}
+
+/// Whether an error is that of a place which cannot take the files, and another would: of a wrong command line.
+fn is_of_the_place(kind: ErrorKind) -> bool {
+    use ErrorKind::{AlreadyExists, NotADirectory, PermissionDenied, ReadOnlyFilesystem};
+    matches!(kind, AlreadyExists | NotADirectory | PermissionDenied | ReadOnlyFilesystem)
 }
 
 /// The worse of two exit codes: 0 is better than 3 (not converged), then 2 (usage), then 1 (anything else).

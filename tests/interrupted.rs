@@ -375,7 +375,7 @@ fn a_directory_without_room_is_found_before_the_work() {
     assert!(said.starts_with("error: out: cannot write here: File too large (os error "), "{said}");
     assert_eq!(said.lines().count(), 1, "{said}");
     let (code, _, said) = run(folder.path(), &["--out", "/proc/no_such/place"]);
-    assert_eq!(code, Some(1), "{said}");
+    assert_eq!(code, Some(2), "{said}");
     assert!(said.contains("the directory cannot be made"), "{said}");
 }
 

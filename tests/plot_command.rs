@@ -237,7 +237,14 @@ fn a_command_line_that_makes_no_sense_is_refused() {
             &["plot", "a", "--out", "x.svg"],
             "error: --out x.svg: one result has several figures; give a folder for them",
         ),
-        (&["plot", "a", "--out", "x.pdf"], "error: --out x.pdf: found \"pdf\", expected svg or png, or a folder"),
+        (
+            &["plot", "a", "--out", "x.pdf"],
+            "error: --out x.pdf: found \"pdf\", expected svg or png, or a folder (whose name may end in /)",
+        ),
+        (
+            &["plot", "a", "b", "--out", "x.txt"],
+            "error: --out x.txt: found \"txt\", expected svg or png, or a folder (whose name may end in /)",
+        ),
         (
             &["plot", "a", "b", "--labels", "x"],
             "error: --labels: found 1 for 2 results; give one for each, separated by commas",

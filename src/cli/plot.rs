@@ -17,7 +17,10 @@ use std::path::{Path, PathBuf};
 /// All figures of one result, or one figure of several.
 pub fn plot(arguments: &Plot) -> Result<u8> {
     if let Some((out, ending)) = arguments.out.as_ref().and_then(|out| Some((out, not_drawn(out)?))) {
-        note(&format!("error: --out {}: found {ending:?}, expected svg or png, or a folder", out.display()));
+        note(&format!(
+            "error: --out {}: found {ending:?}, expected svg or png, or a folder (whose name may end in /)",
+            out.display()
+        ));
         return Ok(USAGE);
     }
     match &arguments.results[..] {
@@ -190,11 +193,12 @@ fn picture_of(path: &Path) -> Option<Picture> {
     path.extension().and_then(|ending| picture(&ending.to_string_lossy()).ok())
 }
 
-/// The ending of a picture of another kind than can be drawn: no folder is meant by that.
+/// The ending of a file that cannot be drawn: letters alone, where no folder is there. The name of a folder to be may end in `/`.
 fn not_drawn(path: &Path) -> Option<String> {
-    const OTHERS: [&str; 10] = ["bmp", "eps", "gif", "jpeg", "jpg", "pdf", "ps", "tif", "tiff", "webp"];
     let ending = path.extension()?.to_string_lossy().to_ascii_lowercase();
-    (OTHERS.contains(&ending.as_str()) && !path.is_dir()).then_some(ending)
+    let is_of_a_file = ending.bytes().all(|b| b.is_ascii_alphabetic()) && picture(&ending).is_err();
+    let is_folder = path.is_dir() || path.as_os_str().to_string_lossy().ends_with('/');
+    (is_of_a_file && !is_folder).then_some(ending)
 }
 
 /// `svg` or `png`.

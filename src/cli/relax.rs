@@ -1,7 +1,7 @@
 //! `relax`: the ends of a path by themselves, what they relax to and whether that is a minimum.
 
 use super::threads::start_threads;
-use super::{UNFINISHED, in_the_way, note, report, worse};
+use super::{UNFINISHED, at_least_one, in_the_way, note, report, worse};
 use crate::config::{Loaded, OutputConfig, load_states};
 use crate::drive::{RelaxedState, relaxed_state};
 use crate::error::Error;
@@ -43,7 +43,7 @@ pub struct Relax {
     pub modes: usize,
 
     /// Number of threads; results do not depend on it [default: all cores]
-    #[arg(short, long, value_name = "N")]
+    #[arg(short, long, value_name = "N", value_parser = at_least_one)]
     pub threads: Option<NonZeroUsize>,
 
     /// Change a value of the config first, as in `run`; may be given several times
@@ -173,6 +173,11 @@ fn print(arguments: &Relax, found: &RelaxReport, written: bool) -> Result<()> {
     Ok(out.flush()?)
 }
 
+/// An eigenvalue to six decimals, or, where these are not four digits of it, with those.
+fn eigenvalue(mev: f64) -> String {
+    if mev.abs() < 1e-3 && mev != 0.0 { format!("{mev:.3e}") } else { format!("{mev:.6}") }
+}
+
 fn print_state(out: &mut impl Write, found: &RelaxReport, which: &str, state: &RelaxedState) -> io::Result<()> {
     let (relaxed, minimum) = (&state.relaxed, &state.minimum);
     let s = &minimum.spectrum;
@@ -203,7 +208,7 @@ fn print_state(out: &mut impl Write, found: &RelaxReport, which: &str, state: &R
         format!("{} negative, {} zero{zero}, {} flat (below {:.1e} meV)", s.negative, s.zero, s.flat, s.floor_mev),
     )?;
     if !s.lowest_mev.is_empty() {
-        let lowest: Vec<String> = s.lowest_mev.iter().map(|e| format!("{e:.6}")).collect();
+        let lowest: Vec<String> = s.lowest_mev.iter().map(|e| eigenvalue(*e)).collect();
         row("lowest", format!("{} meV, zero modes apart", lowest.join(", ")))?;
     }
     Ok(())

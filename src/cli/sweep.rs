@@ -9,7 +9,7 @@ use super::points::{Part, checked, folder, part};
 use super::run::run_one;
 use super::signals::Signals;
 use super::threads::{check_threads, start_threads};
-use super::{Run, UNFINISHED, USAGE, note, worse};
+use super::{Run, UNFINISHED, USAGE, at_least_one, note, worse};
 use crate::config::Loaded;
 use crate::config::sweep::Sweep;
 use crate::landscape::Doubt;
@@ -70,11 +70,11 @@ pub struct Arguments {
     pub index: Option<Part>,
 
     /// How many points run at a time [default: all cores over --threads]
-    #[arg(short, long, value_name = "N")]
+    #[arg(short, long, value_name = "N", value_parser = at_least_one)]
     pub jobs: Option<NonZeroUsize>,
 
     /// Number of threads of a point; results do not depend on it [default: 1, and all cores with --index]
-    #[arg(short, long, value_name = "N")]
+    #[arg(short, long, value_name = "N", value_parser = at_least_one)]
     pub threads: Option<NonZeroUsize>,
 
     /// Run all points anew and replace what is in their folders

@@ -223,7 +223,9 @@ pub(crate) fn create(dir: &Path) -> Result<()> {
     }
     fs::create_dir_all(dir).map_err(|e| {
         let words = format!("the directory cannot be made: {}", reason(&e));
-        io_error(dir, io::Error::new(e.kind(), words))
+        // as under a place that takes no folders
+        let kind = if e.kind() == ErrorKind::NotFound { ErrorKind::NotADirectory } else { e.kind() };
+        io_error(dir, io::Error::new(kind, words))
     })
 }
 
