@@ -84,7 +84,8 @@ pub fn report_of(loaded: &Loaded, problem: &Problem) -> Vec<(&'static str, Strin
     let mut rows = lattice_rows(loaded, problem);
     let mut row = |key: &'static str, value: String| rows.push((key, value));
     let states = [problem.initial.as_slice(), problem.final_state.as_slice()].map(|m| h.energies_mev(m));
-    let numbers = |x: f64| format!("{x:>16.6}");
+    // long numbers and names keep apart too
+    let numbers = |x: f64| format!(" {x:>15.6}");
     row("energies", format!("{:<20}{:>16}{:>16}", "as given (meV)", "initial", "final"));
     for ((term, a), (_, b)) in states[0].iter().zip(&states[1]) {
         row("", format!("{term:<20}{}{}", numbers(*a), numbers(*b)));
@@ -178,7 +179,7 @@ fn lattice(loaded: &Loaded) -> String {
     }
 }
 
-/// "1: 1 a, 480 bonds (1.875 a site), J 1 meV".
+/// "1: 1.0000 × a apart, 480 bonds (1.875 for each site), J 1.000000 meV".
 fn neighbours(lattice: &Lattice, shell: &Shell) -> String {
     let there = lattice.vacant.iter().filter(|vacant| !**vacant).count();
     let [from, to] = shell.exchange_mev;
@@ -189,10 +190,10 @@ fn neighbours(lattice: &Lattice, shell: &Shell) -> String {
     let species = shell.species.as_ref().map_or(String::new(), |[a, b]| format!("{a}–{b}, "));
     let exchange = if from == 0.0 && to == 0.0 { String::new() } else { format!(", J {}", range([from, to])) };
     let dmi = if shell.dmi_mev[1] == 0.0 { String::new() } else { format!(", |D| {}", range(shell.dmi_mev)) };
-    let unit = if lattice.spacing_nm.is_some() { "nm" } else { "a" };
+    let unit = if lattice.spacing_nm.is_some() { "nm" } else { "× a" };
     let a_site = shell.bonds as f64 / there as f64;
     format!(
-        "{}: {species}{:.4} {unit} apart, {} bonds ({a_site:.3} a site){exchange}{dmi}",
+        "{}: {species}{:.4} {unit} apart, {} bonds ({a_site:.3} for each site){exchange}{dmi}",
         shell.number, shell.distance, shell.bonds
     )
 }

@@ -73,6 +73,16 @@ impl<'a> Progress<'a> {
     }
 }
 
+/// How much a search has done of what it may do. That is more as long as it brings news, so once it brings none it may have done several
+/// times what it may.
+fn part_of_work(spent: f64) -> String {
+    if spent < 1.0 {
+        format!("{:.1} % of the work it may do", 1e2 * spent)
+    } else {
+        "all the work it may do is done".into()
+    }
+}
+
 /// An angle in few digits: `0.57`, `1.8e-4`.
 fn angle(radians: f64) -> String {
     if (0.01..1e3).contains(&radians) { format!("{radians:.2}") } else { format!("{radians:.1e}") }
@@ -114,11 +124,10 @@ impl Observer for Progress<'_> {
             bar.set_position((far * PARTS as f64) as u64);
         } else if self.last.elapsed() >= Duration::from_secs(5) {
             self.say(&format!(
-                "{} climbs, the last {} without news ({wanted} end the search); {minima} minima and {passes} passes, images counted; \
-                 {:.1} % of what it may do",
+                "{} climbs, the last {} without news ({wanted} end the search); {minima} minima and {passes} passes, images counted; {}",
                 done.searches,
                 done.quiet,
-                1e2 * spent
+                part_of_work(spent)
             ));
         }
     }
@@ -241,6 +250,13 @@ mod tests {
         assert_eq!(decline(Some(1e-6), &[f64::NAN, 0.0, 1e-1, 1e-2, 1e-3]).left(), None);
         let slow: Vec<f64> = (0..8).map(|k| 0.1 - 1e-6 * f64::from(k)).collect();
         assert_eq!(decline(Some(1e-6), &slow).left(), None);
+    }
+
+    #[test]
+    fn a_search_has_never_done_more_than_it_may() {
+        let said = [0.0123, 0.9996, 1.0, 16.417].map(part_of_work);
+        let done = "all the work it may do is done";
+        assert_eq!(said, ["1.2 % of the work it may do", "100.0 % of the work it may do", done, done]);
     }
 
     #[test]

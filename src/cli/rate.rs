@@ -7,7 +7,7 @@ use super::{Rate, UNFINISHED, USAGE, note, report, worse};
 use crate::config::{Loaded, RatesConfig, load};
 use crate::drive::{self, Outcome, Problem};
 use crate::output::{Picture, StoredOutcome, folder};
-use crate::rates::{Row, Theory, TransitionRow, Way, digits};
+use crate::rates::{Row, Theory, TransitionRate, TransitionRow, Way, digits};
 use crate::record::Lock;
 use anyhow::Result;
 use serde_json::json;
@@ -198,7 +198,7 @@ pub fn lifetimes(outcome: &Outcome) -> Option<String> {
         let one = coldest.temperature_k == hottest.temperature_k;
         Some(if one { at(coldest) } else { format!("{}, {}", at(coldest), at(hottest)) })
     };
-    let passage = line(|r| &r.passage);
+    let passage = line(|r| &r.passage).map(|times| times + &without(transition));
     if transition.saddles == 1 {
         return passage.map(|passage| format!("mean lifetime of the initial state: {passage}"));
     }
@@ -206,6 +206,17 @@ pub fn lifetimes(outcome: &Outcome) -> Option<String> {
     let escape = line(|r| &r.escape).map(|escape| format!("mean escape over the first saddle: {escape}"));
     let told: Vec<String> = passage.into_iter().chain(escape).collect();
     (!told.is_empty()).then(|| told.join("; "))
+}
+
+/// At which temperatures there is no time to the other end, beside those with one.
+fn without(transition: &TransitionRate) -> String {
+    let none = transition.rows.iter().filter(|row| row.passage.ln_lifetime_s().is_none());
+    let kelvin: Vec<String> = none.map(|row| format!("{} K", row.passage.temperature_k)).collect();
+    match &kelvin[..] {
+        [] => String::new(),
+        few if few.len() <= 3 => format!(", none at {}", few.join(", ")),
+        many => format!(", none at {} of {} temperatures", many.len(), transition.rows.len()),
+    }
 }
 
 #[cfg(test)]

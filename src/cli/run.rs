@@ -115,15 +115,19 @@ pub(super) fn run_one(arguments: &Run, signals: &Signals, loaded: &Loaded, direc
             (Error::Stopped, Some((code, word))) => {
                 let (stage, band) = (progress.stage_now().to_string(), progress.band());
                 drop(progress);
-                if let Err(error) = leave_partial(loaded, &problem, band.as_ref(), directory, &stage, word) {
-                    report(&error);
-                }
+                let partial = match leave_partial(loaded, &problem, band.as_ref(), directory, &stage, word) {
+                    Ok(()) => format!("partial results in {place}"),
+                    Err(error) => {
+                        report(&error);
+                        "no partial results were written".into()
+                    }
+                };
                 let on = match (Checkpoint::exists(directory), arguments.resume) {
                     (true, true) => "the same command goes on from there",
                     (true, false) => "--resume goes on from there",
                     (false, _) => "there is no checkpoint to go on from",
                 };
-                say(&format!("{name}: {word} while {stage}; {on}; partial results in {place}"));
+                say(&format!("{name}: {word} while {stage}; {on}; {partial}"));
                 return Ok(code);
             }
             _ => return Err(error.into()),
@@ -158,7 +162,18 @@ pub(super) fn run_one(arguments: &Run, signals: &Signals, loaded: &Loaded, direc
     if let Some(line) = super::rate::lifetimes(&outcome) {
         say(&format!("{name}: {line}"));
     }
+    let temperatures = outcome.rates.as_ref().map_or(0, |rates| rates.settings.temperatures_k.len());
+    if let Some(words) = no_figure(directory, "arrhenius", temperatures, &loaded.config.output.plots) {
+        say(&format!("{name}: {words}"));
+    }
     print(arguments, name, directory)
+}
+
+/// That a figure of times which was asked for, at several temperatures, is not there.
+pub(super) fn no_figure(directory: &Path, figure: &str, temperatures: usize, plots: &[String]) -> Option<String> {
+    let is_there = |ending: &String| directory.join(figure).with_extension(ending).exists();
+    let is_missing = temperatures > 1 && !plots.is_empty() && !plots.iter().any(is_there);
+    is_missing.then(|| format!("there is no figure {figure}: it takes times of 1e-15 to 1e25 s at two temperatures"))
 }
 
 /// What is known of a run that was stopped.

@@ -97,7 +97,13 @@ impl<'a> Medium<'a> {
         let places = || self.lattice.places_of(&(0..n).collect::<Vec<_>>());
         let common = match (&self.moment, &self.saturation) {
             (Some(m), _) => m.values(places(), "site", |m, _| Ok(m.0)),
-            (None, Some(ms)) => ms.values(places(), "site", |ms, i| self.cell_moment(ms, i)),
+            (None, Some(ms)) => ms.values(places(), "site", |ms, i| self.cell_moment(ms, i)).map_err(|e| match e {
+                // what asks for moments is not what is written in the wrong units
+                Error::Invalid { place, message } => {
+                    Error::invalid(place, format!("the moments are of the material's \"Ms\": {message}"))
+                }
+                other => other,
+            }),
             (None, None) => Err(Error::invalid(
                 "",
                 "a field acts on moments: give the material a \"moment\" (\"2 mu_B\") or \"Ms\" (\"800 kA/m\")",
