@@ -4,8 +4,8 @@
 //! Where the number of images changes a line is drawn, and the numbers stand above it. Their numbers are those of `history.csv`.
 
 use super::canvas::{
-    Align, Axis, AxisLabel, BLACK, BLUE, Canvas, Frame, GREY, LinePlot, Look, MM, Marker, Rect, SMALL_PT, Scale,
-    Series, THIN_PT, Text, Ticks, VERMILLION, pattern,
+    Align, Axis, AxisLabel, BLACK, BLUE, Canvas, Frame, GREY, LABEL_PT, LinePlot, Look, MM, Marker, Rect, SMALL_PT,
+    Scale, Series, THIN_PT, Text, Tick, Ticks, VERMILLION, decimal, pattern,
 };
 use super::energy_path_plot::EnergyUnit;
 use super::{Plot, PlotData};
@@ -66,12 +66,13 @@ fn draw(history: &[HistoryRow], look: &Look) -> Result<Canvas> {
 
     changes_of_images(history, &mut canvas, &upper, &lower)?;
     upper.draw_x_ticks(&mut canvas);
-    upper.draw_y(&mut canvas, &left_to_do.y.label)?;
+    upper.draw_y(&mut canvas, fitting(&[&left_to_do.y.label, "Remaining"], upper_height)?)?;
     canvas.outline(upper.rect, THIN_PT, BLACK);
     let obstacles = left_to_do.draw_series(&mut canvas, &upper);
     let above = Frame { rect: Rect { y0: LEGEND, ..upper.rect }, ..upper.clone() };
     left_to_do.draw_legend(&mut canvas, &above, &obstacles)?;
-    lower.draw(&mut canvas, "Iteration", &energy.y.label)?;
+    let short = energy.y.label.replace("Highest image", "Highest");
+    lower.draw(&mut canvas, "Iteration", fitting(&[&energy.y.label, &short], lower.rect.height())?)?;
     energy.draw_series(&mut canvas, &lower);
     Ok(canvas)
 }
@@ -81,7 +82,7 @@ fn left_to_do(history: &[HistoryRow]) -> LinePlot {
     let marked = |s: Series, marker| if history.len() <= FEW { s.marker(marker) } else { s };
     let rotation = Series::line(points(|r| r.largest_predicted_rotation_rad)).colour(BLUE).label("rotation (rad)");
     let torque = Series::line(points(|r| r.max_perpendicular_torque_mev)).colour(VERMILLION).label("torque (meV)");
-    LinePlot::new("Iteration", "Largest left")
+    LinePlot::new("Iteration", "Largest remaining")
         .log_y()
         .legend_above()
         .with(marked(rotation, Marker::Disc))
@@ -99,14 +100,26 @@ fn energy(history: &[HistoryRow]) -> LinePlot {
     plot.with(if history.len() <= FEW { series.marker(Marker::Disc) } else { series })
 }
 
+/// The first of some labels that is no longer than its axis, or the last.
+fn fitting<'a>(labels: &[&'a str], length: f64) -> Result<&'a str> {
+    for label in labels {
+        if Text::new(*label, LABEL_PT).width()? <= length {
+            return Ok(label);
+        }
+    }
+    Ok(labels[labels.len() - 1])
+}
+
 /// From the first iteration to the last, with room on both sides.
 fn iterations(history: &[HistoryRow], most: f64) -> Axis {
     let at = |row: Option<&HistoryRow>| row.map_or(1.0, |r| r.iteration as f64);
     let (first, last) = (at(history.first()), at(history.last()));
     let margin = (0.03 * (last - first)).max(0.5);
     let axis = Axis::linear(first - margin, last + margin, most as usize);
-    let ticks = axis.ticks.into_iter().filter(|t| t.at >= first && t.at <= last && t.at.fract() == 0.0).collect();
-    Axis { ticks, ..axis }
+    let whole = axis.ticks.into_iter().filter(|t| t.at >= first && t.at <= last && t.at.fract() == 0.0);
+    // of few iterations some ticks were between two
+    let counted = |t: Tick| if t.at < 1e5 { Tick { label: decimal(t.at, 0), ..t } } else { t };
+    Axis { ticks: whole.map(counted).collect(), ..axis }
 }
 
 /// Lines where the number of images changes, and the numbers wherever there is room.
