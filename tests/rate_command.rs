@@ -323,5 +323,5 @@ fn a_barrier_below_kt_leaves_the_entry_with_nulls_and_a_reason() {
     let (code, out, _) = spinneb(folder.path(), &["rate", "results/chain", "-T", "3 K", "-T", "10 K", "-T", "20 K"]);
     assert_eq!(code, Some(0));
     assert!(out.contains("none: ΔE is below 1 k_BT"), "{out}");
-    assert!(svg(folder.path()).contains("Barrier below 5 kT"));
+    assert!(svg(folder.path()).contains("Barrier below 5 k\n"));
 }

@@ -168,9 +168,10 @@ impl Hamiltonian {
         self.stiffness
     }
 
-    /// The same of a term alone.
-    fn term_stiffness_mev(&self, term: &Box<dyn EnergyTerm>) -> f64 {
-        let blocks = constant_blocks(&self.lattice, std::slice::from_ref(term));
+    /// The same of the term of this number alone.
+    fn term_stiffness_mev(&self, k: usize) -> f64 {
+        let (term, alone) = (&self.terms[k], &self.terms[k..=k]);
+        let blocks = constant_blocks(&self.lattice, alone);
         stiffness_mev(&blocks, term.is_quadratic(), |m, g| {
             let mut density = vec![0.0; self.sites];
             term.add_gradient(Components::new(m), ComponentsMut::new(g), &mut density, 0..self.sites);
@@ -184,10 +185,10 @@ impl Hamiltonian {
         let rounding = |stiffness: f64, size: f64| ROUNDED * (stiffness * self.sites as f64).max(size);
         let all = largest(&mut configurations.clone().map(|m| size(&self.density(m))));
         let error = rounding(self.stiffness, all);
-        let may_be_hidden = |term: &Box<dyn EnergyTerm>| {
-            let stiffness = self.term_stiffness_mev(term);
+        let may_be_hidden = |k: usize| {
+            let stiffness = self.term_stiffness_mev(k);
             let densities: Vec<Vec<f64>> =
-                configurations.clone().map(|m| super::density_of(term.as_ref(), m)).collect();
+                configurations.clone().map(|m| super::density_of(self.terms[k].as_ref(), m)).collect();
             let own = rounding(stiffness, largest(&mut densities.iter().map(|density| size(density))));
             let rises = |density: &Vec<f64>| {
                 let rise: f64 = density.iter().zip(&densities[0]).map(|(here, first)| here - first).sum();
@@ -195,7 +196,7 @@ impl Hamiltonian {
             };
             stiffness <= error && densities.iter().any(rises)
         };
-        self.terms.iter().any(may_be_hidden).then_some(error)
+        (0..self.terms.len()).any(may_be_hidden).then_some(error)
     }
 
     /// What the Hessian is uncertain by (meV), rounding apart: what long-ranged and custom terms leave out.

@@ -86,10 +86,13 @@ impl Drawing {
     fn number(&mut self, all: bool) -> Result<()> {
         self.leaves.sort_by_key(|(minimum, _)| *minimum);
         let mut taken: Vec<(f64, f64)> = Vec::new();
-        for (minimum, (x, y)) in std::mem::take(&mut self.leaves) {
+        let count = if all { self.leaves.len() } else { LOWEST };
+        for (minimum, (x, y)) in std::mem::take(&mut self.leaves).into_iter().take(count) {
             let text = Text::new(minimum.to_string(), SMALL_PT).align(Align::Centre).colour(BLUE);
             let half = 0.5 * text.width()? + 1.0;
-            if all || (taken.len() < LOWEST && taken.iter().all(|(other, room)| (x - other).abs() > half + room)) {
+            // beside the axis, not on it
+            let x = x.max(self.frame.rect.x0 + half);
+            if all || taken.iter().all(|(other, room)| (x - other).abs() > half + room) {
                 taken.push((x, half));
                 self.canvas.text((x, y + SMALL_PT + 1.0), text)?;
             }

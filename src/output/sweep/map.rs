@@ -9,8 +9,8 @@ use super::plot::longest;
 use super::{Parameter, PointState, SweepIndex};
 use crate::error::Result;
 use crate::output::canvas::{
-    Align, Axis, BLACK, Canvas, Frame, GREY, Look, Rect, SMALL_PT, Scale, THIN_PT, Text, Ticks, WHITE, colour_bar, mix,
-    power_of_ten, sequential,
+    Align, Axis, BLACK, Canvas, Frame, GREY, Look, Obstacles, Point, Rect, SMALL_PT, Scale, THIN_PT, Text, Ticks,
+    WHITE, colour_bar, mix, power_of_ten, sequential,
 };
 use crate::rates::Way;
 use std::collections::BTreeSet;
@@ -36,6 +36,9 @@ pub fn draw_map(index: &SweepIndex, states: &[PointState]) -> Result<Option<Canv
     let Some(map) = Map::of(&parameters[key], states) else { return Ok(None) };
     map.draw(&parameters[key].title, index.keys[key].log).map(Some)
 }
+
+/// A piece of a contour in the figure.
+type Line = [Point; 2];
 
 /// Times over a key and temperature.
 struct Map {
@@ -118,28 +121,31 @@ impl Map {
         }
     }
 
-    /// Contours with their powers of ten beside them, where there is room.
+    /// Contours with their powers of ten on them, where these hide no other.
     fn contours(&self, canvas: &mut Canvas, frame: &Frame, levels: &[i32]) -> Result<()> {
         let inverse: Vec<f64> = self.kelvin.iter().map(|t| 1.0 / t).collect();
+        let place = |(x, beta): (f64, f64)| frame.place((x, 1.0 / beta));
+        let placed = |[a, b]: [(f64, f64); 2]| Some([place(a)?, place(b)?]);
+        let of = |level: &i32| contour(&self.x, &inverse, &self.log10_s, f64::from(*level));
+        let lines: Vec<Vec<Line>> = levels.iter().map(|n| of(n).into_iter().filter_map(placed).collect()).collect();
+        lines.iter().flatten().for_each(|line| canvas.line(line, THIN_PT, BLACK));
         let mut labels: Vec<(Rect, String)> = Vec::new();
         for (n, level) in levels.iter().enumerate() {
-            let place = |(x, beta): (f64, f64)| frame.place((x, 1.0 / beta));
-            let lines: Vec<[(f64, f64); 2]> = contour(&self.x, &inverse, &self.log10_s, f64::from(*level))
-                .into_iter()
-                .filter_map(|[a, b]| Some([place(a)?, place(b)?]))
-                .collect();
-            lines.iter().for_each(|line| canvas.line(line, THIN_PT, BLACK));
             let name = power_of_ten(*level);
             let wide = Text::new(&name, SMALL_PT).width()?;
             let wanted = frame.rect.x0 + frame.rect.width() * if n % 2 == 0 { 0.35 } else { 0.65 };
-            let middle = |[a, b]: &[(f64, f64); 2]| (0.5 * (a.0 + b.0), 0.5 * (a.1 + b.1));
-            let off = |line: &&[(f64, f64); 2]| (middle(line).0 - wanted).abs();
-            let mut places: Vec<&[(f64, f64); 2]> = lines.iter().collect();
+            let middle = |[a, b]: &Line| (0.5 * (a.0 + b.0), 0.5 * (a.1 + b.1));
+            let off = |line: &&Line| (middle(line).0 - wanted).abs();
+            let mut places: Vec<&Line> = lines[n].iter().collect();
             places.sort_by(|p, q| off(p).total_cmp(&off(q)));
+            let mut others = Obstacles::default();
+            let of_others = lines.iter().enumerate().filter(|(k, _)| *k != n).flat_map(|(_, lines)| lines);
+            of_others.for_each(|line| others.add_line(line));
             let (half, high) = (0.5 * wide + 1.5, 0.5 * SMALL_PT + 0.8);
-            let about = |(x, y): (f64, f64)| Rect { x0: x - half, y0: y - high, x1: x + half, y1: y + high };
+            let about = |(x, y): Point| Rect { x0: x - half, y0: y - high, x1: x + half, y1: y + high };
             let is_free = |own: &Rect| {
-                frame.rect.encloses(own) && labels.iter().all(|(other, _): &(Rect, String)| own.is_apart_from(other))
+                let is_apart = labels.iter().all(|(other, _)| own.is_apart_from(other));
+                frame.rect.encloses(own) && is_apart && others.hits(own) == 0
             };
             let own = places.into_iter().map(|line| about(middle(line))).find(is_free);
             labels.extend(own.map(|own| (own, name)));
