@@ -220,7 +220,7 @@ mod tests {
     #[test]
     fn times_that_are_not_drawn_are_counted() {
         let count = |barrier_k| plot(&[lifetimes(Way::Forward, barrier_k)]).series.pop().and_then(|s| s.label);
-        assert_eq!(count(300.0).as_deref(), Some("Barrier below 5 k_{B}T"));
+        assert_eq!(count(240.0).as_deref(), Some("Barrier below 5 k_{B}T"));
         // above 1e25 s: at 5, 10 and 15 K, by both theories
         assert_eq!(count(1500.0).as_deref(), Some("6 points beyond, in rates.csv"));
         assert_eq!(count(20.0).as_deref(), Some("Pale: barrier below 5 k_{B}T"));

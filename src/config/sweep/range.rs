@@ -165,7 +165,8 @@ impl<'de> Deserialize<'de> for Values {
                 let mut list: Vec<Value> = Vec::new();
                 while let Some(value) = s.next_element()? {
                     if let Some(earlier) = list.iter().find(|earlier| is_same(earlier, &value)) {
-                        let [value, earlier] = [&value, earlier].map(|v| quoted(&v.to_string()));
+                        let shown = |v: &Value| v.as_str().map_or_else(|| quoted(&v.to_string()), quoted);
+                        let [value, earlier] = [&value, earlier].map(shown);
                         let as_what = if value == earlier { String::new() } else { format!(", first as {earlier}") };
                         return Err(A::Error::custom(format!("the value {value} is listed twice{as_what}")));
                     }
