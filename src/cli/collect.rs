@@ -133,13 +133,13 @@ pub(super) fn write(index: &SweepIndex, dir: &Path, states: &[PointState], quiet
         }
     }
     index.collect(dir, &files, force)?;
-    let more: Vec<&str> = files[barriers..].iter().map(|file| file.name.as_str()).collect();
-    if !more.is_empty() {
-        say(&format!("{} too", more.join(", ")));
-    }
     match barriers {
         1 => say(&format!("{} is written; no point has a barrier to draw", place.display())),
         _ => say(&format!("{}, barriers.svg and barriers.png are written", place.display())),
+    }
+    let more: Vec<&str> = files[barriers..].iter().map(|file| file.name.as_str()).collect();
+    if !more.is_empty() {
+        say(&format!("{} too", more.join(", ")));
     }
     Ok(())
 }
