@@ -4,13 +4,11 @@
 //! the usual way. So several guesses are relaxed loosely, and the lowest goes on.
 
 use super::Problem;
-use crate::field::Components;
+use crate::geometry::Direction;
 use crate::geometry::matrix::UNIT;
-use crate::geometry::{Direction, vector};
 use crate::path::guess::{
-    Edge, Geodesic, GuessContext, GuessSpec, NoiseSpec, Rotation, Sweep, Ways, best_turn, natural,
+    Edge, Geodesic, GuessContext, GuessSpec, NoiseSpec, Rotation, Sweep, Ways, joining_axes, natural,
 };
-use crate::sphere::{SAME, best_overlap};
 use crate::spins::Spins;
 use crate::stationary::{ALIKE, LOWER};
 use crate::threads::{MADE, apiece};
@@ -65,7 +63,7 @@ pub fn natural_guesses(
 ) -> Vec<(GuessSpec, Option<NoiseSpec>)> {
     let (ways, lattice) = (Ways::between(a, b), problem.hamiltonian.lattice());
     let turn = |axis| (GuessSpec::Rotation(Rotation { axis: Some(axis) }), None);
-    let rotations = rotation_axes(problem, a, b).into_iter().map(turn);
+    let rotations = joining_axes(&problem.hamiltonian, a, b).into_iter().map(turn);
     if !lattice.is_row() {
         return natural(&problem.hamiltonian, a, b, context).into_iter().chain(rotations).collect();
     }
@@ -100,29 +98,6 @@ fn both_senses(
     let least = LOWER * problem.hamiltonian.stiffness_mev();
     let differ = ways.have_a_choice() && (cost(axis) - cost(other)).abs() > least;
     if differ { vec![guess.about(axis), guess.about(other)] } else { vec![guess.about(axis)] }
-}
-
-/// Axes (x, y, z and the symmetry axes, both senses of a half turn) about which a rigid turn brings a to b, all spins to a
-/// degree or so. Where every spin is reversed the geodesic is such a turn already.
-fn rotation_axes(problem: &Problem, a: &Spins, b: &Spins) -> Vec<Direction> {
-    let n = a.sites() as f64;
-    if (0..a.sites()).all(|i| vector::dot(a.get(i), b.get(i)) < -0.99) {
-        return Vec::new();
-    }
-    let mut axes: Vec<Direction> = Vec::new();
-    for v in UNIT.iter().chain(problem.hamiltonian.symmetry_axes()) {
-        let Ok(axis) = Direction::new(*v) else { continue };
-        let [p, q] = [a, b].map(|s| Components::new(s.as_slice()));
-        let (angle, together) = (best_turn(a, b, axis), best_overlap(p, q, axis.vector()));
-        let new = axes.iter().all(|k| vector::norm(vector::cross(k.vector(), *v)) > SAME);
-        if new && together > n - 1e-3 * n.max(10.0) {
-            axes.push(axis);
-            if angle.abs() > std::f64::consts::PI - 1e-3 {
-                axes.push(axis.reversed());
-            }
-        }
-    }
-    axes
 }
 
 /// The axis about which opposite spins turn: of ±x, ±y, ±z and the symmetry axes, the one whose wall halfway is lowest.

@@ -98,16 +98,17 @@ pub fn describe(guess: &GuessSpec, axis: bool) -> String {
         Some(angle) if axis => format!("{name} at {:.0}°", angle.0.to_degrees()),
         _ => name,
     };
+    let rigid = |name: String, rigid: bool| if rigid { format!("{name}, all as one") } else { name };
     match guess {
-        GuessSpec::Sweep(s) => at(about(format!("sweep from {}", s.from), &s.axis), &s.helicity),
-        GuessSpec::Shrink(s) => at(about(guess.name().to_string(), &s.axis), &s.helicity),
+        GuessSpec::Sweep(s) => rigid(at(about(format!("sweep from {}", s.from), &s.axis), &s.helicity), s.rigid),
+        GuessSpec::Shrink(s) => rigid(at(about(guess.name().to_string(), &s.axis), &s.helicity), s.rigid),
         GuessSpec::Droplet(d) => {
             let (of, which) = match d.of {
                 Inside::Final => ("", "from"),
                 Inside::Initial => (" of the initial state", "to"),
             };
             let place = d.center.as_ref().map_or(String::new(), |center| format!(" {which} {center}"));
-            at(about(format!("droplet{of}{place}"), &d.axis), &d.helicity)
+            rigid(at(about(format!("droplet{of}{place}"), &d.axis), &d.helicity), d.rigid)
         }
         GuessSpec::Drift(Drift { onto: Some(place), .. }) => format!("drift onto {place}"),
         GuessSpec::Drift(Drift { direction: Some(direction), .. }) => format!("drift towards {direction}"),

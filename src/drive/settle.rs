@@ -48,7 +48,10 @@ impl<'a> Run<'a, '_> {
         let proves = self.problem.certify && self.problem.seeks_saddles();
         if proves && !self.problem.hamiltonian.lattice().is_row() {
             // away from its tops a band of a film relaxes slowly, and the descents from its saddles are the path
-            let (found, proof) = self.examined(&c, below_mev)?;
+            let (mut found, mut proof) = self.examined(&c, below_mev)?;
+            while let Some(lower) = self.examined_below(&mut c, &found, &proof)? {
+                (found, proof) = lower;
+            }
             if self.lead_over(&mut c, &proof)? {
                 return Ok(Settled { first: c, found, proof });
             }
@@ -93,6 +96,26 @@ impl<'a> Run<'a, '_> {
         Ok((found, proof))
     }
 
+    /// A band whose images lie below the route that it led to, over saddles that are not its own, is relaxed and examined again: what
+    /// connects minima one by one goes its own ways. What is lower, if anything is.
+    fn examined_below(
+        &mut self,
+        c: &mut FirstPath<'a>,
+        found: &[Saddle],
+        proof: &Proof,
+    ) -> Result<Option<(Vec<Saddle>, Proof)>> {
+        let (route_mev, slack) = (self.route_mev(), slack(&c.band));
+        let energy_mev = |pass: &&Pass| pass.saddle.refined.state.energy_mev;
+        let highest = proof.links.iter().max_by(|p, q| energy_mev(p).total_cmp(&energy_mev(q)));
+        let is_own = highest.is_none_or(|pass| is_among(found, pass));
+        if is_own || c.peak_mev() > route_mev - slack || self.is_spent(&c.band) {
+            return Ok(None);
+        }
+        self.relax_resolved(c, TIGHTLY)?;
+        let lower = self.examined(c, route_mev - slack)?;
+        Ok((self.route_mev() < route_mev - slack).then_some(lower))
+    }
+
     /// Relaxes tightly with as many images as it takes, each time with at most `more` evaluations.
     fn relax_resolved(&mut self, c: &mut FirstPath<'a>, more: usize) -> Result<()> {
         loop {
@@ -134,13 +157,12 @@ impl<'a> Run<'a, '_> {
     /// Whether a path is better put together from the stretches of its route: it has minima between its ends, the band is not where
     /// the saddles are or has further maxima, or the route leads elsewhere.
     fn needs_leading(&self, c: &FirstPath<'a>, found: &[Saddle], proof: &Proof) -> bool {
-        let is_own = |pass: &Pass| found.iter().any(|f| is_within(f.spins(), pass.saddle.spins(), SAME));
         self.is_coarse(c)
             || !c.stop.is_converged()
             || proof.links.len() > 1
             || c.top_mev() > over(c, &proof.links)
             || prominent_maxima(c.band.energies_mev(), slack(&c.band)).len() > proof.links.len()
-            || !proof.links.iter().all(is_own)
+            || !proof.links.iter().all(|pass| is_among(found, pass))
     }
 
     /// Puts the path together from stretch to stretch of its route, in the place of the band; says whether it took the place.
@@ -375,6 +397,11 @@ impl<'a> Run<'a, '_> {
             self.relax(c, Goal::Loose, evaluations + 40)?;
         }
     }
+}
+
+/// Whether a pass is that of one of some saddles.
+fn is_among(found: &[Saddle], pass: &Pass) -> bool {
+    found.iter().any(|f| is_within(f.spins(), pass.saddle.spins(), SAME))
 }
 
 /// Whether two maxima of a band are of one plateau.

@@ -5,7 +5,7 @@
 //! parallel ones parallel, antiparallel ones antiparallel.
 
 use crate::field::ComponentsMut;
-use crate::geometry::{Arc, Direction, Vector, angle, vector};
+use crate::geometry::{Arc, Direction, Quaternion, Vector, angle, vector};
 use crate::path::Path;
 use crate::spins::Spins;
 use crate::threads::{MADE, apiece};
@@ -27,6 +27,8 @@ pub enum Way {
     Direct(Arc),
     /// In two halves, by the middle of a turn about the common axis.
     Around([Arc; 2]),
+    /// With all others about an axis, by so much in the end (rad), and what that leaves over along a great circle.
+    Turned(Direction, f64, Arc),
 }
 
 impl Way {
@@ -50,15 +52,22 @@ impl Way {
             Way::Direct(arc) => arc.at(u),
             Way::Around([first, _]) if u <= 0.5 => first.at(2.0 * u),
             Way::Around([_, second]) => second.at(2.0 * u - 1.0),
+            Way::Turned(axis, angle, rest) => {
+                let p = rest.at(u);
+                vector::unit_or(Quaternion::from_axis_angle(*axis, u * angle).rotate(p), p)
+            }
         }
     }
 
-    /// Its length (rad), up to 2π − 3 where it goes around.
+    /// Its length (rad), up to 2π − 3 where it goes around; of a turn and what it leaves over the sum.
     pub fn length(&self) -> f64 {
         match self {
             Way::Rest(_) => 0.0,
             Way::Direct(arc) => arc.angle(),
             Way::Around([first, second]) => first.angle() + second.angle(),
+            Way::Turned(axis, angle, rest) => {
+                angle.abs() * vector::norm(vector::cross(axis.vector(), rest.at(0.0))) + rest.angle()
+            }
         }
     }
 }
@@ -170,6 +179,19 @@ impl<'a> Ways<'a> {
             }
             let up = if vector::dot(line(i), side) < 0.0 { vector::scale(-1.0, line(i)) } else { line(i) };
             Way::new(self.a.get(i), self.b.get(i), axis(i, up))
+        };
+        let sites = 0..self.a.sites();
+        About { rows: Cow::Owned(sites.clone().map(|i| i as u32).collect()), ways: sites.map(way).collect() }
+    }
+
+    /// The ways of all spins that turn as one about an axis, by this angle (rad); frozen ones stay.
+    pub(super) fn turned(&self, axis: Direction, angle: f64, is_frozen: &[bool]) -> About<'_> {
+        let back = Quaternion::from_axis_angle(axis, -angle);
+        let way = |i: usize| {
+            let (p, q) = (self.a.get(i), self.b.get(i));
+            let unturned = back.rotate(q);
+            let rest = || Arc::new(p, vector::unit_or(unturned, unturned), axis);
+            if is_frozen[i] { Way::Rest(p) } else { Way::Turned(axis, angle, rest()) }
         };
         let sites = 0..self.a.sites();
         About { rows: Cow::Owned(sites.clone().map(|i| i as u32).collect()), ways: sites.map(way).collect() }

@@ -38,6 +38,9 @@ pub struct Droplet {
     /// In place of an axis: opposite spins turn by way of the direction at this angle to the way of the front.
     #[serde(default)]
     pub helicity: Option<Angle>,
+    /// All spins turn as one about the axis (that of the best rotation if absent), not each along its own great circle.
+    #[serde(default)]
+    pub rigid: bool,
 }
 
 /// The state that a droplet is of.
@@ -61,7 +64,7 @@ impl Described for Droplet {
 impl FirstGuess for Droplet {
     fn path(&self, a: &Spins, b: &Spins, images: usize, context: &GuessContext) -> Result<Path> {
         let lattice = context.states.lattice;
-        let turning = Turning { axis: self.axis, helicity: self.helicity };
+        let turning = Turning { axis: self.axis, helicity: self.helicity, rigid: self.rigid };
         let front = self.front(&Difference::between(a, b, lattice), lattice)?;
         front.path(self.width, turning, &Ways::between(a, b), images, context)
     }

@@ -10,6 +10,7 @@
 
 use super::GuessContext;
 use super::clock::{About, Ways, clocked, fraction};
+use super::rotation::rotation_between;
 use crate::error::{Error, Result};
 use crate::geometry::{Direction, Vector, vector};
 use crate::lattice::Lattice;
@@ -33,11 +34,14 @@ const ROUNDS: usize = 20;
 const ROW: usize = 256;
 
 /// About what opposite spins turn as a front passes: an axis, or one at an angle to the front's way; the axis of the context if
-/// neither is given.
+/// neither is given. Or all spins turn as one about the axis (that of the best rotation if none is given), as in a [`Rotation`].
+///
+/// [`Rotation`]: super::Rotation
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Turning {
     pub(super) axis: Option<Direction>,
     pub(super) helicity: Option<Angle>,
+    pub(super) rigid: bool,
 }
 
 /// Which halves of a row a front passes over, each from where to where.
@@ -99,6 +103,10 @@ impl<'a> Front<'a> {
                 "opposite spins turn about an \"axis\" or at a \"helicity\" to the front: give one of the two";
             return Err(Error::invalid("helicity", message));
         }
+        if turning.rigid && turning.helicity.is_some() {
+            let message = "all spins turn as one (\"rigid\"), or opposite ones at a \"helicity\" to the front: give one of the two";
+            return Err(Error::invalid("rigid", message));
+        }
         let width = width.map(|width| context.states.lattice.spacings(width).map_err(|e| e.within("width")));
         let about = turning.about(ways, context, &*self.way);
         let lengths = about.lengths();
@@ -138,6 +146,10 @@ fn entered(mut places: Vec<f64>, lengths: &[f64]) -> (Vec<f64>, f64) {
 impl Turning {
     /// The ways of all spins as a front passes that goes `way` at each site.
     fn about<'w>(self, ways: &'w Ways, context: &GuessContext, way: &dyn Fn(usize) -> Vector) -> About<'w> {
+        if self.rigid {
+            let (axis, angle) = rotation_between(ways.a, ways.b, self.axis, context);
+            return ways.turned(axis, angle, &context.states.lattice.is_frozen());
+        }
         let Some(Angle(helicity)) = self.helicity.filter(|_| ways.have_a_choice()) else {
             return ways.about(self.axis.unwrap_or(context.default_axis));
         };

@@ -16,12 +16,14 @@
 use super::difference::Difference;
 use super::drift::{exits, nearest_holes};
 use super::front::{Front, Turning};
+use super::joining::{joining_axes, own_axis};
 use super::outline::Outline;
 use super::translation::moved;
 use super::{
     Drift, Droplet, Edge, Geodesic, GuessContext, GuessSpec, Inside, NoiseSpec, Shrink, Sweep, Translation, Ways,
 };
 use crate::energy::Hamiltonian;
+use crate::geometry::matrix::UNIT;
 use crate::geometry::{Direction, Vector, vector};
 use crate::lattice::Lattice;
 use crate::path::Path;
@@ -43,20 +45,27 @@ const COMPARED: usize = 9;
 enum Sense {
     About(Direction),
     AtHelicity(f64),
+    /// With all others.
+    Rigidly(Direction),
 }
 
 impl Sense {
     fn axis(self) -> Option<Direction> {
-        if let Sense::About(axis) = self { Some(axis) } else { None }
+        if let Sense::About(axis) | Sense::Rigidly(axis) = self { Some(axis) } else { None }
     }
 
     fn helicity(self) -> Option<Angle> {
         if let Sense::AtHelicity(angle) = self { Some(Angle(angle)) } else { None }
     }
 
+    fn is_rigid(self) -> bool {
+        matches!(self, Sense::Rigidly(_))
+    }
+
     fn reversed(self) -> Sense {
         match self {
             Sense::About(axis) => Sense::About(axis.reversed()),
+            Sense::Rigidly(axis) => Sense::Rigidly(axis.reversed()),
             Sense::AtHelicity(angle) => Sense::AtHelicity(if angle > 0.0 { angle - PI } else { angle + PI }),
         }
     }
@@ -76,15 +85,15 @@ enum Route {
 
 impl Route {
     fn guess(&self, sense: Sense, lattice: &Lattice) -> GuessSpec {
-        let (axis, helicity) = (sense.axis(), sense.helicity());
+        let (axis, helicity, rigid) = (sense.axis(), sense.helicity(), sense.is_rigid());
         match self {
             Route::Geodesic => GuessSpec::Geodesic(Geodesic { axis }),
-            Route::Front(side) => GuessSpec::Sweep(Sweep { axis, helicity, ..Edge::From(*side).into() }),
+            Route::Front(side) => GuessSpec::Sweep(Sweep { axis, helicity, rigid, ..Edge::From(*side).into() }),
             Route::Droplet(at, of) => {
                 let center = at.map(|at| lattice.place_of(at));
-                GuessSpec::Droplet(Droplet { center, of: *of, axis, helicity, ..Droplet::default() })
+                GuessSpec::Droplet(Droplet { center, of: *of, axis, helicity, rigid, ..Droplet::default() })
             }
-            Route::Shrink => GuessSpec::Shrink(Shrink { axis, helicity, ..Shrink::default() }),
+            Route::Shrink => GuessSpec::Shrink(Shrink { axis, helicity, rigid, ..Shrink::default() }),
             Route::Translation => GuessSpec::Translation(Translation {}),
             Route::Drift(direction) => GuessSpec::Drift(Drift { direction: Some(*direction), onto: None }),
             Route::Onto(hole) => GuessSpec::Drift(Drift { direction: None, onto: Some(lattice.place_of(*hole)) }),
@@ -92,18 +101,38 @@ impl Route {
     }
 
     /// The senses that may differ.
-    fn senses(&self, h: &Hamiltonian, choice: bool) -> Vec<Sense> {
-        let cartesian = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-        let oblique = h.own_axes().into_iter().filter(|v| v.iter().all(|c| c.abs() < 1.0));
-        let axes = cartesian.into_iter().chain(oblique).flat_map(|v| [v, v.map(|c| -c)]);
-        let axes = axes.filter_map(|v| Direction::new(v).ok()).map(Sense::About);
+    fn senses(&self, axes: &Axes) -> Vec<Sense> {
+        let about = axes.about.iter().copied().map(Sense::About);
         let around = [0.0, PI, FRAC_PI_2, -FRAC_PI_2].map(Sense::AtHelicity);
+        let none = || vec![Sense::About(Direction::X)];
         match self {
-            _ if !choice => vec![Sense::About(Direction::X)],
-            Route::Drift(_) | Route::Onto(_) | Route::Translation => vec![Sense::About(Direction::X)],
-            Route::Geodesic => axes.collect(),
-            _ => axes.chain(around).collect(),
+            Route::Drift(_) | Route::Onto(_) | Route::Translation => none(),
+            Route::Geodesic if axes.about.is_empty() => none(),
+            Route::Geodesic => about.collect(),
+            _ => {
+                let each = if axes.about.is_empty() { none() } else { about.chain(around).collect() };
+                each.into_iter().chain(axes.rigidly.iter().copied().map(Sense::Rigidly)).collect()
+            }
         }
+    }
+}
+
+/// The axes that senses may be about.
+struct Axes {
+    /// Of opposite spins; none where there are no such spins.
+    about: Vec<Direction>,
+    /// Of all spins.
+    rigidly: Vec<Direction>,
+}
+
+impl Axes {
+    fn between(a: &Spins, b: &Spins, h: &Hamiltonian, choice: bool) -> Axes {
+        let oblique = |v: &Vector| v.iter().all(|c| c.abs() < 1.0);
+        let own = own_axis(a, b).map(Direction::vector);
+        let further = h.own_axes().into_iter().chain(own).filter(oblique);
+        let axes = UNIT.into_iter().chain(further).flat_map(|v| [v, v.map(|c| -c)]);
+        let about = if choice { axes.filter_map(|v| Direction::new(v).ok()).collect() } else { Vec::new() };
+        Axes { about, rigidly: joining_axes(h, a, b) }
     }
 }
 
@@ -113,6 +142,7 @@ pub fn natural(h: &Hamiltonian, a: &Spins, b: &Spins, context: &GuessContext) ->
     let lattice = h.lattice();
     let (ways, difference) = (Ways::between(a, b), Difference::between(a, b, lattice));
     let choice = ways.have_a_choice();
+    let axes = Axes::between(a, b, h, choice);
     let mut found: Vec<(GuessSpec, Vec<f64>)> = Vec::new();
     for route in routes(a, b, h, &difference) {
         let front = front(&route.guess(Sense::AtHelicity(0.0), lattice), &ways, &difference, lattice);
@@ -120,12 +150,12 @@ pub fn natural(h: &Hamiltonian, a: &Spins, b: &Spins, context: &GuessContext) ->
             (Route::Geodesic, _) => Ok(Geodesic { axis: sense.axis() }.along(&ways, images, context)),
             (_, None) => route.guess(sense, lattice).member().path(a, b, images, context),
             (_, Some(front)) => {
-                let turning = Turning { axis: sense.axis(), helicity: sense.helicity() };
+                let turning = Turning { axis: sense.axis(), helicity: sense.helicity(), rigid: sense.is_rigid() };
                 front.path(None, turning, &ways, images, context)
             }
         };
         let halfway = |sense: Sense| path(sense, 3).map_or(f64::INFINITY, |path| h.energy_mev(path.image(1)));
-        for sense in best_senses(route.senses(h, choice), h.stiffness_mev(), halfway) {
+        for sense in best_senses(route.senses(&axes), h.stiffness_mev(), halfway) {
             let guess = route.guess(sense, lattice);
             let Ok(energies) = path(sense, COMPARED).map(|path| profile(h, &path)) else { continue };
             let alike = |other: &(GuessSpec, Vec<f64>)| same(&energies, &other.1, h.stiffness_mev());

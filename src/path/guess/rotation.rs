@@ -39,6 +39,8 @@ impl Described for Rotation {
 
 /// Turns and eigenvalues that differ by less, relative to what they are made of, are as good as one another.
 const AS_GOOD: f64 = 1e-9;
+/// One rotation is better than all others where its overlap is larger by this much a spin; sines of half angles below it are no turn.
+const ONE: f64 = 0.01;
 
 /// The angle of the turn about an axis that brings a nearest to b (rad, −π to π). Where no angle is better than another it is a half turn, or none if no spin has a part normal to the axis.
 pub fn best_turn(a: &Spins, b: &Spins, axis: Direction) -> f64 {
@@ -62,22 +64,29 @@ fn turn(a: Components, b: Components, axis: Direction) -> f64 {
     if angle < AS_GOOD - PI { PI } else { angle }
 }
 
+/// Axis and angle of the rotation that brings the free spins of a nearest to b: about an axis, or the best of all.
+pub(super) fn rotation_between(
+    a: &Spins,
+    b: &Spins,
+    axis: Option<Direction>,
+    context: &GuessContext,
+) -> (Direction, f64) {
+    let frozen = context.states.lattice.is_frozen();
+    let is_free = |k: usize| !frozen[k % frozen.len()];
+    let free = |s: &Spins| -> Vec<f64> {
+        s.as_slice().iter().enumerate().filter(|(k, _)| is_free(*k)).map(|(_, x)| *x).collect()
+    };
+    let (p, q) = (free(a), free(b));
+    let (p, q) = (Components::new(&p), Components::new(&q));
+    match axis {
+        Some(axis) => (axis, turn(p, q, axis)),
+        None => best_rotation(p, q, context.default_axis),
+    }
+}
+
 /// Axis and angle of the rotation that brings a nearest to b; of several as good, one near a turn about `axis`.
 fn best_rotation(a: Components, b: Components, axis: Direction) -> (Direction, f64) {
-    let mut s = [[0.0; 3]; 3];
-    for i in 0..a.sites() {
-        for (row, x) in s.iter_mut().zip(a.get(i)) {
-            *row = vector::add(*row, vector::scale(x, b.get(i)));
-        }
-    }
-    let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = s;
-    let horn = [
-        [xx + yy + zz, yz - zy, zx - xz, xy - yx],
-        [yz - zy, xx - yy - zz, xy + yx, zx + xz],
-        [zx - xz, xy + yx, yy - xx - zz, yz + zy],
-        [xy - yx, zx + xz, yz + zy, zz - xx - yy],
-    ];
-    let (values, vectors) = eigen_symmetric(&horn.concat(), 4);
+    let (values, vectors) = rotations(a, b);
     let tolerance = AS_GOOD * a.sites() as f64;
     let best: Vec<&Vec<f64>> =
         values.iter().zip(&vectors).filter(|(v, _)| **v >= values[3] - tolerance).map(|(_, q)| q).collect();
@@ -101,19 +110,40 @@ fn best_rotation(a: Components, b: Components, axis: Direction) -> (Direction, f
     }
 }
 
+/// The axis of the best rotation, and what Σ b·R a is after it; none where another is nearly as good, or none needed.
+pub(super) fn one_rotation(a: &Spins, b: &Spins) -> Option<(Direction, f64)> {
+    let (values, vectors) = rotations(Components::new(a.as_slice()), Components::new(b.as_slice()));
+    if values[3] - values[2] < ONE * a.sites() as f64 {
+        return None;
+    }
+    let [w, x, y, z] = vectors[3][..] else { return None };
+    let sign = if w < 0.0 { -1.0 } else { 1.0 };
+    let axis = Direction::new([sign * x, sign * y, sign * z]).ok()?;
+    (vector::norm([x, y, z]) > ONE).then_some((axis, values[3]))
+}
+
+/// The eigenvalues of Horn's matrix, ascending, and its eigenvectors: what Σ b·R a is after each of these rotations, a quaternion.
+fn rotations(a: Components, b: Components) -> (Vec<f64>, Vec<Vec<f64>>) {
+    let mut s = [[0.0; 3]; 3];
+    for i in 0..a.sites() {
+        for (row, x) in s.iter_mut().zip(a.get(i)) {
+            *row = vector::add(*row, vector::scale(x, b.get(i)));
+        }
+    }
+    let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = s;
+    let horn = [
+        [xx + yy + zz, yz - zy, zx - xz, xy - yx],
+        [yz - zy, xx - yy - zz, xy + yx, zx + xz],
+        [zx - xz, xy + yx, yy - xx - zz, yz + zy],
+        [xy - yx, zx + xz, yz + zy, zz - xx - yy],
+    ];
+    eigen_symmetric(&horn.concat(), 4)
+}
+
 impl FirstGuess for Rotation {
     fn path(&self, a: &Spins, b: &Spins, images: usize, context: &GuessContext) -> Result<Path> {
         let frozen = context.states.lattice.is_frozen();
-        let is_free = |k: usize| !frozen[k % frozen.len()];
-        let free = |s: &Spins| -> Vec<f64> {
-            s.as_slice().iter().enumerate().filter(|(k, _)| is_free(*k)).map(|(_, x)| *x).collect()
-        };
-        let (p, q) = (free(a), free(b));
-        let (p, q) = (Components::new(&p), Components::new(&q));
-        let (axis, angle) = match self.axis {
-            Some(axis) => (axis, turn(p, q, axis)),
-            None => best_rotation(p, q, context.default_axis),
-        };
+        let (axis, angle) = rotation_between(a, b, self.axis, context);
         let back = Quaternion::from_axis_angle(axis, -angle);
         let unturned: Vec<Vector> = (0..a.sites()).map(|i| back.rotate(b.get(i))).collect();
         let rests = ways(a, &Spins::from_vectors(&unturned)?, context.default_axis);

@@ -33,6 +33,9 @@ pub struct Shrink {
     /// In place of an axis: opposite spins turn by way of the direction at this angle to the way of the front.
     #[serde(default)]
     pub helicity: Option<Angle>,
+    /// All spins turn as one about the axis (that of the best rotation if absent), not each along its own great circle.
+    #[serde(default)]
+    pub rigid: bool,
 }
 
 impl Described for Shrink {
@@ -44,7 +47,7 @@ impl Described for Shrink {
 impl FirstGuess for Shrink {
     fn path(&self, a: &Spins, b: &Spins, images: usize, context: &GuessContext) -> Result<Path> {
         let lattice = context.states.lattice;
-        let turning = Turning { axis: self.axis, helicity: self.helicity };
+        let turning = Turning { axis: self.axis, helicity: self.helicity, rigid: self.rigid };
         let ways = Ways::between(a, b);
         self.front(&ways, &Difference::between(a, b, lattice), lattice)?
             .path(self.width, turning, &ways, images, context)

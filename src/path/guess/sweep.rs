@@ -108,11 +108,14 @@ pub struct Sweep {
     /// In place of an axis: opposite spins turn by way of the direction at this angle to the way of the front.
     #[serde(default)]
     pub helicity: Option<Angle>,
+    /// All spins turn as one about the axis (that of the best rotation if absent), not each along its own great circle.
+    #[serde(default)]
+    pub rigid: bool,
 }
 
 impl From<Edge> for Sweep {
     fn from(from: Edge) -> Sweep {
-        Sweep { from, width: None, axis: None, helicity: None }
+        Sweep { from, width: None, axis: None, helicity: None, rigid: false }
     }
 }
 
@@ -132,7 +135,7 @@ impl FirstGuess for Sweep {
 impl Sweep {
     /// The path along ways that are known.
     pub(crate) fn along(&self, ways: &Ways, images: usize, context: &GuessContext) -> Result<Path> {
-        let turning = Turning { axis: self.axis, helicity: self.helicity };
+        let turning = Turning { axis: self.axis, helicity: self.helicity, rigid: self.rigid };
         self.front(ways, context.states.lattice)?.path(self.width, turning, ways, images, context)
     }
 
