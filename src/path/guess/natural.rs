@@ -20,7 +20,8 @@ use super::joining::{joining_axes, own_axis};
 use super::outline::Outline;
 use super::translation::moved;
 use super::{
-    Drift, Droplet, Edge, Geodesic, GuessContext, GuessSpec, Inside, NoiseSpec, Shrink, Sweep, Translation, Ways,
+    Drift, Droplet, Edge, FirstGuess, Geodesic, GuessContext, GuessSpec, Inside, NoiseSpec, Rotation, Shrink, Sweep,
+    Translation, Ways,
 };
 use crate::energy::Hamiltonian;
 use crate::geometry::matrix::UNIT;
@@ -109,10 +110,8 @@ impl Route {
             Route::Drift(_) | Route::Onto(_) | Route::Translation => none(),
             Route::Geodesic if axes.about.is_empty() => none(),
             Route::Geodesic => about.collect(),
-            _ => {
-                let each = if axes.about.is_empty() { none() } else { about.chain(around).collect() };
-                each.into_iter().chain(axes.rigidly.iter().copied().map(Sense::Rigidly)).collect()
-            }
+            _ if axes.about.is_empty() => none(),
+            _ => about.chain(around).collect(),
         }
     }
 }
@@ -121,18 +120,24 @@ impl Route {
 struct Axes {
     /// Of opposite spins; none where there are no such spins.
     about: Vec<Direction>,
-    /// Of all spins.
+    /// Of all spins as one.
     rigidly: Vec<Direction>,
+    /// The highest energy as they turn so all at once (meV).
+    at_once_mev: f64,
 }
 
 impl Axes {
-    fn between(a: &Spins, b: &Spins, h: &Hamiltonian, choice: bool) -> Axes {
+    fn between(a: &Spins, b: &Spins, h: &Hamiltonian, choice: bool, context: &GuessContext) -> Axes {
         let oblique = |v: &Vector| v.iter().all(|c| c.abs() < 1.0);
         let own = own_axis(a, b).map(Direction::vector);
         let further = h.own_axes().into_iter().chain(own).filter(oblique);
         let axes = UNIT.into_iter().chain(further).flat_map(|v| [v, v.map(|c| -c)]);
         let about = if choice { axes.filter_map(|v| Direction::new(v).ok()).collect() } else { Vec::new() };
-        Axes { about, rigidly: joining_axes(h, a, b) }
+        let rigidly = joining_axes(h, a, b);
+        let turn = |axis: &Direction| Rotation { axis: Some(*axis) }.path(a, b, COMPARED, context).ok();
+        let tops = rigidly.iter().filter_map(turn).map(|path| highest(&profile(h, &path)));
+        let at_once_mev = tops.fold(f64::INFINITY, f64::min);
+        Axes { about, rigidly, at_once_mev }
     }
 }
 
@@ -142,7 +147,7 @@ pub fn natural(h: &Hamiltonian, a: &Spins, b: &Spins, context: &GuessContext) ->
     let lattice = h.lattice();
     let (ways, difference) = (Ways::between(a, b), Difference::between(a, b, lattice));
     let choice = ways.have_a_choice();
-    let axes = Axes::between(a, b, h, choice);
+    let axes = Axes::between(a, b, h, choice, context);
     let mut found: Vec<(GuessSpec, Vec<f64>)> = Vec::new();
     for route in routes(a, b, h, &difference) {
         let front = front(&route.guess(Sense::AtHelicity(0.0), lattice), &ways, &difference, lattice);
@@ -155,18 +160,24 @@ pub fn natural(h: &Hamiltonian, a: &Spins, b: &Spins, context: &GuessContext) ->
             }
         };
         let halfway = |sense: Sense| path(sense, 3).map_or(f64::INFINITY, |path| h.energy_mev(path.image(1)));
-        for sense in best_senses(route.senses(&axes), h.stiffness_mev(), halfway) {
+        let best = |senses: Vec<Sense>| best_senses(senses, h.stiffness_mev(), halfway);
+        let rigid =
+            if front.is_some() { axes.rigidly.iter().copied().map(Sense::Rigidly).collect() } else { Vec::new() };
+        for sense in best(route.senses(&axes)).into_iter().chain(best(rigid)) {
             let guess = route.guess(sense, lattice);
             let Ok(energies) = path(sense, COMPARED).map(|path| profile(h, &path)) else { continue };
+            // where a wall costs more than all spins at once, there is no place for one
+            if sense.is_rigid() && highest(&energies) > axes.at_once_mev {
+                continue;
+            }
             let alike = |other: &(GuessSpec, Vec<f64>)| same(&energies, &other.1, h.stiffness_mev());
             if !found.iter().any(alike) {
                 found.push((guess, energies));
             }
         }
     }
-    let highest = |(_, energies): &(GuessSpec, Vec<f64>)| energies.iter().copied().fold(f64::MIN, f64::max);
     let is_geodesic = |guess: &GuessSpec| matches!(guess, GuessSpec::Geodesic(_));
-    found.sort_by(|p, q| is_geodesic(&q.0).cmp(&is_geodesic(&p.0)).then(highest(p).total_cmp(&highest(q))));
+    found.sort_by(|p, q| is_geodesic(&q.0).cmp(&is_geodesic(&p.0)).then(highest(&p.1).total_cmp(&highest(&q.1))));
     let noise = NoiseSpec { amplitude: Angle(NOISE), seed: 5 };
     let coherent = |guess: &GuessSpec| is_geodesic(guess) && choice && !difference.is_spot();
     found.into_iter().map(|(guess, _)| (guess.clone(), (!coherent(&guess)).then_some(noise))).collect()
@@ -228,6 +239,10 @@ fn best_senses(senses: Vec<Sense>, stiffness: f64, energy: impl Fn(Sense) -> f64
 /// The energies of the images between the ends (meV).
 fn profile(h: &Hamiltonian, path: &Path) -> Vec<f64> {
     (1..path.images() - 1).map(|k| h.energy_mev(path.image(k))).collect()
+}
+
+fn highest(energies: &[f64]) -> f64 {
+    energies.iter().copied().fold(f64::MIN, f64::max)
 }
 
 fn same(p: &[f64], q: &[f64], stiffness: f64) -> bool {
