@@ -235,6 +235,27 @@ fn an_antiferromagnet_stays_antiparallel_in_a_sweep_too_behind_and_before_the_wa
 }
 
 #[test]
+fn spins_at_120_degrees_stay_so_in_a_wide_wall_in_which_all_turn_as_one() {
+    let chirality = |period: f64| state(&format!(r#"{{"spiral": {{"axis": [0, 0, 1], "period": {period}}}}}"#), 60);
+    let (a, b) = (chirality(3.0), chirality(-3.0));
+    // of three neighbours: nothing where they are at 120°, three where they are parallel
+    let sum = |spins: &Spins, i: usize| {
+        let three = (i..i + 3).map(|i| spins.get(i)).fold([0.0; 3], vector::add);
+        vector::norm(three)
+    };
+    let largest = |guess: &str| {
+        let p = path(guess, &a, &b, 21);
+        let each = (0..21).map(|k| p.spins(k)).map(|spins| (0..58).map(|i| sum(&spins, i)).fold(0.0, f64::max));
+        each.fold(0.0, f64::max)
+    };
+    assert!(largest(r#"{"sweep": {"from": "left", "width": 30}}"#) > 0.9);
+    assert!(largest(r#"{"sweep": {"from": "left", "width": 30, "rigid": true}}"#) < 0.25);
+    let both = r#"{"sweep": {"from": "left", "rigid": true, "helicity": "90 deg"}}"#;
+    let refused = try_path(both, &a, &b, 5, &Chain::open(60).resolve().unwrap()).unwrap_err();
+    assert!(refused.contains("rigid"), "{refused}");
+}
+
+#[test]
 fn the_common_axis_is_the_given_one_unless_an_opposite_spin_lies_along_it() {
     let (up, down) = (z(4, 1.0), z(4, -1.0));
     assert_eq!(common_axis(&up, &down, Direction::Y), Direction::Y);

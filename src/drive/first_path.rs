@@ -67,22 +67,27 @@ impl<'a> FirstPath<'a> {
     }
 }
 
-/// Why a path was not the one.
-pub fn rejection(c: &FirstPath, best: &FirstPath, scale: f64) -> RejectedPath {
+/// Why a path was not the one, where that one passes no higher than this above its first image (meV).
+pub fn rejection(c: &FirstPath, best: &FirstPath, best_mev: f64, scale: f64) -> RejectedPath {
     let found = c.stationary(scale);
     let barrier_mev = Some(c.followed_mev.unwrap_or(c.barrier_mev(scale)));
     let negative_modes = found.map(|f| f.refined.index());
-    let lower = c.followed_mev.map_or(0.0, |mev| best.barrier_mev(scale) - mev);
+    let lower = c.followed_mev.map_or(0.0, |mev| best_mev - mev);
     let reason = match found {
         Some(f) if f.refined.index() > 1 => "its top is a saddle of higher index".to_string(),
-        Some(_) if lower > LOWER * best.barrier_mev(scale) => {
+        Some(_) if lower > LOWER * best_mev => {
             format!("followed from end to end, it passes {lower:.1e} meV lower, but could not be proven")
         }
         Some(_) if c.followed_mev.is_some() => {
             format!("followed from end to end, it passes no lower than \"{}\"", best.name)
         }
         Some(_) => format!("its saddle is not below that of \"{}\"", best.name),
-        None if c.peak_mev() < best.barrier_mev(scale) => "no saddle was found at its top".to_string(),
+        None if c.peak_mev() < best_mev => {
+            format!(
+                "after {} evaluations its images lie lower, but no saddle is known at its top",
+                c.band.evaluations()
+            )
+        }
         None => format!("its top lies above the path \"{}\" after {} evaluations", best.name, c.band.evaluations()),
     };
     RejectedPath { guess: c.name.clone(), barrier_mev, negative_modes, reason }

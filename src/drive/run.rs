@@ -139,7 +139,8 @@ impl<'a, 'o> Run<'a, 'o> {
         let firsts = self.first_paths()?;
         let (mut best, others) = self.best_of(firsts)?;
         let scale = self.tools.scales.stiffness_mev;
-        let mut rejected: Vec<RejectedPath> = others.iter().map(|c| rejection(c, &best.first, scale)).collect();
+        let mut rejected: Vec<RejectedPath> =
+            others.iter().map(|c| rejection(c, &best.first, best.seen_mev(), scale)).collect();
         let mut search = self.search(&mut best, &mut rejected)?;
         let (links, rates) = (&best.proof.links, self.problem.rates.as_ref());
         let symmetry = links.first().zip(rates).map(|(first, rates)| {

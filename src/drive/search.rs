@@ -24,7 +24,7 @@ use crate::stationary::{RELAXED, STRIDE, relax_to_minimum};
 const SPINS: f64 = 1e7;
 const FLOPS: f64 = 1e9;
 /// And so many times as much while searches bring news.
-const WITH_NEWS: usize = 8;
+pub(super) const WITH_NEWS: usize = 8;
 /// Climbs are made side by side as long as they take no more than so many times that, a second or so.
 const TOGETHER: f64 = 10.0;
 

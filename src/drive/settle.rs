@@ -5,6 +5,7 @@ use super::first_path::FirstPath;
 use super::relaxation::{Goal, LOOSELY, TIGHTLY, height, image_levels, prominent_maxima, refined};
 use super::report::Proof;
 use super::run::{FEWEST_IMAGES, Run};
+use super::search::WITH_NEWS;
 use super::settled::Settled;
 use crate::band::Band;
 use crate::error::Result;
@@ -49,9 +50,14 @@ impl<'a> Run<'a, '_> {
         if proves && !self.problem.hamiltonian.lattice().is_row() {
             // away from its tops a band of a film relaxes slowly, and the descents from its saddles are the path
             let (mut found, mut proof) = self.examined(&c, below_mev)?;
+            // each round of it is news
+            let (now, own) = (self.problem.evaluator().evaluated(), self.evaluated());
+            let most = self.most_evaluations;
+            self.most_evaluations = most.min(now.evaluations.saturating_add(own.evaluations.saturating_mul(WITH_NEWS)));
             while let Some(lower) = self.examined_below(&mut c, &found, &proof)? {
                 (found, proof) = lower;
             }
+            self.most_evaluations = most;
             if self.lead_over(&mut c, &proof)? {
                 return Ok(Settled { first: c, found, proof });
             }
@@ -113,7 +119,9 @@ impl<'a> Run<'a, '_> {
         }
         self.relax_resolved(c, TIGHTLY)?;
         let lower = self.examined(c, route_mev - slack)?;
-        Ok((self.route_mev() < route_mev - slack).then_some(lower))
+        // a proof is not given up for one that lacks something; the search finds the lower route in the graph
+        let is_as_good = lower.1.doubts.is_empty() || !proof.doubts.is_empty();
+        Ok((is_as_good && self.route_mev() < route_mev - slack).then_some(lower))
     }
 
     /// Relaxes tightly with as many images as it takes, each time with at most `more` evaluations.

@@ -45,6 +45,7 @@ def sweep(
     *,
     axis: Direction | None = None,
     helicity: str | None = None,
+    rigid: bool | None = None,
     width: Extent | None = None,
 ) -> Guess:
     """A front enters from a side (left, right or any direction), from the center, from all edges or corners.
@@ -59,12 +60,15 @@ def sweep(
     helicity
         In place of an axis: opposite spins turn by way of the direction at this angle to the way of the
         front.
+    rigid
+        All spins turn as one about the axis (that of the best rotation if absent), not each along its own
+        great circle.
     width
         Its width in sites; four times δ of the material if absent.
 
     In a config: ``{"sweep": {"from": "left", "width": 4}}``
     """
-    return Guess("sweep", {"from": as_direction(from_), "axis": as_direction(axis), "helicity": helicity, "width": width})
+    return Guess("sweep", {"from": as_direction(from_), "axis": as_direction(axis), "helicity": helicity, "rigid": rigid, "width": width})
 
 
 def shrink(
@@ -72,6 +76,7 @@ def shrink(
     axis: Direction | None = None,
     center: Sequence[Extent] | None = None,
     helicity: str | None = None,
+    rigid: bool | None = None,
     width: Extent | None = None,
 ) -> Guess:
     """A round front closes on a point: a skyrmion shrinks to nothing.
@@ -85,12 +90,15 @@ def shrink(
     helicity
         In place of an axis: opposite spins turn by way of the direction at this angle to the way of the
         front.
+    rigid
+        All spins turn as one about the axis (that of the best rotation if absent), not each along its own
+        great circle.
     width
         Width of the front in sites; four times δ of the material if absent.
 
     In a config: ``{"shrink": {"center": [5.5, 0]}}``
     """
-    return Guess("shrink", {"axis": as_direction(axis), "center": center, "helicity": helicity, "width": width})
+    return Guess("shrink", {"axis": as_direction(axis), "center": center, "helicity": helicity, "rigid": rigid, "width": width})
 
 
 def drift(
@@ -128,6 +136,7 @@ def droplet(
     helicity: str | None = None,
     of: Literal["initial"] | Literal["final"] | None = None,
     radius: Extent | None = None,
+    rigid: bool | None = None,
     width: Extent | None = None,
 ) -> Guess:
     """A droplet of the final state grows from a point, such as a corner, or one of the initial state shrinks
@@ -151,7 +160,7 @@ def droplet(
 
     In a config: ``{"droplet": {"center": [0, 0], "radius": 1}}``
     """
-    return Guess("droplet", {"axis": as_direction(axis), "center": center, "helicity": helicity, "of": of, "radius": radius, "width": width})
+    return Guess("droplet", {"axis": as_direction(axis), "center": center, "helicity": helicity, "of": of, "radius": radius, "rigid": rigid, "width": width})
 
 
 def rotation(

@@ -43,3 +43,32 @@ pub fn joining_axes(h: &Hamiltonian, a: &Spins, b: &Spins) -> Vec<Direction> {
     }
     axes
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Quaternion, Vector};
+
+    fn turned(spins: &[Vector], axis: Direction, angle: f64) -> Spins {
+        let turn = Quaternion::from_axis_angle(axis, angle);
+        Spins::from_vectors(&spins.iter().map(|v| turn.rotate(*v)).collect::<Vec<_>>()).unwrap()
+    }
+
+    #[test]
+    fn states_that_one_rotation_joins_name_its_axis_and_those_of_one_line_none() {
+        let at = |angle: f64| [libm::cos(angle), libm::sin(angle), 0.0];
+        let thirds = [0.3, 0.3 + 2.0 * PI / 3.0, 0.3 - 2.0 * PI / 3.0].map(at);
+        let a = Spins::from_vectors(&thirds).unwrap();
+        // of a reversal in the plane the normal; of the other chirality an axis in the plane
+        for axis in [Direction::Z, Direction::new([0.6, 0.8, 0.0]).unwrap()] {
+            let found = own_axis(&a, &turned(&thirds, axis, PI)).unwrap();
+            assert!(vector::norm(vector::cross(found.vector(), axis.vector())) < 1e-9, "{axis}");
+        }
+        let found = own_axis(&a, &turned(&thirds, Direction::Y, 1.0)).unwrap();
+        assert!(vector::norm(vector::sub(found.vector(), Direction::Y.vector())) < 1e-9);
+        assert_eq!(own_axis(&a, &a), None);
+        let line = [at(0.4), at(0.4 + PI), at(0.4)];
+        let up = Spins::from_vectors(&line).unwrap();
+        assert_eq!(own_axis(&up, &turned(&line, Direction::Z, PI)), None);
+    }
+}
