@@ -62,7 +62,7 @@ def sweep(
         front.
     rigid
         All spins turn as one about the axis (that of the best rotation if absent), not each along its own
-        great circle.
+        great circle. Default: false.
     width
         Its width in sites; four times δ of the material if absent.
 
@@ -92,7 +92,7 @@ def shrink(
         front.
     rigid
         All spins turn as one about the axis (that of the best rotation if absent), not each along its own
-        great circle.
+        great circle. Default: false.
     width
         Width of the front in sites; four times δ of the material if absent.
 
@@ -155,6 +155,9 @@ def droplet(
         Which state it is of: the final one grows from the point, the initial one shrinks to it.
     radius
         What turns together, in spacings; 0 if absent.
+    rigid
+        All spins turn as one about the axis (that of the best rotation if absent), not each along its own
+        great circle. Default: false.
     width
         Width of the front in sites; four times δ of the material if absent.
 
