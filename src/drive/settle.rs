@@ -119,9 +119,7 @@ impl<'a> Run<'a, '_> {
         }
         self.relax_resolved(c, TIGHTLY)?;
         let lower = self.examined(c, route_mev - slack)?;
-        // a proof is not given up for one that lacks something; the search finds the lower route in the graph
-        let is_as_good = lower.1.doubts.is_empty() || !proof.doubts.is_empty();
-        Ok((is_as_good && self.route_mev() < route_mev - slack).then_some(lower))
+        Ok((self.route_mev() < route_mev - slack).then_some(lower))
     }
 
     /// Relaxes tightly with as many images as it takes, each time with at most `more` evaluations.
