@@ -7,12 +7,12 @@
 
 use super::rates::ALONE;
 use super::run::Run;
-use super::survey::{Lifetimes, Survey, Told};
+use super::survey::{Lifetime, Lifetimes, Survey, Told};
 use crate::band::Band;
 use crate::energy::Evaluator;
 use crate::error::Result;
 use crate::landscape::{Aim, Effort, KINDS, Landscape, Minimum, Pass, Searched, Settings, search};
-use crate::rates::{LEAST_BARRIER, NetworkTime, RateSettings, Rates, Symmetry, TransitionRate, Way, digits};
+use crate::rates::{LEAST_BARRIER, NetworkTime, RateSettings, Rates, Symmetry, TransitionRate, Way, ZeroModes, digits};
 use crate::record::Count;
 use crate::units::K_B;
 use crate::words::number;
@@ -151,13 +151,18 @@ fn hottest(h: Evaluator, settings: &RateSettings, links: &[Pass]) -> Option<f64>
     held.max_by(f64::total_cmp)
 }
 
-/// From one end to the other.
+/// From one end to the other. None where a state slides: its places are minima, of which the network need not have what joins them.
 fn times(found: &Lifetimes, way: Way) -> Vec<NetworkTime> {
     let rows = found.rows.iter().filter(|row| row.from == way.name() && row.to.is_some());
-    let time = |row: &super::survey::Lifetime| NetworkTime {
-        temperature_k: row.temperature_k,
-        ln_time_s: row.ln_time_s,
-        known_within: row.known_within,
+    let slides = |kelvin: f64| {
+        let zeros = found.saddles.iter().flatten().flat_map(|rate| &rate.at(kelvin).minimum_zeros);
+        zeros.into_iter().any(ZeroModes::slides)
+    };
+    let time = |row: &Lifetime| match slides(row.temperature_k) {
+        true => NetworkTime { temperature_k: row.temperature_k, ln_time_s: [None; 2], known_within: None },
+        false => {
+            NetworkTime { temperature_k: row.temperature_k, ln_time_s: row.ln_time_s, known_within: row.known_within }
+        }
     };
     rows.map(time).collect()
 }
