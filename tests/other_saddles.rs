@@ -13,10 +13,15 @@ const KELVIN: f64 = 8.0;
 
 /// One spin, z easy and x hard, in a field along y (T): it turns over y, or over −y.
 fn turned(tesla: f64, effort: &str) -> Outcome {
+    in_field([0.0, tesla, 0.0], effort)
+}
+
+/// In any field (T).
+fn in_field([x, y, z]: [f64; 3], effort: &str) -> Outcome {
     let config = format!(
         r#"{{"material": {{"name": "one spin", "moment": "{MOMENT} mu_B", "energy": [
             {{"anisotropy": {{"K": "{EASY} meV", "axis": [0, 0, 1]}}}}, {{"anisotropy": {{"K": "-{HARD} meV", "axis": [1, 0, 0]}}}}]}},
-        "lattice": {{"chain": {{"sites": 1}}}}, "energy": [{{"zeeman": {{"B": ["0 T", "{tesla} T", "0 T"]}}}}],
+        "lattice": {{"chain": {{"sites": 1}}}}, "energy": [{{"zeeman": {{"B": ["{x} T", "{y} T", "{z} T"]}}}}],
         "initial": {{"uniform": {{"direction": [0, 0, 1]}}}}, "final": {{"uniform": {{"direction": [0, 0, -1]}}}},
         "search": {{"effort": "{effort}"}}, "rates": {{"temperatures": ["{KELVIN} K"], "damping": {DAMPING}}}}}"#
     );
@@ -60,6 +65,20 @@ fn the_time_of_the_network_is_over_the_saddle_on_the_other_side_too() {
         let known = transition.rows[0].passage.known_within.unwrap().ln();
         assert_eq!(is_told, both - own > known, "{tesla} T: {:?}", outcome.warnings);
     }
+}
+
+#[test]
+fn both_ways_have_the_equilibrium_of_the_two_minima() {
+    let outcome = in_field([0.0, 2.0, 0.5], "normal");
+    let ways = &outcome.rates.as_ref().unwrap().transitions;
+    let [network, own] = [0, 1].map(|which| {
+        let ln_time = |way: usize| match which {
+            0 => ways[way].network[0].ln_time_s[1].unwrap(),
+            _ => -ways[way].rows[0].passage.ln_langer_per_s.unwrap(),
+        };
+        ln_time(0) - ln_time(1)
+    });
+    assert!(own.abs() > 0.1 && (network - own).abs() < 1e-6, "{network} {own}");
 }
 
 #[test]

@@ -40,8 +40,8 @@ pub struct NetworkTimes {
 }
 
 impl Run<'_, '_> {
-    /// Of a proven path over these passes, all looked for by the run's own effort. None where no rates are asked for, or nothing is looked
-    /// for, or the two ends are places of one state.
+    /// Of a proven path over these passes. None where no rates are asked for, or nothing is looked for, or the two ends are places of one
+    /// state.
     pub(super) fn network(
         &mut self,
         links: &[Pass],
@@ -154,14 +154,14 @@ fn hottest(h: Evaluator, settings: &RateSettings, links: &[Pass]) -> Option<f64>
 /// From one end to the other. None where a state slides: its places are minima, of which the network need not have what joins them.
 fn times(found: &Lifetimes, way: Way) -> Vec<NetworkTime> {
     let rows = found.rows.iter().filter(|row| row.from == way.name() && row.to.is_some());
-    let slides = |kelvin: f64| {
-        let zeros = found.saddles.iter().flatten().flat_map(|rate| &rate.at(kelvin).minimum_zeros);
-        zeros.into_iter().any(ZeroModes::slides)
-    };
-    let time = |row: &Lifetime| match slides(row.temperature_k) {
-        true => NetworkTime { temperature_k: row.temperature_k, ln_time_s: [None; 2], known_within: None },
-        false => {
-            NetworkTime { temperature_k: row.temperature_k, ln_time_s: row.ln_time_s, known_within: row.known_within }
+    let time = |row: &Lifetime| {
+        let kelvin = row.temperature_k;
+        let mut zeros = found.saddles.iter().flatten().flat_map(|rate| &rate.at(kelvin).minimum_zeros);
+        let slides = zeros.any(ZeroModes::slides);
+        NetworkTime {
+            temperature_k: kelvin,
+            ln_time_s: row.ln_time_s.map(|ln| ln.filter(|_| !slides)),
+            known_within: row.known_within.filter(|_| !slides),
         }
     };
     rows.map(time).collect()
