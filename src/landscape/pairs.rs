@@ -13,13 +13,16 @@ use std::collections::BTreeMap;
 /// A pair that was tried k times counts as (1 + k)⁴ times as far.
 const TIRED: i32 = 4;
 
+/// What pairs share that are images of each other by symmetry: the orbits of the two, and the square of their distance.
+pub(super) type Alike = ([usize; 2], i64);
+
 /// What is known of pairs of minima.
 #[derive(Debug, Default)]
 pub(super) struct Pairs {
     /// Squares of distances of minimum k from all others, as far as they were asked for; NaN where they were not.
     apart: Vec<Vec<f64>>,
-    /// How often each was tried, it or an image of it by symmetry: the orbits of the two, and the square of their distance.
-    tried: BTreeMap<([usize; 2], i64), usize>,
+    /// How often each was tried, it or an image of it by symmetry.
+    tried: BTreeMap<Alike, usize>,
 }
 
 /// The square of a distance that counts a pair as further apart with every try.
@@ -59,7 +62,7 @@ impl Landscape<'_> {
     }
 
     /// What pairs share that are images of each other by symmetry.
-    fn alike(&self, pair: [usize; 2], squared: f64) -> ([usize; 2], i64) {
+    pub(super) fn alike(&self, pair: [usize; 2], squared: f64) -> Alike {
         let [a, b] = pair.map(|k| self.orbit(k));
         ([a.min(b), a.max(b)], (squared / SAME).round() as i64)
     }

@@ -40,27 +40,29 @@ pub enum Effort {
     None,
     /// Until 8 searches in a row brought no news.
     Quick,
-    /// Until 24 searches in a row brought no news, and 16 more for each saddle that was found, up to 100.
+    /// Until 24 searches in a row brought no news, and 16 more for each saddle that was found, up to 100, and to 100 more for each time
+    /// that the route became lower.
     #[default]
     Normal,
-    /// Until 400 searches in a row brought no news: on soft films one in sixty leads lower.
+    /// Until 400 searches in a row brought no news, or as many as `normal` waits for: on soft films one in sixty leads lower.
     Thorough,
 }
 
 impl Effort {
-    /// So many searches in a row without news end a search that found so many saddles: where there are many, more may be missing.
-    fn quiet(self, found: usize) -> usize {
+    /// So many searches in a row without news end a search that found so many saddles, and a lower route so many times: where there are
+    /// many, more may be missing.
+    fn quiet(self, found: usize, lowered: usize) -> usize {
         match self {
             Effort::None => 0,
             Effort::Quick => 8,
-            Effort::Normal => (QUIET + 16 * found).min(100),
-            Effort::Thorough => 400,
+            Effort::Normal => (QUIET + 16 * found).min(100 * (1 + lowered)),
+            Effort::Thorough => Effort::Normal.quiet(found, lowered).max(400),
         }
     }
 
     /// As many times as much work may it do as `normal` as it waits longer for news, or as much.
     pub fn works(self) -> usize {
-        (self.quiet(1) / Effort::Normal.quiet(1)).max(1)
+        (self.quiet(1, 0) / Effort::Normal.quiet(1, 0)).max(1)
     }
 
     /// And so many for each pass that is known, where all are looked for.
@@ -111,11 +113,13 @@ impl Aim {
         }
     }
 
-    /// So many searches in a row without news end the search, which brought news so often.
-    fn quiet(self, effort: Effort, found: usize, land: &Landscape) -> usize {
+    /// So many searches in a row without news end the search, which brought news so often, and a lower route.
+    fn quiet(self, effort: Effort, [found, lowered]: [usize; 2], land: &Landscape) -> usize {
         match self {
-            Aim::Route(..) => effort.quiet(found),
-            Aim::All(_) | Aim::Below(_) => effort.quiet(1).max(effort.a_pass() * land.passes_below(self.top_mev(land))),
+            Aim::Route(..) => effort.quiet(found, lowered),
+            Aim::All(_) | Aim::Below(_) => {
+                effort.quiet(1, 0).max(effort.a_pass() * land.passes_below(self.top_mev(land)))
+            }
         }
     }
 }
@@ -139,6 +143,22 @@ pub struct Settings<'a> {
     pub c: f64,
     /// What first paths need to know.
     pub context: GuessContext<'a>,
+}
+
+impl Settings<'_> {
+    /// Most work of a search that brought no news so many times in a row.
+    fn most(&self, quiet: usize) -> Count {
+        if quiet < FEW { self.most_with_news } else { self.most }
+    }
+
+    /// How many searches more, at most so many, would be made one by one if each took as much as those before and none brought news.
+    fn yet(&self, done: &Searched, worked: Count, at_most: usize) -> usize {
+        let spent = |more: usize| {
+            let times = 1.0 + more as f64 / done.searches.max(1) as f64;
+            times * worked.part_of(self.most(done.quiet + more))
+        };
+        (0..at_most).take_while(|more| spent(*more) < 1.0).count().max(1)
+    }
 }
 
 /// What a search came to.
@@ -179,17 +199,17 @@ pub fn search(
         Aim::Route(..) => Turns::of(vanguard(false), rivals(h.lattice())),
         Aim::All(_) | Aim::Below(_) => Turns::of(vanguard(true), scouts()),
     };
-    let (mut lowest, mut found) = (f64::INFINITY, 0);
+    let (mut lowest, mut found, mut lowered) = (aim.top_mev(land), 0, 0);
     let before = h.evaluated();
     loop {
         let top_mev = aim.top_mev(land);
         if top_mev < lowest - land.tolerance_mev(top_mev) {
-            (lowest, done.quiet) = (top_mev, 0);
+            (lowest, lowered, done.quiet) = (top_mev, lowered + 1, 0);
         }
-        let wanted = aim.quiet(settings.effort, found, land);
+        let wanted = aim.quiet(settings.effort, [found, lowered], land);
         let worked = h.evaluated().since(before);
-        let most = if done.quiet < FEW { settings.most_with_news } else { settings.most };
-        let spent = worked.part_of(most).max(land.kinds() as f64 / settings.most_kinds as f64);
+        let kinds = land.kinds() as f64 / settings.most_kinds as f64;
+        let spent = worked.part_of(settings.most(done.quiet)).max(kinds);
         // what comes to its own stop has not missed the work that it has used up
         done.spent = spent >= 1.0 && done.quiet < wanted;
         tell(&Standing { done, wanted, spent, known: [land.minima().len(), land.edges().len()] });
@@ -203,7 +223,7 @@ pub fn search(
             climbs => worked.part_of(settings.together) / climbs as f64,
         };
         let side_by_side = FEW.min((1.0 / a_climb) as usize).max(1);
-        let count = (side_by_side * settings.shares).min(wanted - done.quiet);
+        let count = settings.yet(&done, worked, side_by_side * settings.shares).min(wanted - done.quiet);
         let (starts, count_as_quiet): (Vec<Vec<f64>>, Vec<bool>) = (0..count).map_while(|_| turns.next(&cut)).unzip();
         if starts.is_empty() {
             break;

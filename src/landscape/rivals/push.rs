@@ -16,7 +16,7 @@ const ONE_SITE: f64 = 0.4;
 /// By how much at most (rad); at least by a stride.
 const MOST: f64 = 2.5;
 
-/// How often each minimum was pushed.
+/// How often each minimum was pushed, it or what a symmetry makes of it.
 #[derive(Debug, Default)]
 pub struct Push {
     pushed: BTreeMap<usize, usize>,
@@ -46,13 +46,14 @@ impl Push {
         let pool = if far.is_empty() || random.random_bool(0.5) { near } else { far };
         let mut best: Option<(f64, usize)> = None;
         for k in pool {
-            let count = self.pushed.get(&k).copied().unwrap_or(0) as f64 + random.random_range(0.0..1.0);
+            let count =
+                self.pushed.get(&cut.land.orbit(k)).copied().unwrap_or(0) as f64 + random.random_range(0.0..1.0);
             if best.is_none_or(|(least, _)| count < least) {
                 best = Some((count, k));
             }
         }
         let (_, k) = best?;
-        *self.pushed.entry(k).or_insert(0) += 1;
+        *self.pushed.entry(cut.land.orbit(k)).or_insert(0) += 1;
         Some(k)
     }
 }
