@@ -41,6 +41,7 @@ mod modules;
 mod network;
 mod other_saddles;
 mod output;
+mod parts;
 mod physics;
 mod plot_command;
 mod rate_command;

@@ -13,7 +13,7 @@ use crate::path::largest_angle;
 use crate::rates::RateSettings;
 use crate::sphere::{IDENTICAL, SAME};
 use crate::spins::Spins;
-use crate::state::{Sense, StateContext, StateSpec};
+use crate::state::{Senses, StateContext, StateSpec};
 use crate::stationary::is_very_dear;
 use crate::words::quoted;
 use std::sync::Arc;
@@ -33,8 +33,8 @@ pub struct States {
     pub initial: Spins,
     /// The final state, where it was wanted.
     pub final_state: Option<Spins>,
-    /// The sense that the initial state has taken, where it had a choice.
-    pub sense: Option<Sense>,
+    /// The senses that the parts of the initial state have taken, where they had a choice.
+    pub senses: Senses,
 }
 
 impl Loaded {
@@ -51,14 +51,14 @@ impl Loaded {
         // before the plan of factors is made, which takes long where these are refused
         let least = config.path.images.0.asked_for().unwrap_or(FEWEST_IMAGES);
         self.affordable(memory::images_bytes(least, self.lattice.sites), Some(least))?;
-        let States { hamiltonian, scales, initial, final_state, sense } = self.states(true)?;
+        let States { hamiltonian, scales, initial, final_state, senses } = self.states(true)?;
         let final_state = final_state.unwrap_or_else(|| initial.clone());
         if largest_angle(initial.as_slice(), final_state.as_slice()) < IDENTICAL {
             let message = "the initial and the final state are identical: there is no path between them";
             return Err(here(Error::invalid("final", message)));
         }
         let mut problem = Problem::new(hamiltonian, initial, final_state);
-        problem.sense = sense;
+        problem.senses = senses;
         problem.relax_ends = config.relax_ends;
         problem.images = config.path.images.0;
         problem.guess = config.path.guess.clone();
@@ -94,15 +94,17 @@ impl Loaded {
         let scales = Scales::of_terms(&hamiltonian);
         let free = scales.states(&hamiltonian);
         let within = |spec: &StateSpec, key: &str, e: Error| here(e.within(&format!("{key}.{}", spec.name())));
-        let sense = config.initial.sense(&free).map_err(|e| within(&config.initial, "initial", e));
-        let context = StateContext { sense: *sense.as_ref().unwrap_or(&free.sense), ..free };
-        let state = |spec: &StateSpec, key: &str| spec.build(&context).map_err(|e| within(spec, key, e));
-        let initial = sense.and_then(|sense| Ok((sense, state(&config.initial, "initial")?)));
-        let final_state = with_final.then(|| state(&config.final_state, "final")).transpose();
-        let ((sense, initial), final_state) = both(initial, final_state)?;
+        let initial = config.initial.build_with_senses(&free).map_err(|e| within(&config.initial, "initial", e));
+        let taken = initial.as_ref().ok().map(|(_, senses)| senses);
+        let final_state = with_final.then(|| {
+            let context = StateContext { taken, ..free };
+            config.final_state.build(&context).map_err(|e| within(&config.final_state, "final", e))
+        });
+        let final_state = final_state.transpose();
+        let ((initial, senses), final_state) = both(initial, final_state)?;
         let final_state =
             final_state.map(|state| frozen(hamiltonian.lattice(), &initial, state).map_err(here)).transpose()?;
-        Ok(States { hamiltonian, scales, initial, final_state, sense })
+        Ok(States { hamiltonian, scales, initial, final_state, senses })
     }
 
     /// The problem whose ends are both the initial state, with further states beside it (the final one among them) and the rates that
@@ -112,8 +114,8 @@ impl Loaded {
         others: &[StateSpec],
         rates: Option<&RatesConfig>,
     ) -> Result<(Problem, Vec<Spins>, Option<RateSettings>)> {
-        let States { hamiltonian, scales, initial, final_state, sense } = self.states(true)?;
-        let context = StateContext { sense, ..scales.states(&hamiltonian) };
+        let States { hamiltonian, scales, initial, final_state, senses } = self.states(true)?;
+        let context = StateContext { taken: Some(&senses), ..scales.states(&hamiltonian) };
         let mut seeds: Vec<Spins> = final_state.into_iter().collect();
         for (k, spec) in others.iter().enumerate() {
             let here = |e: Error| self.text.locate(e.within(&format!("landscape.states[{k}].{}", spec.name())));
@@ -122,7 +124,7 @@ impl Loaded {
         }
         let rates = self.rates(hamiltonian.lattice(), rates)?;
         let mut problem = Problem::new(hamiltonian, initial.clone(), initial);
-        problem.sense = sense;
+        problem.senses = senses;
         problem.neb = self.config.neb.settings();
         problem.warnings = self.warnings.clone();
         forgo_factors(&mut problem, &scales);

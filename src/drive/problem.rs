@@ -10,7 +10,7 @@ use crate::path::guess::{GuessSpec, NoiseSpec};
 use crate::rates::RateSettings;
 use crate::record::Fingerprint;
 use crate::spins::Spins;
-use crate::state::{Sense, StateContext};
+use crate::state::{Senses, StateContext};
 use crate::words::number;
 
 /// Two states of a lattice, and how to look for the path between them.
@@ -40,8 +40,8 @@ pub struct Problem {
     pub initial: Spins,
     /// Where it ends.
     pub final_state: Spins,
-    /// The sense that states on the way take where they have a choice; the cheapest if absent.
-    pub sense: Option<Sense>,
+    /// The senses that states on the way take where they have a choice; the cheapest where there are none.
+    pub senses: Senses,
     /// Relax both ends to minima first.
     pub relax_ends: bool,
     /// How many images.
@@ -77,7 +77,7 @@ impl Problem {
             control: Control::default(),
             initial,
             final_state,
-            sense: None,
+            senses: Senses::default(),
             relax_ends: true,
             images: Images::Auto,
             guess: None,
@@ -102,7 +102,7 @@ impl Problem {
 
     /// What states on the way need to know.
     pub fn states(&self, scales: &Scales) -> StateContext<'_> {
-        StateContext { sense: self.sense, ..scales.states(&self.hamiltonian) }
+        StateContext { taken: Some(&self.senses), ..scales.states(&self.hamiltonian) }
     }
 
     /// An error where an end, the number of images, a setting or what is asked of rates is none that a run can have.

@@ -4,6 +4,7 @@
 
 mod domain_wall;
 mod file;
+mod parts;
 mod random;
 mod regions;
 mod sense;
@@ -11,6 +12,7 @@ mod size;
 mod skyrmion;
 mod soliton;
 mod spiral;
+mod surroundings;
 mod texture;
 mod uniform;
 mod vectors;
@@ -20,10 +22,11 @@ pub use domain_wall::DomainWall;
 pub use file::File;
 pub use random::Random;
 pub use regions::Regions;
-pub use sense::Sense;
+pub use sense::{Sense, Senses};
 pub use skyrmion::Skyrmion;
 pub use soliton::Soliton;
 pub use spiral::Spiral;
+pub use surroundings::Surroundings;
 pub use uniform::Uniform;
 pub use vectors::Vectors;
 pub use vortex::Vortex;
@@ -32,8 +35,10 @@ use crate::energy::Hamiltonian;
 use crate::error::Result;
 use crate::geometry::{Vector, vector};
 use crate::lattice::Lattice;
+use crate::linalg::slab;
 use crate::registry::family;
 use crate::spins::Spins;
+use parts::Part;
 
 family! {
     /// A state as written in a config.
@@ -63,19 +68,62 @@ pub struct StateContext<'a> {
     /// The energy, for which a state that is free to turn this way or that takes the cheapest one. Without an energy it takes the
     /// first: a wall between opposite domains passes through +u, see [`Sense`].
     pub hamiltonian: Option<&'a Hamiltonian>,
-    /// The sense that another state has taken; states that could take it too do.
+    /// The sense to build a state in that has a choice.
     pub sense: Option<Sense>,
+    /// The senses that another state has taken; parts of states that are there in them too take them.
+    pub taken: Option<&'a Senses>,
+    /// Where a part of a state stands; a state without parts has the whole lattice.
+    pub around: Option<&'a Surroundings>,
 }
 
 impl<'a> StateContext<'a> {
     /// Of a lattice whose energy is not known.
     pub fn new(lattice: &'a Lattice, wall_width_sites: f64) -> StateContext<'a> {
-        StateContext { lattice, wall_width_sites, exchange_mev: 0.0, hamiltonian: None, sense: None }
+        StateContext {
+            lattice,
+            wall_width_sites,
+            exchange_mev: 0.0,
+            hamiltonian: None,
+            sense: None,
+            taken: None,
+            around: None,
+        }
     }
 
     /// Of these senses the one to take.
     fn sense_among(&self, open: &[Sense]) -> Option<Sense> {
         self.sense.filter(|sense| open.contains(sense)).or(open.first().copied())
+    }
+
+    /// Whether a site is one of the state's own.
+    fn is_own(&self, i: usize) -> bool {
+        self.around.is_none_or(|around| around.is_own(i))
+    }
+
+    /// What a state's own sites are all of, in words.
+    fn place(&self) -> &'static str {
+        if self.around.is_some() { "its region" } else { "the lattice" }
+    }
+
+    /// The energy (meV) by which a state that stands here is judged, but for a constant.
+    fn energy_mev(&self, h: &Hamiltonian, vectors: Vec<Vector>) -> f64 {
+        match self.around {
+            None => h.energy_mev(Spins::from_unit_vectors(&vectors).as_slice()),
+            Some(around) => {
+                let all = Spins::from_unit_vectors(&around.surrounded(vectors));
+                slab::sum(&around.counted(h.density(all.as_slice())))
+            }
+        }
+    }
+
+    /// Spins, the frozen ones with a direction put in that direction.
+    fn spins(&self, mut vectors: Vec<Vector>) -> Result<Spins> {
+        for f in &self.lattice.frozen {
+            if let Some(direction) = f.direction {
+                f.sites.iter().for_each(|i| vectors[*i] = direction.vector());
+            }
+        }
+        Spins::from_vectors(&vectors)
     }
 }
 
@@ -92,6 +140,11 @@ pub trait StateBuilder {
         Vec::new()
     }
 
+    /// Whether the energy chooses its size, so that this depends on what is around it.
+    fn is_sized_by_energy(&self) -> bool {
+        false
+    }
+
     /// Whether there may be senses in which it does not exist, as a skyrmion of the wrong helicity, so that the others are left.
     fn may_miss_senses(&self) -> bool {
         false
@@ -101,31 +154,21 @@ pub trait StateBuilder {
 impl StateSpec {
     /// The spins: staggered if wished, frozen spins with a direction put in that direction.
     pub fn build(&self, context: &StateContext) -> Result<Spins> {
-        self.spins(&StateContext { sense: self.sense(context)?, ..*context })
+        Ok(self.build_with_senses(context)?.0)
     }
 
-    /// The sense that it takes where it has a choice: that of the context, or the cheapest.
-    pub fn sense(&self, context: &StateContext) -> Result<Option<Sense>> {
-        let open = self.member().senses(context);
-        match (context.hamiltonian, context.sense) {
-            (_, Some(taken)) if open.contains(&taken) => Ok(Some(taken)),
-            (Some(h), _) if !open.is_empty() => {
-                let state = |k: usize| self.spins(&StateContext { sense: Some(open[k]), ..*context });
-                Ok(Some(open[sense::cheapest(h, open.len(), self.member().may_miss_senses(), state)?]))
-            }
-            _ => Ok(open.first().copied()),
-        }
+    /// The spins, and the senses that those parts have taken which had a choice.
+    pub fn build_with_senses(&self, context: &StateContext) -> Result<(Spins, Senses)> {
+        let (vectors, senses) = parts::settled(self.parts(context)?, context)?;
+        Ok((context.spins(vectors)?, senses))
     }
 
-    /// The spins in the context's sense.
-    fn spins(&self, context: &StateContext) -> Result<Spins> {
-        let mut vectors = self.arranged(context)?;
-        for f in &context.lattice.frozen {
-            if let Some(direction) = f.direction {
-                f.sites.iter().for_each(|i| vectors[*i] = direction.vector());
-            }
+    /// Its parts: states by region, or itself.
+    fn parts(&self, context: &StateContext) -> Result<Vec<Part<'_>>> {
+        match self {
+            StateSpec::Regions(regions) => regions.parts(context),
+            whole => Ok(vec![Part::whole(whole, context.lattice)]),
         }
-        Spins::from_vectors(&vectors)
     }
 
     /// One vector a site in the context's sense, staggered if wished, frozen or not.

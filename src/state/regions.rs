@@ -1,6 +1,6 @@
 //! States side by side, one for each of some regions of the lattice and one for the rest.
 
-use super::sense::Sense;
+use super::parts::{self, DEFAULT, Part};
 use super::{StateBuilder, StateContext, StateSpec};
 use crate::error::{Error, Result};
 use crate::geometry::Vector;
@@ -10,9 +10,6 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
-
-/// The key of what is in no region.
-const DEFAULT: &str = "default";
 
 /// `{"regions": {"default": {"uniform": {"direction": [0, 0, 1]}}, "island": {"uniform": {"direction": [0, 0, -1]}}}}`.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -62,40 +59,35 @@ impl Regions {
         }
         Ok((0..free.len()).filter(|i| free[*i]).collect())
     }
-}
 
-impl StateBuilder for Regions {
-    fn vectors(&self, context: &StateContext) -> Result<Vec<Vector>> {
+    /// The states and their sites, what is in no region first; states by region in a region are parts themselves.
+    pub(super) fn parts(&self, context: &StateContext) -> Result<Vec<Part<'_>>> {
         let Some(rest) = self.states.get(DEFAULT) else {
             let message = "the state of all sites that are in no region is missing: add \"default\": {\"uniform\": …}";
             return Err(Error::invalid("", message));
         };
-        self.sites(DEFAULT, context)?;
-        let within = |name: &str, spec: &StateSpec, e: Error| e.within(&format!("{name}.{}", spec.name()));
-        let mut all = rest.arranged(context).map_err(|e| within(DEFAULT, rest, e))?;
-        for (name, spec) in self.states.iter().filter(|(name, _)| *name != DEFAULT) {
-            let own = spec.arranged(context).map_err(|e| within(name, spec, e))?;
-            self.sites(name, context)?.into_iter().for_each(|i| all[i] = own[i]);
+        let others = self.states.iter().filter(|(name, _)| *name != DEFAULT).map(|(name, spec)| (name.as_str(), spec));
+        let mut parts = Vec::new();
+        for (name, spec) in [(DEFAULT, rest)].into_iter().chain(others) {
+            let (sites, place) = (self.sites(name, context)?, format!("{name}.{}", spec.name()));
+            match spec {
+                StateSpec::Regions(inner) => {
+                    let inner = inner.parts(context).map_err(|e| e.within(&place))?;
+                    parts.extend(inner.into_iter().map(|part| part.inside(name, &place, &sites)));
+                }
+                _ => parts.push(Part { name: name.into(), place, spec, sites }),
+            }
         }
-        Ok(all)
+        Ok(parts)
+    }
+}
+
+impl StateBuilder for Regions {
+    fn vectors(&self, context: &StateContext) -> Result<Vec<Vector>> {
+        Ok(parts::settled(self.parts(context)?, context)?.0)
     }
 
     fn staggered(&self) -> bool {
         false
-    }
-
-    /// Those of all its states: each takes the one that is chosen, if it is open to it, and else its first.
-    fn senses(&self, context: &StateContext) -> Vec<Sense> {
-        let mut open: Vec<Sense> = Vec::new();
-        for sense in self.states.values().flat_map(|spec| spec.member().senses(context)) {
-            if !open.contains(&sense) {
-                open.push(sense);
-            }
-        }
-        open
-    }
-
-    fn may_miss_senses(&self) -> bool {
-        self.states.values().any(|spec| spec.member().may_miss_senses())
     }
 }

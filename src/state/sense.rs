@@ -3,16 +3,16 @@
 //! ```text
 //! u = x̂ made normal to the domains (ŷ where x̂ is within 0.1 of them),  v = from × u:   by way of +u, −u, +v or −v
 //! ```
-//! Energies of the states as built, not relaxed, are compared; of those that are equal to rounding the first is taken. Two
+//! Energies of the states as built, not relaxed, are compared, of each part of a state by itself, see
+//! [`parts`](super::parts); of those that are equal to rounding the first is taken. Two
 //! energies of N sites are equal to rounding where they are no further apart than 32 ε N κ, with the machine's ε = 2⁻⁵² and
 //! κ the largest stiffness or torque that a site can feel ([`Hamiltonian::stiffness_mev`]): what N densities, each a few
 //! products of κ and unit vectors, can be wrong by.
 
 use crate::energy::Hamiltonian;
-use crate::error::{Error, Result};
+use crate::error::Error;
 use crate::geometry::{Direction, Vector, vector};
 use crate::linalg::slab;
-use crate::spins::Spins;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::SeqAccessDeserializer;
 use serde::de::{self, Deserialize, Deserializer, SeqAccess, Visitor};
@@ -45,38 +45,44 @@ impl Sense {
     }
 }
 
-/// Which of these states, each made when it is asked for, has the lowest energy; the first of those equal to rounding. Where some may
-/// be missing, one that cannot be made is none of them, unless none can.
-pub(super) fn cheapest(
-    h: &Hamiltonian,
-    count: usize,
-    may_miss: bool,
-    state: impl Fn(usize) -> Result<Spins>,
-) -> Result<usize> {
-    let mut first = Vec::new();
-    let mut above: Vec<(usize, f64)> = Vec::new();
-    let mut wrong = None;
-    for k in 0..count {
-        let density = match state(k) {
-            Ok(state) => h.density(state.as_slice()),
-            Err(e) if may_miss => {
-                wrong = wrong.or(Some(e));
-                continue;
-            }
-            Err(e) => return Err(e),
-        };
+/// The senses that the parts of a state have taken, by the parts' names.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Senses(Vec<(String, Sense)>);
+
+impl Senses {
+    /// With that of one more part.
+    pub(super) fn add(&mut self, part: &str, sense: Sense) {
+        self.0.push((part.to_owned(), sense));
+    }
+
+    /// That of the first part that had a choice.
+    pub fn first(&self) -> Option<Sense> {
+        self.0.first().map(|(_, sense)| *sense)
+    }
+
+    /// What a part of another state takes over, of the senses that are open to it: that of the part of its name, or the one on which
+    /// all parts agree that have one of these.
+    pub fn among(&self, part: &str, open: &[Sense]) -> Option<Sense> {
+        let mut fit = self.0.iter().filter(|(_, sense)| open.contains(sense));
+        let namesake = fit.clone().find(|(name, _)| name == part);
+        let (_, first) = namesake.or(fit.next())?;
+        (namesake.is_some() || fit.all(|(_, sense)| sense == first)).then_some(*first)
+    }
+}
+
+/// Which of some states, told by the energy densities of the sites that count, has the lowest energy; the first of those equal to
+/// rounding.
+pub(super) fn cheapest(h: &Hamiltonian, densities: impl Iterator<Item = Vec<f64>>) -> usize {
+    let (mut first, mut above) = (Vec::new(), Vec::new());
+    for density in densities {
         if above.is_empty() {
             first.clone_from(&density);
         }
-        above.push((k, slab::sum_of_differences(&density, &first)));
+        above.push(slab::sum_of_differences(&density, &first));
     }
-    let rounding = ROUNDING * f64::EPSILON * h.sites() as f64 * h.stiffness_mev();
-    let lowest = above.iter().map(|(_, e)| *e).fold(f64::INFINITY, f64::min);
-    match (above.into_iter().find(|(_, e)| *e <= lowest + rounding), wrong) {
-        (Some((k, _)), _) => Ok(k),
-        (None, Some(e)) => Err(e),
-        (None, None) => Ok(0),
-    }
+    let rounding = ROUNDING * f64::EPSILON * first.len() as f64 * h.stiffness_mev();
+    let lowest = above.iter().copied().fold(f64::INFINITY, f64::min);
+    above.into_iter().position(|e| e <= lowest + rounding).unwrap_or(0)
 }
 
 /// Reads `"auto"`, which is nothing, or a direction.

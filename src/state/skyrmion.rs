@@ -9,7 +9,7 @@
 //! z. The topological charge (1/4π) ∫ m·(∂ₓm × ∂ᵧm) is the vorticity times the sign of the core's z.
 //!
 //! A width that is left out is that of least energy for the radius. A radius that is left out is the smallest at which the energy of
-//! these profiles has a minimum.
+//! these profiles has a minimum; a minimum in which the core has all of its region, and the wall has left it, is no skyrmion.
 
 use super::domain_wall::width;
 use super::sense::Sense;
@@ -18,6 +18,7 @@ use super::texture::{Around, Texture, auto_or_angle, auto_or_angle_schema, once}
 use super::{StateBuilder, StateContext};
 use crate::energy::Hamiltonian;
 use crate::error::{Error, Result};
+use crate::field::Components;
 use crate::geometry::{Direction, Vector, vector};
 use crate::registry::Described;
 use crate::spins::Spins;
@@ -32,6 +33,8 @@ const NO_TRACE: f64 = 0.01;
 const NARROWEST: f64 = 0.2;
 /// A radius that is looked for is at least this (spacings): smaller ones are single reversed spins.
 const SMALLEST: f64 = 1.0;
+/// One of this radius (spacings) is small, and yet has its whole charge on a lattice.
+const SMALL: f64 = 2.0;
 
 /// `{"skyrmion": {"center": [10, 10], "radius": 3}}`.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
@@ -70,6 +73,7 @@ impl Described for Skyrmion {
 
 /// A skyrmion whose places are known.
 struct Placed<'a> {
+    context: &'a StateContext<'a>,
     texture: Texture<'a>,
     around: Around,
     through: Vector,
@@ -85,14 +89,27 @@ impl Placed<'_> {
         all
     }
 
-    /// The energy (meV).
+    /// The energy (meV) by which it is judged.
     fn energy(&self, h: &Hamiltonian, radius: f64, width: f64) -> f64 {
-        h.energy_mev(Spins::from_unit_vectors(&self.vectors(radius, width)).as_slice())
+        self.context.energy_mev(h, self.vectors(radius, width))
     }
 
     /// The width of least energy for a radius, and that energy.
     fn best_width(&self, h: &Hamiltonian, radius: f64) -> (f64, f64) {
         least(NARROWEST, (2.0 * radius).max(2.0 * NARROWEST), |width| self.energy(h, radius, width))
+    }
+
+    /// Whether it fills its sites, so that its wall is hardly in them: it has less than half the charge that a small one there has.
+    fn fills_its_place(&self, radius: f64, width: f64) -> bool {
+        let own = |corners: &[usize; 3]| corners.iter().all(|i| self.context.is_own(*i));
+        let mut triangles = self.context.lattice.triangles();
+        triangles.corners.retain(own);
+        let charge = |radius: f64, width: f64| {
+            let all = self.texture.spins(&self.around, self.through, |r| theta(r, radius, width));
+            triangles.charge(Components::new(Spins::from_unit_vectors(&all).as_slice())).abs()
+        };
+        let small = charge(SMALL, 0.5 * SMALL);
+        radius > SMALL && small > NO_TRACE && charge(radius, width) < 0.5 * small
     }
 }
 
@@ -134,13 +151,16 @@ impl Skyrmion {
                     Some(width) => placed.energy(h, radius, width),
                     None => placed.best_width(h, radius).1,
                 };
-                let furthest = placed.around.furthest();
-                let radius = first_minimum(SMALLEST, furthest, energy).ok_or_else(|| {
-                    let message = "no size of this skyrmion is stable here, its energy falls all the way to nothing or to the whole \
-                                   lattice: give it a \"radius\"";
+                let size =
+                    first_minimum(SMALLEST, placed.around.furthest, energy).map(|radius| [radius, of_own(radius, h)]);
+                size.filter(|[radius, width]| !placed.fills_its_place(*radius, *width)).ok_or_else(|| {
+                    let message = format!(
+                        "no size of this skyrmion is stable here, its energy falls all the way to nothing or to the whole of {}: give \
+                         it a \"radius\"",
+                        context.place()
+                    );
                     Error::invalid("radius", message)
-                })?;
-                Ok([radius, of_own(radius, h)])
+                })
             }
         }
     }
@@ -151,21 +171,32 @@ impl StateBuilder for Skyrmion {
         let texture = self.texture();
         let (around, through) = (texture.around(context)?, texture.through(context, &self.senses(context)));
         let is_odd = |i: usize| context.lattice.is_odd(i);
-        let mut placed = Placed { texture, around, through, odd: self.staggered.then_some(&is_odd) };
+        let mut placed = Placed { context, texture, around, through, odd: self.staggered.then_some(&is_odd) };
+        if self.radius.is_none() && placed.around.outside() > SMALLEST {
+            let message = format!(
+                "a skyrmion there has its core outside {}, and no size of its own in it: move it inside, or give it a \"radius\"",
+                context.place()
+            );
+            return Err(Error::invalid("center", message));
+        }
         let [radius, width] = self.size(context, &placed)?;
         placed.odd = None;
-        if PI - theta(placed.around.nearest(), radius, width) < NO_TRACE * PI {
+        if PI - theta(placed.around.nearest, radius, width) < NO_TRACE * PI {
             let key = if self.center.is_some() { "center" } else { "radius" };
-            let message = "a skyrmion there lies wholly outside the lattice or between its sites, and leaves no trace in it: move it \
-                           inside or make it larger, or write {\"uniform\": {\"direction\": […]}}";
+            let message = format!(
+                "a skyrmion there lies wholly outside {} or between its sites, and leaves no trace in it: move it inside or make it \
+                 larger, or write {{\"uniform\": {{\"direction\": […]}}}}",
+                context.place()
+            );
             return Err(Error::invalid(key, message));
         }
         // beside its radius all spins are more of its core than of what is around it
-        if placed.around.furthest() < radius {
+        if placed.around.furthest < radius {
             let message = format!(
-                "a skyrmion of {radius:.1} spacings is larger than the lattice, whose furthest site is {:.1} from its centre: make it \
+                "a skyrmion of {radius:.1} spacings is larger than {}, whose furthest site is {:.1} from its centre: make it \
                  smaller, or write {{\"uniform\": {{\"direction\": […]}}}}",
-                placed.around.furthest()
+                context.place(),
+                placed.around.furthest
             );
             return Err(Error::invalid("radius", message));
         }
@@ -178,6 +209,10 @@ impl StateBuilder for Skyrmion {
 
     fn senses(&self, _: &StateContext) -> Vec<Sense> {
         self.texture().senses()
+    }
+
+    fn is_sized_by_energy(&self) -> bool {
+        self.radius.is_none() || self.width.is_none()
     }
 
     fn may_miss_senses(&self) -> bool {

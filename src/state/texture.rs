@@ -31,6 +31,9 @@ pub(super) struct Around {
     /// The distances that there are (spacings), in rising order.
     radii: Vec<f64>,
     places: Vec<Place>,
+    /// The least and the greatest distance of a site of its own.
+    pub(super) nearest: f64,
+    pub(super) furthest: f64,
 }
 
 /// Where a site is: which distance is its own, and cos vφ and sin vφ.
@@ -40,14 +43,9 @@ struct Place {
 }
 
 impl Around {
-    /// The distance of the nearest site (spacings).
-    pub(super) fn nearest(&self) -> f64 {
-        self.radii.first().copied().unwrap_or(f64::INFINITY)
-    }
-
-    /// That of the furthest.
-    pub(super) fn furthest(&self) -> f64 {
-        self.radii.last().copied().unwrap_or(0.0)
+    /// How much further away than the nearest site of all the nearest of its own is (spacings).
+    pub(super) fn outside(&self) -> f64 {
+        self.nearest - self.radii.first().copied().unwrap_or(self.nearest)
     }
 }
 
@@ -68,6 +66,8 @@ impl Texture<'_> {
             ([x, y], (x * x + y * y).sqrt())
         };
         let sites: Vec<([f64; 2], f64)> = (0..lattice.sites).map(away).collect();
+        let own = || sites.iter().enumerate().filter(|(i, _)| context.is_own(*i)).map(|(_, (_, r))| *r);
+        let (nearest, furthest) = (own().fold(f64::INFINITY, f64::min), own().fold(0.0, f64::max));
         let mut radii: Vec<f64> = sites.iter().map(|(_, r)| *r).collect();
         radii.sort_unstable_by(f64::total_cmp);
         radii.dedup();
@@ -77,7 +77,7 @@ impl Texture<'_> {
             Place { ring: radii.partition_point(|ring| *ring < r), turned: [cos, sin] }
         };
         let places = sites.into_iter().map(place).collect();
-        Ok(Around { radii, places })
+        Ok(Around { radii, places, nearest, furthest })
     }
 
     /// The axes x, y and k of the spins.

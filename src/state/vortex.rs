@@ -14,7 +14,6 @@ use super::{StateBuilder, StateContext};
 use crate::error::{Error, Result};
 use crate::geometry::{Direction, Vector};
 use crate::registry::Described;
-use crate::spins::Spins;
 use crate::units::{Angle, Extent, Place};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -76,16 +75,14 @@ impl StateBuilder for Vortex {
         let (around, through) = (texture.around(context)?, texture.through(context, &self.senses(context)));
         let with = |core: f64| texture.spins(&around, through, |r| theta(r, core));
         let given = width(self.radius, context.lattice).map_err(|e| e.within("radius"))?;
-        let furthest = around.furthest().max(2.0 * SMALLEST);
+        let furthest = around.furthest.max(2.0 * SMALLEST);
         let core = match (given, context.hamiltonian) {
             (Some(core), _) => core,
             (None, None) => USUAL,
-            (None, Some(h)) => {
-                least(SMALLEST, furthest, |a| h.energy_mev(Spins::from_unit_vectors(&with(a)).as_slice())).0
-            }
+            (None, Some(h)) => least(SMALLEST, furthest, |a| context.energy_mev(h, with(a))).0,
         };
-        if around.nearest() > core.max(INSIDE) {
-            let message = "a vortex there has its core wholly outside the lattice: move it inside";
+        if around.nearest > core.max(INSIDE) {
+            let message = format!("a vortex there has its core wholly outside {}: move it inside", context.place());
             return Err(Error::invalid("center", message));
         }
         Ok(with(core))
@@ -98,5 +95,9 @@ impl StateBuilder for Vortex {
     fn senses(&self, _: &StateContext) -> Vec<Sense> {
         let [outwards_and_in, around] = [0, 1].map(|k| self.texture().senses().into_iter().skip(2 * k).take(2));
         around.chain(outwards_and_in).collect()
+    }
+
+    fn is_sized_by_energy(&self) -> bool {
+        self.radius.is_none()
     }
 }

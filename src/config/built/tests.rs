@@ -29,7 +29,7 @@ fn problem(config: &Value) -> Problem {
 
 /// The direction on the way that the initial wall of a config took.
 fn chosen(config: &Value) -> Vector {
-    problem(config).sense.unwrap().through
+    problem(config).senses.first().unwrap().through
 }
 
 #[test]
@@ -71,7 +71,7 @@ fn senses_that_are_equal_to_rounding_are_the_usual_one() {
     let mut config = pinned(json!("auto"));
     config["material"]["energy"][2]["dmi"]["D"] = "0 meV".into();
     let auto = problem(&config);
-    assert_eq!(auto.sense.unwrap().through, [1.0, 0.0, 0.0]);
+    assert_eq!(auto.senses.first().unwrap().through, [1.0, 0.0, 0.0]);
     for key in ["initial", "final"] {
         config[key]["domain_wall"]["through"] = json!([1, 0, 0]);
     }
