@@ -12,7 +12,7 @@ use crate::band::Band;
 use crate::energy::Evaluator;
 use crate::error::Result;
 use crate::landscape::{Aim, Effort, KINDS, Landscape, Minimum, Pass, Searched, Settings, search};
-use crate::rates::{LEAST_BARRIER, NetworkTime, RateSettings, Rates, Symmetry, TransitionRate, Way, ZeroModes, digits};
+use crate::rates::{LEAST_BARRIER, NetworkTime, RateSettings, Rates, Row, Symmetry, TransitionRate, Way, ZeroModes, digits};
 use crate::record::Count;
 use crate::units::K_B;
 use crate::words::number;
@@ -98,18 +98,14 @@ impl NetworkTimes {
         }
     }
 
-    /// Where a path's own saddles tell another time, by more than they know it: the temperature at which they differ most, each way.
+    /// Where a path's own saddles tell another time, by more than both are known: the temperature at which they differ most, each way.
     pub fn warnings(&self, rates: &Rates) -> Vec<String> {
         rates.transitions.iter().filter_map(|transition| self.warning(transition)).collect()
     }
 
     fn warning(&self, transition: &TransitionRate) -> Option<String> {
         let both = transition.rows.iter().zip(&transition.network);
-        let off = both.filter_map(|(row, network)| {
-            let (own, all) = (row.passage.ln_lifetime_s()?, network.ln_s()?);
-            let known = row.passage.known_within.map_or(f64::INFINITY, libm::log);
-            ((all - own).abs() > known).then_some((network, all - own))
-        });
+        let off = both.filter_map(|(row, network)| Some((network, apart(&row.passage, network)?)));
         let (network, ln_times) = off.max_by(|(_, p), (_, q)| p.abs().total_cmp(&q.abs()))?;
         Some(format!(
             "{}, at {} K the first passage takes {} s over all {} kinds of saddles that are known, which were looked for up to {:.6} meV above \
@@ -123,6 +119,13 @@ impl NetworkTimes {
             told(ln_times, 2),
         ))
     }
+}
+
+/// ln of the time of a network over that of a path, where they differ by more than both are known.
+fn apart(path: &Row, network: &NetworkTime) -> Option<f64> {
+    let ln_times = network.ln_s()? - path.ln_lifetime_s()?;
+    let [own, all] = [path.known_within, network.known_within].map(|known| known.map_or(f64::INFINITY, libm::log));
+    (ln_times.abs() > libm::hypot(own, all)).then_some(ln_times)
 }
 
 /// How long is looked, after a search for the path itself.
@@ -165,4 +168,22 @@ fn times(found: &Lifetimes, way: Way) -> Vec<NetworkTime> {
         }
     };
     rows.map(time).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_of_a_path_and_of_a_network_differ_where_neither_is_known_so_roughly() {
+        let ln_times = |path: Option<f64>, network: Option<f64>| {
+            let path = Row { ln_langer_per_s: Some(-2.0), known_within: path, ..Row::default() };
+            let network = NetworkTime { temperature_k: 1.0, ln_time_s: [None, Some(4.0)], known_within: network };
+            apart(&path, &network)
+        };
+        assert_eq!(ln_times(Some(2.0), Some(5.0)), Some(2.0));
+        // 2 > ln 5, 2 > ln 4, and 2 < √(ln² 5 + ln² 4)
+        let known = [[Some(2.0), Some(679.0)], [Some(679.0), Some(2.0)], [Some(5.0), Some(4.0)], [Some(2.0), None]];
+        assert!(known.iter().all(|[path, network]| ln_times(*path, *network).is_none()));
+    }
 }
