@@ -52,6 +52,7 @@ mod relax;
 mod result_folder;
 mod resume;
 mod run;
+mod sliding_saddles;
 mod soft_rotations;
 mod start;
 mod states;

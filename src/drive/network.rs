@@ -12,7 +12,9 @@ use crate::band::Band;
 use crate::energy::Evaluator;
 use crate::error::Result;
 use crate::landscape::{Aim, Effort, KINDS, Landscape, Minimum, Pass, Searched, Settings, search};
-use crate::rates::{LEAST_BARRIER, NetworkTime, RateSettings, Rates, Row, Symmetry, TransitionRate, Way, ZeroModes, digits};
+use crate::rates::{
+    LEAST_BARRIER, NetworkTime, RateSettings, Rates, Row, Symmetry, TransitionRate, Way, ZeroModes, digits,
+};
 use crate::record::Count;
 use crate::units::K_B;
 use crate::words::number;

@@ -7,8 +7,9 @@ use crate::energy::Evaluator;
 use crate::landscape::{Doubt, Minimum, Pass, Peak, Saddle};
 use crate::linalg::slab;
 use crate::rates::{
-    APART, Equivalents, Family, KEPT, Kindred, Orbits, RateSettings, Rates, Refusal, SaddleRate, Symmetry, Theory,
-    Turn, Unstable, ZeroKind, ZeroModes, equivalent_saddles, leads_back_by, refused, transitions, unstable_mode,
+    APART, Equivalents, Family, KEPT, Kindred, OneState, Orbits, RateSettings, Rates, Refusal, SaddleRate, Symmetry,
+    Theory, Turn, Unstable, ZeroKind, ZeroModes, equivalent_saddles, leads_back_by, refused, transitions,
+    unstable_mode,
 };
 use crate::sphere::SAME;
 use crate::spins::Spins;
@@ -110,7 +111,7 @@ impl Slides {
         let inside: Vec<&[f64]> = links[..last - 1].iter().map(|l| l.after.spins.as_slice()).collect();
         // of a state, but for what the way back along the path has too
         let kindred = |state: &State, unstable: Option<&Unstable>, own: bool, back: &[&[f64]]| {
-            let like = equivalent_saddles(h.lattice(), along, &state.m, ends, [own, slide[0], slide[1]], KEPT);
+            let like = equivalent_saddles(h.lattice(), along, &state.m, ends, OneState::of(own, slide), KEPT);
             let siblings = family.as_ref().map(|family| family.siblings((state, unstable, 0), own, back));
             (Kindred { alike: like.count, siblings: siblings.unwrap_or_default() }, like)
         };

@@ -36,6 +36,7 @@ mod refusal;
 mod settings;
 mod siblings;
 mod sliding;
+mod switches;
 mod symmetry;
 #[cfg(test)]
 pub mod test_rates;
@@ -54,12 +55,12 @@ pub use refusal::{Refusal, UnknownModes};
 pub use settings::{RateSettings, Theory, checked_damping, checked_g_factor, checked_temperature};
 pub use siblings::{APART, Family, Kin, Sibling, Siblings, Symmetry};
 pub use sliding::{Pinning, Turn};
-pub use symmetry::{Equivalents, KEPT, KEPT_OR_EXCHANGED, equivalent_saddles, leads_back_by};
+pub use symmetry::{Equivalents, KEPT, KEPT_OR_EXCHANGED, OneState, equivalent_saddles, leads_back_by};
 pub use transition::{Kindred, NetworkTime, Orbits, TransitionRate, TransitionRow, transitions};
 pub use unstable::{Unstable, unstable_mode};
 pub use validity::{LOW_BARRIER, ORDER, Validity, digits};
-use zero_modes::zero_modes;
 pub use zero_modes::{ZeroKind, ZeroModes};
+use zero_modes::{ln_cut, zero_modes};
 
 /// Everything about the rates of a path.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,11 +3,12 @@
 use super::passage::{TEN_YEARS_S, blocking_temperature};
 use super::refusal::{conserved_moment, unfit};
 use super::sliding::{Pinning, Turn};
+use super::switches::ln_open;
 use super::validity::{Bath, Fluctuations, Validity, of_cells, warnings};
 use super::wells::{Beside, Found};
 use super::{
     Equivalents, RateSettings, Refusal, Siblings, Symmetry, Theory, Unstable, ZeroModes, crossover_temperature,
-    growth_rate, unstable_mode,
+    growth_rate, ln_cut, unstable_mode,
 };
 use crate::energy::Evaluator;
 use crate::spins::Spins;
@@ -151,6 +152,10 @@ pub struct Regime {
     pub siblings: Siblings,
     /// Where something slides: ln of the states of the minimum that are places of one over those of the saddle.
     pub ln_places: f64,
+    /// Where the minimum on the other side slides: ln of the places of it that the rate leads to, over those of this minimum.
+    pub ln_targets: f64,
+    /// ln of the places of the minimum on the other side that shifts make which keep this one, where the rate leads to one of them.
+    pub ln_beyond: f64,
     /// The turn along which the saddle or a minimum slides.
     pub turn: Option<Turn>,
     /// What the errors hang on, where there is a rate.
@@ -171,6 +176,8 @@ impl Regime {
             equivalents: Equivalents { count: 1, by: "not sought".into() },
             siblings: Siblings::default(),
             ln_places: 0.0,
+            ln_targets: 0.0,
+            ln_beyond: 0.0,
             turn: None,
             validity: None,
             refused: settings.theories.iter().map(|t| (*t, reason.clone())).collect(),
@@ -247,7 +254,8 @@ impl SaddleRate {
     pub fn ln_known_within(&self, temperature_k: f64) -> f64 {
         let regime = self.at(temperature_k);
         let [_, vague] = regime.ln_saddles(temperature_k);
-        regime.validity.map_or(f64::INFINITY, |v| libm::hypot(v.ln_factor(temperature_k), vague))
+        let open = libm::hypot(vague, ln_open(&self.regimes, temperature_k));
+        regime.validity.map_or(f64::INFINITY, |v| libm::hypot(v.ln_factor(temperature_k), open))
     }
 
     fn fill(&mut self, settings: &RateSettings) {
@@ -459,7 +467,9 @@ impl Made<'_> {
                 Err(reason) => return Regime::refused(above_k, self.settings, reason),
             };
             let entropy = 0.5 * (bottom.log_determinant - top.log_determinant);
-            let volumes = top.ln_volume - bottom.ln_volume;
+            let ln_beyond = found.ln_beyond[side];
+            let ln_number = if found.one_of[side] { ln_beyond } else { 0.0 };
+            let volumes = top.ln_volume - bottom.ln_volume - ln_number;
             let prefactor = |frequency_per_s: f64| Prefactor {
                 frequency_per_s,
                 ln_hz: libm::log(frequency_per_s / (2.0 * PI)) + entropy + volumes,
@@ -475,7 +485,9 @@ impl Made<'_> {
                 saddle,
                 vague,
                 uneven: libm::hypot(top.uneven, bottom.uneven),
+                cut: (ln_cut(&top.zeros) - ln_cut(&bottom.zeros)).abs(),
             };
+            let beyond = found.minima[1 - side].as_ref().map_or(0.0, |other| other.ln_places);
             Regime {
                 above_k,
                 htst,
@@ -485,7 +497,9 @@ impl Made<'_> {
                 saddle_zeros: top.zeros.clone(),
                 equivalents: found.equivalents.clone(),
                 siblings: found.siblings.clone(),
-                ln_places: bottom.ln_places - top.ln_places,
+                ln_places: bottom.ln_places - top.ln_places + ln_number,
+                ln_targets: (beyond - bottom.ln_places - ln_number).max(0.0),
+                ln_beyond,
                 turn: found.turn,
                 validity: htst.or(langer).map(|_| validity),
                 refused: frequencies.refused.clone(),

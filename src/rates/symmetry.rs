@@ -6,8 +6,12 @@
 use crate::field::Components;
 use crate::geometry::vector;
 use crate::lattice::Lattice;
-use crate::sphere::SAME;
+use crate::linalg::slab;
+use crate::sphere::{SAME, write_logs};
 use crate::symmetry::{Group, Operation};
+
+/// What of a square lies along a way that leads there.
+const ALONG: f64 = 0.75;
 
 /// How many saddles are alike, and by what.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -24,8 +28,25 @@ pub const KEPT: &[[usize; 2]] = &[[0, 1]];
 /// Themselves, or each the other.
 pub const KEPT_OR_EXCHANGED: &[[usize; 2]] = &[[0, 1], [1, 0]];
 
-/// The saddles (or other states) that operations of the group make of this one by which the minima become these of them. `sliding`:
-/// whether the saddle and each of the minima slide over the lattice, so that what free shifts make of them is one.
+/// What is one state with all its places.
+#[derive(Clone, Copy, Debug)]
+pub struct OneState<'a> {
+    /// Whether the saddle and each of the minima slide over the lattice, so that what free shifts make of them is one.
+    pub slide: [bool; 3],
+    /// Whether all places of each minimum are one, as are those of one that slides.
+    pub minima: [bool; 2],
+    /// Orthonormal fields (3N) along which alone the saddle slides; none where it does along all that move it.
+    pub along: &'a [Vec<f64>],
+}
+
+impl OneState<'_> {
+    /// Of a saddle that slides, or not, between minima that do.
+    pub fn of(saddle: bool, minima: [bool; 2]) -> OneState<'static> {
+        OneState { slide: [saddle, minima[0], minima[1]], minima, along: &[] }
+    }
+}
+
+/// The saddles (or other states) that operations of the group make of this one by which the minima become these of them.
 ///
 /// S: the shifts that keep both minima. Every operation that keeps or exchanges them is one of S after one that is no further shifted than
 /// the shortest of S; so the states alike are those that S makes of the latter's images.
@@ -34,22 +55,23 @@ pub fn equivalent_saddles(
     group: &Group,
     saddle: &[f64],
     minima: [&[f64]; 2],
-    sliding: [bool; 3],
+    one: OneState,
     minima_become: &[[usize; 2]],
 ) -> Equivalents {
     if group.axes().len() > 1 {
         return Equivalents { count: 1, by: "not sought: the energy has no axis".into() };
     }
-    let steps = free_shifts(group, minima, [sliding[1], sliding[2]]);
+    let OneState { slide: sliding, minima: one, along } = one;
+    let steps = free_shifts(group, minima, one);
     let off = |m: &[f64], slides: bool| if slides { SAME + 0.6 * largest_steps(lattice, m) } else { SAME };
     let within = [off(saddle, sliding[0]), off(minima[0], sliding[1]), off(minima[1], sliding[2])];
-    let (mut by, mut kept) = (Vec::new(), vec![saddle.to_vec()]);
+    let (mut by, mut kept) = (Vec::new(), vec![(saddle.to_vec(), along.to_vec())]);
     let operations = || group.classes_within(&steps).skip(1);
     // those that keep both first: they are told of
     for ([a, b], operation) in
         minima_become.iter().flat_map(|ends| operations().map(move |operation| (ends, operation)))
     {
-        let takes = |from: usize, to: usize| match sliding[to + 1] {
+        let takes = |from: usize, to: usize| match one[to] {
             true => slid(group, &steps, &operation.apply(minima[from]), minima[to], within[to + 1]),
             false => group.takes(&operation, minima[from], minima[to], SAME),
         };
@@ -57,9 +79,9 @@ pub fn equivalent_saddles(
             continue;
         }
         let image = operation.apply(saddle);
-        if !kept.iter().any(|state| slid(group, &steps, &image, state, within[0])) {
+        if !kept.iter().any(|(state, along)| slid_along(group, &steps, &image, state, along, within[0])) {
             by.push(operation.to_string());
-            kept.push(image);
+            kept.push((image, along.iter().map(|v| operation.apply_field(v)).collect()));
         }
     }
     // free shifts are in the volumes
@@ -67,7 +89,7 @@ pub fn equivalent_saddles(
     if each(saddle) > 1 {
         by.push(format!("{} shifts of the {}", each(saddle), if lattice.is_row() { "ring" } else { "lattice" }));
     }
-    let count = kept.iter().map(|m| each(m)).sum();
+    let count = kept.iter().map(|(m, _)| each(m)).sum();
     let by = if by.is_empty() { "none found".into() } else { by.join(", ") };
     Equivalents { count, by }
 }
@@ -98,13 +120,19 @@ pub(super) fn free_shifts(group: &Group, minima: [&[f64]; 2], slide: [bool; 2]) 
 }
 
 /// How many of the states that the group makes of one are places of one that slides: those that multiples of free shifts make, and
-/// those between them.
-pub(super) fn states_on_the_way(lattice: &Lattice, group: &Group, m: &[f64], steps: &[usize]) -> usize {
+/// those between them, along these fields if there are any.
+pub(super) fn states_on_the_way(
+    lattice: &Lattice,
+    group: &Group,
+    m: &[f64],
+    along: &[Vec<f64>],
+    steps: &[usize],
+) -> usize {
     let off = SAME + 0.6 * largest_steps(lattice, m);
     let mut kept: Vec<Vec<f64>> = Vec::new();
     for image in group.classes_within(steps).map(|operation| operation.apply(m)) {
         let known = kept.iter().any(|state| slid(group, steps, &image, state, SAME));
-        if !known && slid(group, steps, &image, m, off) {
+        if !known && slid_along(group, steps, &image, m, along, off) {
             kept.push(image);
         }
     }
@@ -130,6 +158,23 @@ pub(super) fn states_along_turn(group: &Group, along: &Group, m: &[f64]) -> usiz
 /// Whether a multiple of shifts takes state a to b: each spin to less than `off` beside it.
 pub(super) fn slid(group: &Group, steps: &[usize], a: &[f64], b: &[f64], off: f64) -> bool {
     group.multiples(steps).any(|shift| group.takes(&shift, a, b, off))
+}
+
+/// Likewise, and what is left between b and the shifted a lies along orthonormal fields (3N) at b, if there are any: a state that slides along
+/// one way is not what lies beside that.
+fn slid_along(group: &Group, steps: &[usize], a: &[f64], b: &[f64], along: &[Vec<f64>], off: f64) -> bool {
+    if along.is_empty() || !group.axes().is_empty() {
+        return slid(group, steps, a, b, off);
+    }
+    group.multiples(steps).any(|shift| {
+        group.takes(&shift, a, b, off) && {
+            let mut rest = vec![0.0; b.len()];
+            write_logs(Components::new(b), Components::new(&shift.apply(a)), &mut rest);
+            let part: f64 = along.iter().map(|v| slab::dot(v, &rest).powi(2)).sum();
+            let whole = slab::dot(&rest, &rest);
+            whole < SAME * SAME || part > ALONG * whole
+        }
+    })
 }
 
 /// How many states multiples of these shifts make of one.

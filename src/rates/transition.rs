@@ -58,7 +58,8 @@ impl Kindred {
 pub struct TransitionRow {
     /// To the other end: one over the mean first-passage time.
     pub passage: Row,
-    /// Over the first saddle, out of the first minimum, whatever follows; where that slides, out of all of its places.
+    /// Over the first saddle and all that shifts make of it, out of the first minimum, whatever follows; where that slides, out of all of its
+    /// places.
     pub escape: Row,
 }
 
@@ -144,13 +145,18 @@ impl<'a> Along<'a> {
 
     /// Over saddle i, onward or back.
     fn ln_rate(&self, onward: bool, i: usize, theory: Theory, t: f64) -> Option<f64> {
+        let rate = if onward { self.onward[i] } else { self.back[i] };
+        Some(rate.ln_rate_per_s(theory, t)? + self.ln_more(onward, i, t))
+    }
+
+    /// ln of the ways over saddles like it over those that its own rate is over.
+    fn ln_more(&self, onward: bool, i: usize, t: f64) -> f64 {
         // saddles count along the path: backward, the minimum that a step on leaves is the one after its saddle
         let side = usize::from(onward != (self.way == Way::Forward));
         let number = if self.way == Way::Forward { i } else { self.onward.len() - 1 - i };
         let rate = if onward { self.onward[i] } else { self.back[i] };
         let [counted, _] = rate.at(t).ln_saddles(t);
-        let more = at(self.orbits, t).ln_more(number, side, counted, K_B * t);
-        Some(rate.ln_rate_per_s(theory, t)? + more)
+        at(self.orbits, t).ln_more(number, side, counted, K_B * t)
     }
 
     /// Of all saddles onward, and back over all but the last: what the passage hangs on.
@@ -165,7 +171,8 @@ impl<'a> Along<'a> {
 
     fn escape(&self, theory: Theory, t: f64) -> Option<f64> {
         let first = *self.parting(t).first().filter(|_| self.doubt.is_none())?;
-        self.ln_rate(true, first, theory, t)
+        let more = self.ln_more(true, first, t).max(self.onward[first].at(t).ln_beyond);
+        Some(self.onward[first].ln_rate_per_s(theory, t)? + more)
     }
 
     /// ln of the factor within which a passage is known: each saddle's error counts as far as the time hangs on it.

@@ -44,6 +44,8 @@ pub struct Validity {
     pub vague: f64,
     /// By how much ½ ln|det'H| differs round the turns along which the states slide.
     pub uneven: f64,
+    /// ln of the ratio of volumes, saddle over minimum, by the hop to the next place over that by the derivative.
+    pub cut: f64,
 }
 
 impl Validity {
@@ -55,7 +57,7 @@ impl Validity {
         let spread = [self.minimum, self.saddle].map(|f| f.factor(thermal));
         let factors = [1.0 + low, weak, spread[0], spread[1], self.top(thermal), 1.0 + 0.5 * self.vague];
         let squares = factors.into_iter().map(|f| libm::log(f) * libm::log(f)).sum::<f64>();
-        (squares + self.uneven * self.uneven).sqrt()
+        (squares + self.uneven * self.uneven + self.cut * self.cut).sqrt()
     }
 
     /// What a top that is flat over k_BT leaves: no more than lies between the two theories.
@@ -320,6 +322,7 @@ mod tests {
                 saddle: calm,
                 vague: 0.0,
                 uneven: 0.0,
+                cut: 0.0,
             };
             libm::exp(validity.ln_factor(kelvin))
         };

@@ -6,8 +6,8 @@ use super::refusal::no_minimum;
 use super::sliding::{Generator, LEAST, Pinning, Slide, Sliding, Turn};
 use super::symmetry::{free_shifts, places, states_along_turn, states_on_the_way};
 use super::{
-    Crossing, Equivalents, Family, KEPT_OR_EXCHANGED, Refusal, Siblings, Symmetry, UnknownModes, Unstable, ZeroModes,
-    equivalent_saddles, growth_rate, zero_modes,
+    Crossing, Equivalents, Family, KEPT_OR_EXCHANGED, OneState, Refusal, Siblings, Symmetry, UnknownModes, Unstable,
+    ZeroModes, equivalent_saddles, growth_rate, zero_modes,
 };
 use crate::energy::Evaluator;
 use crate::linalg::{orthonormal, remove, slab};
@@ -36,6 +36,8 @@ struct Choice {
     sliding: [Sliding; 3],
     /// Of each shift the first multiple that is free.
     steps: Vec<usize>,
+    /// The minimum (1 or 2) that is held while the saddle slides past its places, which shifts make that keep the other minimum.
+    held: Option<usize>,
     /// The turn along which some of them slide.
     turn: Option<Turn>,
     /// Along what each goes nobody knows how far.
@@ -55,6 +57,11 @@ pub(super) struct Found {
     pub minima: [Result<Well, Refusal>; 2],
     pub equivalents: Equivalents,
     pub siblings: Siblings,
+    /// Out of the minimum before the saddle and out of that after it: ln of the places of the other that shifts make which keep this one, of which
+    /// a rate leads to one.
+    pub ln_beyond: [f64; 2],
+    /// Whether the saddles are counted at all of these places, though a rate leads to one.
+    pub one_of: [bool; 2],
     pub turn: Option<Turn>,
 }
 
@@ -77,6 +84,11 @@ pub(super) struct Well {
     pub turn: Option<Turn>,
     /// By how much ½ ln|det'H| differs at most, all round that.
     pub uneven: f64,
+}
+
+/// Whether all places of each minimum are counted as one: of those that slide, and of the one that is held while others do.
+fn one(shifts: [bool; 3], held: Option<usize>) -> [bool; 2] {
+    [1, 2].map(|k| shifts[k] || held == Some(k))
 }
 
 impl<'a> Beside<'a> {
@@ -146,11 +158,12 @@ impl<'a> Beside<'a> {
                 Generator::Turn(_) => turns,
             };
             let sliding = slides.each_mut().map(|slide| slide.at(thermal_mev, &is_free));
-            let minima = [&self.states[1].m[..], &self.states[2].m[..]];
-            let steps = free_shifts(self.group(), minima, [sliding[1].shifts(), sliding[2].shifts()]);
+            let shifts = sliding.each_ref().map(Sliding::shifts);
+            let held = self.held(shifts);
+            let steps = free_shifts(self.group(), self.minima(), one(shifts, held));
             let turn = sliding.iter().find_map(Sliding::turn);
-            // a shift that does not keep both leads to a saddle between other minima, and so does a turn
-            let shifts = sliding.iter().any(Sliding::shifts);
+            // a shift that keeps neither leads to a saddle between other minima, and a turn that does not keep both
+            let shifts = shifts.contains(&true);
             let keep: Vec<bool> =
                 steps.iter().zip(&free).map(|(steps, free)| *free && (*steps == 1 || !shifts)).collect();
             let kept = |turn: &Turn| {
@@ -162,24 +175,39 @@ impl<'a> Beside<'a> {
             let turning = turns && turn.as_ref().is_none_or(kept);
             if keep == free && turning == turns {
                 let unknown = slides.each_ref().map(|slide| slide.unknown(thermal_mev));
-                return Choice { sliding, steps, turn, unknown };
+                return Choice { sliding, steps, held, turn, unknown };
             }
             (free, turns) = (keep, turning);
         }
     }
 
+    fn minima(&self) -> [&[f64]; 2] {
+        [&self.states[1].m, &self.states[2].m]
+    }
+
+    /// The one minimum (1 or 2) that is held while the saddle slides (`shifts`), past places of it which shifts make that keep the other
+    /// minimum. What slides past all of its places has an equal share in each.
+    fn held(&self, shifts: [bool; 3]) -> Option<usize> {
+        let moved = |k: usize| {
+            let steps = free_shifts(self.group(), self.minima(), [k != 1, k != 2]);
+            !shifts[k] && steps.iter().any(|steps| *steps > 1)
+        };
+        let kept = |k: usize| !shifts[k] && !moved(k);
+        if shifts[0] { [1, 2].into_iter().find(|k| moved(*k) && kept(3 - k)) } else { None }
+    }
+
     fn found(&self, choice: &Choice) -> Result<Found, Refusal> {
-        let Choice { sliding, steps, turn, unknown } = choice;
+        let Choice { sliding, steps, held, turn, unknown } = choice;
         if self.h.is_stopped() {
             return Err(Refusal::Stopped);
         }
         let symmetry = self.symmetry.along(*turn);
         let along = &symmetry.exact;
         let shifts = sliding.each_ref().map(Sliding::shifts);
-        let [saddle, before, after] = self.states.each_ref().map(|state| &state.m[..]);
-        let equivalents =
-            equivalent_saddles(self.h.lattice(), along, saddle, [before, after], shifts, KEPT_OR_EXCHANGED);
-        let family = Family::of(self.h, &symmetry, [before, after], [shifts[1], shifts[2]], KEPT_OR_EXCHANGED);
+        let (saddle, minima, one) = (&self.states[0].m, self.minima(), one(shifts, *held));
+        let as_one = OneState { slide: shifts, minima: one, along: &sliding[0].lines(&self.states[0]) };
+        let equivalents = equivalent_saddles(self.h.lattice(), along, saddle, minima, as_one, KEPT_OR_EXCHANGED);
+        let family = Family::of(self.h, &symmetry, minima, one, KEPT_OR_EXCHANGED);
         let own = (&self.states[0], Some(&self.unstable), sliding[0].modes.len());
         let siblings = family.map(|family| family.siblings(own, shifts[0], &[])).unwrap_or_default();
         let free = Some(&steps[..]).filter(|_| shifts.contains(&true));
@@ -187,7 +215,28 @@ impl<'a> Beside<'a> {
             let well = unknown[k].map_or_else(|| self.well(k, &sliding[k], free, along), Err);
             well.map_err(|unknown| Refusal::Volume(NAMES[k], unknown))
         };
-        Ok(Found { saddle: well(0)?, minima: [well(1), well(2)], equivalents, siblings, turn: *turn })
+        let ln_beyond = [1, 2].map(|k| self.ln_beyond(k, shifts));
+        let one_of = [1, 2].map(|k| *held == Some(3 - k));
+        Ok(Found {
+            saddle: well(0)?,
+            minima: [well(1), well(2)],
+            equivalents,
+            siblings,
+            ln_beyond,
+            one_of,
+            turn: *turn,
+        })
+    }
+
+    /// Out of minimum k (1 or 2), where some of the three slide: all places are one of a minimum that slides, and a rate out of one leads to all.
+    fn ln_beyond(&self, k: usize, shifts: [bool; 3]) -> f64 {
+        let other = 3 - k;
+        let steps = free_shifts(self.group(), self.minima(), [k != 1, k != 2]);
+        if shifts[k] || shifts[other] {
+            0.0
+        } else {
+            libm::log(places(self.group(), &self.states[other].m, &steps) as f64)
+        }
     }
 
     /// λ₊ (rad/s) on the way to the saddle's next place by a turn, where the energy along that first has no curvature (of a cosine a quarter of
@@ -236,7 +285,7 @@ impl<'a> Beside<'a> {
         let turned = states_along_turn(self.group(), along, &state.m);
         let (own, kept, alike) = match free {
             Some(steps) if sliding.shifts() => {
-                (number(steps), 1, states_on_the_way(h.lattice(), self.group(), &state.m, steps))
+                (number(steps), 1, states_on_the_way(h.lattice(), self.group(), &state.m, &sliding.lines(state), steps))
             }
             Some(steps) => (1, number(steps), number(steps)),
             None => (1, 1, 1),

@@ -48,6 +48,12 @@ impl ZeroModes {
     }
 }
 
+/// ln of the volume of translations by the hop over that by the derivative: a hop cuts the corner, and a derivative takes sites for a continuum.
+pub fn ln_cut(zeros: &[ZeroModes]) -> f64 {
+    let own = zeros.iter().filter_map(|z| Some(libm::log(z.hop_volume? / z.volume)));
+    own.filter(|ln| ln.is_finite()).sum()
+}
+
 /// What is said of all zero modes of a stationary state: rotations, and how it slides, over so many places of the lattice. An error, in
 /// words, where more modes are flat to rounding than these, so that nobody knows their volume.
 pub fn zero_modes(

@@ -27,8 +27,9 @@
 //! A valley is integrated so from the k_BT on at which the harmonic integral over one place fails (see `pinning`). The top between two places
 //! is the energy half-way to the next, at rest normal to the valley. The hop to the next place must go on from the hop from the one
 //! before: a state as narrow as a spin or two jumps, and each of its places is a state. Nor does a state slide along a way that is mostly
-//! its descent or a zero mode. Which shifts and turns are free: those that keep each minimum beside the saddle that does not itself
-//! slide, a turn to less than k_BT; the others lead to a saddle between other minima. All this is decided at each temperature by itself.
+//! its descent or a zero mode. Which shifts and turns are free: those that keep each minimum beside the saddle that does not itself slide, a turn
+//! to less than k_BT; the others lead to a saddle between other minima. A saddle slides along shifts that keep one minimum, past places of the
+//! other, where that is held, and these share what its valley holds. All this is decided at each temperature by itself.
 
 mod pinning;
 mod valleys;
@@ -87,6 +88,8 @@ pub struct Sliding {
     curvatures_mev: Vec<f64>,
     /// What the volume is made of.
     soft: Vec<Soft>,
+    /// Whether it is held along others.
+    in_part: bool,
     /// Volume from a place to the next, of shifts and of all: by the derivative and by the hop.
     volumes: [[f64; 2]; 2],
 }
@@ -212,6 +215,7 @@ impl Sliding {
             modes: along.valleys.iter().map(|w| w.along.clone()).collect(),
             curvatures_mev: along.valleys.iter().map(|w| w.curvature_mev).collect(),
             soft: ways.iter().enumerate().map(soft).collect(),
+            in_part: false,
             volumes: [both(&is_shift), both(&|_| true)],
         }
     }
@@ -237,6 +241,7 @@ impl Sliding {
             modes: soft.iter().map(|k| along.valleys[*k].along.clone()).collect(),
             curvatures_mev: soft.iter().map(|k| along.valleys[*k].curvature_mev).collect(),
             volumes: [both(&is_shift), both(&|_| true)],
+            in_part: !made.is_empty() && made.len() < along.valleys.len(),
             soft: made,
         }
     }
@@ -244,6 +249,11 @@ impl Sliding {
     /// Whether it slides over the lattice.
     pub fn shifts(&self) -> bool {
         self.soft.iter().any(|s| is_shift(&s.generator))
+    }
+
+    /// The fields (3N) at a state along which alone it slides; none where it does along all that move it.
+    pub fn lines(&self, state: &State) -> Vec<Vec<f64>> {
+        self.modes.iter().filter(|_| self.in_part).map(|mode| state.field(mode)).collect()
     }
 
     /// The turn along which it slides.
