@@ -25,7 +25,7 @@ pub struct Near {
 impl Rival for Near {
     fn start(&mut self, cut: &Cut, random: &mut ChaCha8Rng) -> Option<Vec<f64>> {
         let [a, b] = self.nearest(cut)?;
-        let tries = self.tried.entry(cut.land.alike([a, b], self.apart[b][a])).or_default();
+        let tries = self.tried.entry(alike(cut, [a, b], self.apart[b][a])).or_default();
         *tries += 1;
         let way = any_way(cut, [a, b], *tries - 1, random)?;
         let h = cut.land.evaluator();
@@ -63,7 +63,7 @@ impl Near {
                 if best.is_some_and(|(least, _)| squared >= least) {
                     continue;
                 }
-                let tries = self.tried.get(&cut.land.alike(pair, squared)).copied().unwrap_or(0);
+                let tries = self.tried.get(&alike(cut, pair, squared)).copied().unwrap_or(0);
                 let cost = tired(squared, tries);
                 if best.is_none_or(|(least, _)| cost < least) {
                     best = Some((cost, pair));
@@ -72,6 +72,11 @@ impl Near {
         }
         best.map(|(_, pair)| pair)
     }
+}
+
+/// What pairs share that are tried as one: where all are looked for, none are, as those to start from are one of each kind already.
+fn alike(cut: &Cut, pair: [usize; 2], squared: f64) -> Alike {
+    if cut.ends.is_some() { cut.land.alike(pair, squared) } else { (pair, 0) }
 }
 
 /// The way of the k-th try: all there are by turns, and then any of them with noise.
