@@ -143,7 +143,13 @@ impl<'a> Beside<'a> {
     fn levels_mev(&self, slides: &[Slide; 3]) -> Vec<f64> {
         let turns = slides.iter().filter_map(Slide::turn);
         let turned = turns.flat_map(|turn| slides.iter().map(move |s| s.turned_mev(&turn)));
-        slides.iter().flat_map(Slide::levels_mev).chain(turned).filter(|mev| *mev > 0.0).collect()
+        slides
+            .iter()
+            .flat_map(Slide::levels_mev)
+            .chain(slides[0].tops_mev())
+            .chain(turned)
+            .filter(|mev| *mev > 0.0)
+            .collect()
     }
 
     /// Between two of some levels.
@@ -159,7 +165,8 @@ impl<'a> Beside<'a> {
             };
             let sliding = slides.each_mut().map(|slide| slide.at(thermal_mev, &is_free));
             let shifts = sliding.each_ref().map(Sliding::shifts);
-            let held = self.held(shifts);
+            let goes_past = sliding[0].top_mev() <= thermal_mev;
+            let held = if goes_past { self.held(shifts) } else { None };
             let steps = free_shifts(self.group(), self.minima(), one(shifts, held));
             let turn = sliding.iter().find_map(Sliding::turn);
             // a shift that keeps neither leads to a saddle between other minima, and a turn that does not keep both
@@ -186,7 +193,8 @@ impl<'a> Beside<'a> {
     }
 
     /// The one minimum (1 or 2) that is held while the saddle slides (`shifts`), past places of it which shifts make that keep the other
-    /// minimum. What slides past all of its places has an equal share in each.
+    /// minimum. What slides past all of its places has an equal share in each. Of a saddle that is narrow, held flatly under a high top, each
+    /// place is one beside one of the minimum's as long as k_BT is below that top.
     fn held(&self, shifts: [bool; 3]) -> Option<usize> {
         let moved = |k: usize| {
             let steps = free_shifts(self.group(), self.minima(), [k != 1, k != 2]);

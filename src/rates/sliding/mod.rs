@@ -168,6 +168,11 @@ impl<'a> Slide<'a> {
         own.chain(self.known.values().filter_map(all)).chain(each).collect()
     }
 
+    /// Every height (meV) that was met of a top between two places.
+    pub fn tops_mev(&self) -> impl Iterator<Item = f64> {
+        self.known.values().flat_map(|along| along.by_way.iter().chain(&along.by_valley)).map(|pinning| pinning.top_mev)
+    }
+
     /// The turn along which it may slide.
     pub fn turn(&self) -> Option<Turn> {
         self.ways.iter().find_map(|way| turn_of(&way.generator))
@@ -249,6 +254,12 @@ impl Sliding {
     /// Whether it slides over the lattice.
     pub fn shifts(&self) -> bool {
         self.soft.iter().any(|s| is_shift(&s.generator))
+    }
+
+    /// The highest top (meV) between two places of the lattice along which it slides.
+    pub fn top_mev(&self) -> f64 {
+        let tops = self.soft.iter().filter(|s| is_shift(&s.generator)).map(|s| s.pinning.top_mev);
+        tops.fold(0.0, f64::max)
     }
 
     /// The fields (3N) at a state along which alone it slides; none where it does along all that move it.
