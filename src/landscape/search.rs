@@ -150,15 +150,6 @@ impl Settings<'_> {
     fn most(&self, quiet: usize) -> Count {
         if quiet < FEW { self.most_with_news } else { self.most }
     }
-
-    /// How many searches more, at most so many, would be made one by one if each took as much as those before and none brought news.
-    fn yet(&self, done: &Searched, worked: Count, at_most: usize) -> usize {
-        let spent = |more: usize| {
-            let times = 1.0 + more as f64 / done.searches.max(1) as f64;
-            times * worked.part_of(self.most(done.quiet + more))
-        };
-        (0..at_most).take_while(|more| spent(*more) < 1.0).count().max(1)
-    }
 }
 
 /// What a search came to.
@@ -223,7 +214,7 @@ pub fn search(
             climbs => worked.part_of(settings.together) / climbs as f64,
         };
         let side_by_side = FEW.min((1.0 / a_climb) as usize).max(1);
-        let count = settings.yet(&done, worked, side_by_side * settings.shares).min(wanted - done.quiet);
+        let count = (side_by_side * settings.shares).min(wanted - done.quiet);
         let (starts, count_as_quiet): (Vec<Vec<f64>>, Vec<bool>) = (0..count).map_while(|_| turns.next(&cut)).unzip();
         if starts.is_empty() {
             break;
