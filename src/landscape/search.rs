@@ -145,13 +145,6 @@ pub struct Settings<'a> {
     pub context: GuessContext<'a>,
 }
 
-impl Settings<'_> {
-    /// Most work of a search that brought no news so many times in a row.
-    fn most(&self, quiet: usize) -> Count {
-        if quiet < FEW { self.most_with_news } else { self.most }
-    }
-}
-
 /// What a search came to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Searched {
@@ -199,8 +192,8 @@ pub fn search(
         }
         let wanted = aim.quiet(settings.effort, [found, lowered], land);
         let worked = h.evaluated().since(before);
-        let kinds = land.kinds() as f64 / settings.most_kinds as f64;
-        let spent = worked.part_of(settings.most(done.quiet)).max(kinds);
+        let most = if done.quiet < FEW { settings.most_with_news } else { settings.most };
+        let spent = worked.part_of(most).max(land.kinds() as f64 / settings.most_kinds as f64);
         // what comes to its own stop has not missed the work that it has used up
         done.spent = spent >= 1.0 && done.quiet < wanted;
         tell(&Standing { done, wanted, spent, known: [land.minima().len(), land.edges().len()] });

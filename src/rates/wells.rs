@@ -192,14 +192,16 @@ impl<'a> Beside<'a> {
         [&self.states[1].m, &self.states[2].m]
     }
 
+    /// Of each shift the first multiple that keeps minimum k (1 or 2), whatever it makes of the other.
+    fn steps_that_keep(&self, k: usize) -> Vec<usize> {
+        free_shifts(self.group(), self.minima(), [k != 1, k != 2])
+    }
+
     /// The one minimum (1 or 2) that is held while the saddle slides (`shifts`), past places of it which shifts make that keep the other
     /// minimum. What slides past all of its places has an equal share in each. Of a saddle that is narrow, held flatly under a high top, each
     /// place is one beside one of the minimum's as long as k_BT is below that top.
     fn held(&self, shifts: [bool; 3]) -> Option<usize> {
-        let moved = |k: usize| {
-            let steps = free_shifts(self.group(), self.minima(), [k != 1, k != 2]);
-            !shifts[k] && steps.iter().any(|steps| *steps > 1)
-        };
+        let moved = |k: usize| !shifts[k] && self.steps_that_keep(k).iter().any(|steps| *steps > 1);
         let kept = |k: usize| !shifts[k] && !moved(k);
         if shifts[0] { [1, 2].into_iter().find(|k| moved(*k) && kept(3 - k)) } else { None }
     }
@@ -239,12 +241,10 @@ impl<'a> Beside<'a> {
     /// Out of minimum k (1 or 2), where some of the three slide: all places are one of a minimum that slides, and a rate out of one leads to all.
     fn ln_beyond(&self, k: usize, shifts: [bool; 3]) -> f64 {
         let other = 3 - k;
-        let steps = free_shifts(self.group(), self.minima(), [k != 1, k != 2]);
         if shifts[k] || shifts[other] {
-            0.0
-        } else {
-            libm::log(places(self.group(), &self.states[other].m, &steps) as f64)
+            return 0.0;
         }
+        libm::log(places(self.group(), &self.states[other].m, &self.steps_that_keep(k)) as f64)
     }
 
     /// λ₊ (rad/s) on the way to the saddle's next place by a turn, where the energy along that first has no curvature (of a cosine a quarter of
