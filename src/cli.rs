@@ -14,6 +14,7 @@ mod progress;
 mod rate;
 mod relax;
 mod run;
+mod said;
 mod shares;
 mod signals;
 mod start;

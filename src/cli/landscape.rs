@@ -3,15 +3,15 @@
 use super::points::{ShareOf, share};
 use super::progress::Progress;
 use super::run::no_figure;
+use super::said::{Said, how_it_goes_on};
 use super::signals::Signals;
 use super::threads::start_threads;
-use super::{Interval, Looking, UNFINISHED, at_least_one, interval, note, report};
+use super::{Interval, Looking, UNFINISHED, at_least_one, interval, report};
 use crate::config::{Keeping, Loaded, discard_leftovers, load_landscape};
 use crate::drive::survey::{Survey, survey};
 use crate::error::Error;
 use crate::files::disk;
 use crate::output::folder::{self, NewResult};
-use crate::record::Checkpoint;
 use anyhow::Result;
 use clap::Args;
 use serde_json::{Value, json};
@@ -90,49 +90,30 @@ pub struct Arguments {
 pub fn landscape(arguments: &Arguments) -> Result<u8> {
     start_threads(arguments.threads)?;
     let loaded = load_landscape(&arguments.config, &arguments.set())?;
-    let name = &loaded.name;
-    let directory = folder_of(name, arguments.out.as_deref());
-    let say = |line: &str| {
-        if !arguments.quiet {
-            note(line)
-        }
-    };
+    let said = Said { name: &loaded.name, quiet: arguments.quiet };
+    let directory = folder_of(said.name, arguments.out.as_deref());
     let mut asked = loaded.survey()?;
     let signals = Signals::watch()?;
     asked.problem.control.obey(signals.switch());
     let Some(lock) = loaded.reserve(&directory, &loaded.survey_file_names(), arguments.force)? else {
-        say(&format!(
-            "{name}: {} holds the finished result of this config already; --force makes it again",
-            directory.display()
-        ));
-        return print(arguments.json, name, &directory);
+        said.is_done(&directory, "makes");
+        return print(arguments.json, said.name, &directory);
     };
-    if !lock.is_sure() {
-        say(&format!(
-            "{name}: the file system of {} has no locks: see to it that nobody else writes there",
-            directory.display()
-        ));
-    }
-    let mut progress = Progress::new(name, arguments.quiet);
+    said.lock(&lock, &directory, "nobody else");
+    let mut progress = Progress::new(said.name, arguments.quiet);
     let keeping = Keeping { every: arguments.checkpoint_every.0, resume: arguments.resume, force: arguments.force };
     if let Some(checkpoint) = loaded.checkpoint(&directory, &keeping, || progress.speaker())? {
         asked.problem.control.record(Box::new(checkpoint));
     }
-    let found = match survey(&asked, &mut progress) {
-        Ok(found) => found,
-        Err(error) => match (&error, signals.caught()) {
-            (Error::Stopped, Some((code, word))) => {
-                let stage = progress.stage_now().to_string();
-                drop(progress);
-                let on = match Checkpoint::exists(&directory) {
-                    true => "--resume goes on from there",
-                    false => "there is no checkpoint to go on from",
-                };
-                say(&format!("{name}: {word} while {stage}; {on}"));
-                return Ok(code);
-            }
-            _ => return Err(error.into()),
-        },
+    let found = match (survey(&asked, &mut progress), signals.caught()) {
+        (Ok(found), _) => found,
+        (Err(Error::Stopped), Some((code, word))) => {
+            let stage = progress.stage_now().to_string();
+            drop(progress);
+            said.line(format_args!("{word} while {stage}; {}", how_it_goes_on(&directory, arguments.resume)));
+            return Ok(code);
+        }
+        (Err(error), _) => return Err(error.into()),
     };
     drop(progress);
     if let Err(error) = write(&loaded, &found, &directory, arguments.force) {
@@ -144,13 +125,11 @@ pub fn landscape(arguments: &Arguments) -> Result<u8> {
     if let Err(error) = discard_leftovers(&directory) {
         report(&error.into());
     }
-    let warnings = loaded.survey_report(&found)?.warnings();
-    warnings.iter().for_each(|warning| say(&format!("{name}: warning: {warning}")));
+    said.warnings(&loaded.survey_report(&found)?.warnings());
     let temperatures = found.lifetimes.as_ref().map_or(0, |lifetimes| lifetimes.settings.temperatures_k.len());
-    if let Some(words) = no_figure(&directory, "lifetimes", temperatures, &loaded.config.output.plots) {
-        say(&format!("{name}: {words}"));
-    }
-    print(arguments.json, name, &directory)
+    let missing = no_figure(&directory, "lifetimes", temperatures, &loaded.config.output.plots);
+    missing.into_iter().for_each(|line| said.line(line));
+    print(arguments.json, said.name, &directory)
 }
 
 impl Arguments {

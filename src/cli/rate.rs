@@ -10,7 +10,7 @@ use crate::output::{Picture, StoredOutcome, folder};
 use crate::rates::{Row, Theory, TransitionRate, TransitionRow, Way, digits};
 use crate::record::Lock;
 use anyhow::Result;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::f64::consts::LN_10;
 use std::io::{self, Write};
 use std::path::Path;
@@ -101,32 +101,41 @@ fn print(arguments: &Rate, name: &str, directory: &Path, outcome: &Outcome) -> R
     let transitions = outcome.rates.as_ref().map(|r| &r.transitions[..]).unwrap_or_default();
     let complete = !transitions.is_empty() && transitions.iter().all(|t| t.refused.is_none());
     let code = if complete && outcome.converged && outcome.certified { 0 } else { UNFINISHED };
-    if arguments.json {
-        let row = |r: &TransitionRow| {
-            let exp = |ln: Option<f64>| ln.map(f64::exp);
-            let log10 = |r: &Row| r.ln_lifetime_s().map(|ln| ln / LN_10);
-            json!({
-                "temperature_K": r.passage.temperature_k,
-                "htst_rate_per_s": exp(r.passage.ln_htst_per_s),
-                "langer_rate_per_s": exp(r.passage.ln_langer_per_s),
-                "log10_escape_lifetime_s": log10(&r.escape),
-                "log10_first_passage_s": log10(&r.passage),
-                "known_within_factor": r.passage.known_within,
-            })
-        };
-        let rows = |way: Way| -> Vec<serde_json::Value> {
-            transitions.iter().filter(|t| t.way == way).flat_map(|t| t.rows.iter().map(row)).collect()
-        };
-        let line = json!({
-            "name": name,
-            "forward": rows(Way::Forward),
-            "backward": rows(Way::Backward),
-            "exit_code": code,
-            "directory": directory.to_string_lossy(),
-        });
-        writeln!(out, "{line}")?;
-        return Ok(code);
+    match arguments.json {
+        true => writeln!(out, "{}", json_line(name, directory, transitions, code))?,
+        false => table(&mut out, name, transitions)?,
     }
+    out.flush()?;
+    Ok(code)
+}
+
+fn json_line(name: &str, directory: &Path, transitions: &[TransitionRate], code: u8) -> Value {
+    let row = |r: &TransitionRow| {
+        let exp = |ln: Option<f64>| ln.map(f64::exp);
+        let log10 = |r: &Row| r.ln_lifetime_s().map(|ln| ln / LN_10);
+        json!({
+            "temperature_K": r.passage.temperature_k,
+            "htst_rate_per_s": exp(r.passage.ln_htst_per_s),
+            "langer_rate_per_s": exp(r.passage.ln_langer_per_s),
+            "log10_escape_lifetime_s": log10(&r.escape),
+            "log10_first_passage_s": log10(&r.passage),
+            "known_within_factor": r.passage.known_within,
+        })
+    };
+    let rows = |way: Way| -> Vec<Value> {
+        transitions.iter().filter(|t| t.way == way).flat_map(|t| t.rows.iter().map(row)).collect()
+    };
+    json!({
+        "name": name,
+        "forward": rows(Way::Forward),
+        "backward": rows(Way::Backward),
+        "exit_code": code,
+        "directory": directory.to_string_lossy(),
+    })
+}
+
+/// A row a temperature.
+fn table(out: &mut impl Write, name: &str, transitions: &[TransitionRate]) -> io::Result<()> {
     writeln!(
         out,
         "{name}: {:>9} {:>10} {:>11} {:>11} {:>11} {:>17} {:>12}",
@@ -151,11 +160,10 @@ fn print(arguments: &Rate, name: &str, directory: &Path, outcome: &Outcome) -> R
             )?;
         }
         if let Some(reason) = &t.refused {
-            writeln!(out, "{:width$} {:>9} none: {reason}", "", t.way.name())?;
+            writeln!(out, "{:width$} {way:>9} none: {reason}", "")?;
         }
     }
-    out.flush()?;
-    Ok(code)
+    Ok(())
 }
 
 /// e^ln in decimal with so many digits, whatever its size.

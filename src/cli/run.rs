@@ -1,6 +1,7 @@
 //! `run`: from each config to its results.
 
 pub(super) use super::progress::Progress;
+use super::said::{Said, how_it_goes_on};
 use super::signals::Signals;
 use super::threads::start_threads;
 use super::write::{Earlier, write};
@@ -90,83 +91,80 @@ fn distinct(loaded: &[Loaded], directories: &[PathBuf]) -> u8 {
 
 /// Runs one config into its folder, or says that it is done.
 pub(super) fn run_one(arguments: &Run, signals: &Signals, loaded: &Loaded, directory: &Path) -> Result<u8> {
-    let say = |line: &str| {
-        if !arguments.quiet {
-            note(line)
-        }
-    };
+    let said = Said { name: &loaded.name, quiet: arguments.quiet };
     let mut problem = loaded.problem()?;
     problem.control.obey(signals.switch());
-    let (name, place) = (&loaded.name, directory.display());
     let Some(lock) = loaded.reserve(directory, &loaded.file_names(), arguments.force)? else {
-        say(&format!("{name}: {place} holds the finished result of this config already; --force runs it again"));
-        return print(arguments, name, directory);
+        said.is_done(directory, "runs");
+        return print(arguments, said.name, directory);
     };
-    if !lock.is_sure() {
-        say(&format!("{name}: the file system of {place} has no locks: see to it that no other run writes there"));
-    }
-    let mut progress = Progress::new(name, arguments.quiet);
+    said.lock(&lock, directory, "no other run");
+    let mut progress = Progress::new(said.name, arguments.quiet);
     if let Some(checkpoint) = loaded.checkpoint(directory, &arguments.keeping(), || progress.speaker())? {
         problem.control.record(Box::new(checkpoint));
     }
-    let outcome = match drive::run(&problem, &mut progress) {
-        Ok(outcome) => outcome,
-        Err(error) => match (&error, signals.caught()) {
-            (Error::Stopped, Some((code, word))) => {
-                let (stage, band) = (progress.stage_now().to_string(), progress.band());
-                drop(progress);
-                let partial = match leave_partial(loaded, &problem, band.as_ref(), directory, &stage, word) {
-                    Ok(()) => format!("partial results in {place}"),
-                    Err(error) => {
-                        report(&error);
-                        "no partial results were written".into()
-                    }
-                };
-                let on = match (Checkpoint::exists(directory), arguments.resume) {
-                    (true, true) => "the same command goes on from there",
-                    (true, false) => "--resume goes on from there",
-                    (false, _) => "there is no checkpoint to go on from",
-                };
-                say(&format!("{name}: {word} while {stage}; {on}; {partial}"));
-                return Ok(code);
-            }
-            _ => return Err(error.into()),
-        },
+    let outcome = match (drive::run(&problem, &mut progress), signals.caught()) {
+        (Ok(outcome), _) => outcome,
+        (Err(Error::Stopped), Some((code, word))) => {
+            let (stage, band) = (progress.stage_now().to_string(), progress.band());
+            drop(progress);
+            let partial = match leave_partial(loaded, &problem, band.as_ref(), directory, &stage, word) {
+                Ok(()) => format!("partial results in {}", directory.display()),
+                Err(error) => {
+                    report(&error);
+                    "no partial results were written".into()
+                }
+            };
+            let on = how_it_goes_on(directory, arguments.resume);
+            said.line(format_args!("{word} while {stage}; {on}; {partial}"));
+            return Ok(code);
+        }
+        (Err(error), _) => return Err(error.into()),
     };
     drop(progress);
+    keep(said, arguments, loaded, &problem, &outcome, directory)?;
+    // its checkpoint is closed
+    drop(problem);
+    if let Err(error) = discard_leftovers(directory) {
+        said.line(format_args!("the checkpoint is of no use any more but cannot be taken away: {error}"));
+    }
+    tell(said, &outcome, directory, &loaded.config.output.plots);
+    print(arguments, said.name, directory)
+}
+
+/// Writes the files of a result; where that fails, what was computed is not lost with them.
+fn keep(
+    said: Said,
+    arguments: &Run,
+    loaded: &Loaded,
+    problem: &drive::Problem,
+    outcome: &drive::Outcome,
+    directory: &Path,
+) -> Result<()> {
     let earlier = if arguments.force { Earlier::GivesWay } else { Earlier::IsKept };
-    match write(loaded, &outcome, directory, earlier(loaded.source_name().as_deref()), arguments.force) {
+    match write(loaded, outcome, directory, earlier(loaded.source_name().as_deref()), arguments.force) {
         Ok(Some(kept)) => {
             let still_earlier = if kept.another_gave_way { ", in the place of a still earlier one" } else { "" };
-            say(&format!("{name}: the earlier result is kept in {}{still_earlier}", kept.place.display()));
+            said.line(format_args!("the earlier result is kept in {}{still_earlier}", kept.place.display()));
         }
         Ok(None) => {}
         Err(error) => {
-            // what was computed is not lost with the files
             problem.control.recorder().save();
             if Checkpoint::exists(directory) {
-                let words = "the checkpoint is kept: once files can be written, --resume makes the result of it";
-                say(&format!("{name}: {words}"));
+                said.line("the checkpoint is kept: once files can be written, --resume makes the result of it");
             }
             return Err(error.into());
         }
     }
-    // its checkpoint is closed
-    drop(problem);
-    if let Err(error) = discard_leftovers(directory) {
-        say(&format!("{name}: the checkpoint is of no use any more but cannot be taken away: {error}"));
-    }
-    for warning in &outcome.warnings {
-        say(&format!("{name}: warning: {warning}"));
-    }
-    if let Some(line) = super::rate::lifetimes(&outcome) {
-        say(&format!("{name}: {line}"));
-    }
+    Ok(())
+}
+
+/// Its warnings, its lifetimes, and which figure it has not.
+fn tell(said: Said, outcome: &drive::Outcome, directory: &Path, plots: &[String]) {
+    said.warnings(&outcome.warnings);
     let temperatures = outcome.rates.as_ref().map_or(0, |rates| rates.settings.temperatures_k.len());
-    if let Some(words) = no_figure(directory, "arrhenius", temperatures, &loaded.config.output.plots) {
-        say(&format!("{name}: {words}"));
-    }
-    print(arguments, name, directory)
+    let lines = super::rate::lifetimes(outcome).into_iter();
+    lines.chain(no_figure(directory, "arrhenius", temperatures, plots)).for_each(|line| said.line(line));
 }
 
 /// That a figure of times which was asked for, at several temperatures, is not there.

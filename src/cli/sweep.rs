@@ -14,7 +14,7 @@ use crate::config::Loaded;
 use crate::config::sweep::Sweep;
 use crate::landscape::Doubt;
 use crate::output::sweep::{IndexedPoint, PointState, SweepIndex, look};
-use anyhow::{Context, Result};
+use anyhow::Result;
 use clap::Args;
 use rayon::prelude::*;
 use std::ffi::OsString;
@@ -22,7 +22,7 @@ use std::io::{self, Write};
 use std::num::NonZeroUsize;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Command, Output, Stdio};
 use std::thread::available_parallelism;
 
 /// Most points that are told one by one.
@@ -220,6 +220,22 @@ fn occupied(dir: &Path, index: &SweepIndex, before: &[PointState], points: Range
     !taken.is_empty()
 }
 
+/// A point in a process of its own, until that ends.
+fn apart(arguments: &Arguments, dir: &Path, point: usize, threads: usize, program: &[OsString]) -> io::Result<Output> {
+    let (program, first) =
+        program.split_first().ok_or_else(|| io::Error::other("the program does not know where it is"))?;
+    let mut command = Command::new(program);
+    command.args(first).arg("sweep").arg(&arguments.file).arg("--out").arg(dir);
+    command.args(["--index", &point.to_string(), "--threads", &threads.to_string(), "--quiet", "--leashed"]);
+    if arguments.force {
+        command.arg("--force");
+    }
+    let mut child = command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn()?;
+    // held until the point is done: the system lets go of it with this process, however that ends
+    let _leash = child.stdin.take();
+    child.wait_with_output()
+}
+
 /// The points of a range that are not done, several at a time; once all of the sweep are asked for, what they come to.
 fn several(
     arguments: &Arguments,
@@ -245,19 +261,7 @@ fn several(
     if total < points.len() {
         arguments.say(&format!("{name}: {} of {} points are done already", points.len() - total, points.len()));
     }
-    let (program, first) = program.split_first().context("the program does not know where it is")?;
-    let start = |point: usize| {
-        let mut command = Command::new(program);
-        command.args(first).arg("sweep").arg(&arguments.file).arg("--out").arg(dir);
-        command.args(["--index", &point.to_string(), "--threads", &threads.to_string(), "--quiet", "--leashed"]);
-        if arguments.force {
-            command.arg("--force");
-        }
-        let mut child = command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn()?;
-        // held until the point is done: the system lets go of it with this process, however that ends
-        let _leash = child.stdin.take();
-        child.wait_with_output()
-    };
+    let start = |point: usize| apart(arguments, dir, point, threads, program);
     let mut failed: Vec<(usize, String, u8)> = Vec::new();
     let mut count = 0;
     let stopped = run_all(&todo, jobs, start, |point, ended: &Ended| {

@@ -1,9 +1,8 @@
 //! What a path shows of its barrier.
 
 use super::first_path::FirstPath;
+use super::heights::{height, slack};
 use super::outcome::{Barrier, SaddlePoint};
-use super::relaxation::height;
-use super::settle::slack;
 use super::{Problem, Verdict};
 use crate::band::Band;
 use crate::landscape::{Doubt, Minimum, PathEnd};

@@ -1,17 +1,23 @@
 //! From two states to a barrier: relax the ends, make a first path, relax the band, read off what it found.
 
+mod course;
 mod ends;
 mod escape;
 mod explore;
 mod first_path;
 mod first_paths;
+mod heights;
 mod judge;
 pub mod memory;
 mod network;
 mod outcome;
+mod path_told;
 mod places;
+mod points;
 mod problem;
 mod rates;
+mod rates_anew;
+mod rates_told;
 mod relaxation;
 mod relaxed;
 mod report;
@@ -23,16 +29,20 @@ mod settled;
 mod stop;
 mod stored;
 pub mod survey;
+mod tables;
 mod verdict;
 
+pub use course::run;
 pub use explore::natural_guesses;
+pub use heights::prominent_maxima;
 pub use outcome::*;
 pub use problem::{Images, NebSettings, Problem, checked_evaluations, checked_smoothing, checked_tolerance};
-pub use rates::{is_said_of_rates, stored_rates, warnings as rates_warnings};
-pub use relaxation::{Goal, Relaxation, image_levels, prominent_maxima, refined};
+pub use rates_anew::stored_rates;
+pub use rates_told::{is_said_of_rates, warnings as rates_warnings};
+pub use relaxation::{Goal, Relaxation, image_levels, refined};
 pub use relaxed::{RelaxedState, relaxed_state};
 pub use report::partial;
-pub use run::{FEWEST_IMAGES, run};
+pub use run::FEWEST_IMAGES;
 pub use scales::Scales;
 pub use search::third_states;
 pub use stop::Stop;

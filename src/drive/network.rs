@@ -5,7 +5,7 @@
 //! as in a survey: the mean first passage from one end to the other through the network of all that was found. (What is higher than
 //! the top by n k_BT adds a part of some e⁻ⁿ.)
 
-use super::rates::ALONE;
+use super::rates_told::{ALONE, FIELD};
 use super::run::Run;
 use super::survey::{Lifetime, Lifetimes, Survey, Told};
 use crate::band::Band;
@@ -25,9 +25,6 @@ const ABOVE: f64 = 5.0;
 const WORTH: f64 = 0.1;
 /// The largest group of which every image is a state by itself.
 const IMAGES: usize = 64;
-
-/// Where results have its times.
-pub const FIELD: &str = "\"network_first_passage_s\"";
 
 /// What a path's network says.
 #[derive(Debug)]

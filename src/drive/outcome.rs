@@ -1,7 +1,6 @@
 //! What a run found: everything that is written to disk is a function of an [`Outcome`].
 
-use super::rates::{exits_not_told, network_not_told};
-use super::{Problem, StopCode, is_said_of_rates, rates_warnings, stored_rates};
+use super::StopCode;
 use crate::hessian::Bound;
 use crate::landscape::Effort;
 use crate::path::Path;
@@ -89,27 +88,6 @@ impl Outcome {
     pub fn minima(&self) -> Vec<Spins> {
         let between = self.intermediate_minima.iter().map(|minimum| minimum.spins.clone());
         std::iter::once(self.path.spins(0)).chain(between).chain([self.path.spins(self.path.images() - 1)]).collect()
-    }
-
-    /// The same with the rates that the problem asks for, over its own saddles and between these minima, both ends among them; why
-    /// there can be none, if so. Of its warnings those in `last` stay the last ones.
-    pub fn with_rates(self, problem: &Problem, minima: &[Spins], last: &[String]) -> Result<Outcome, String> {
-        let Some(settings) = problem.rates.as_ref().filter(|_| self.certified && problem.relax_ends) else {
-            return Err("only those of a certified result between relaxed ends are taken from its files".into());
-        };
-        let rates = stored_rates(problem.evaluator(), &self.saddles, minima, settings)
-            .map_err(|why| format!("the states in its files do not prove themselves: {why}"))?;
-        let colder = self.search.exits_from_k.and_then(|from_k| exits_not_told(from_k, settings.coldest_k()));
-        // in the place that a run gives them
-        let own = |w: &&String| is_said_of_rates(w) || last.contains(w);
-        let others = self.warnings.iter().filter(|w| !own(w)).cloned();
-        let warnings = others
-            .chain(rates_warnings(&rates, &self.search, self.barrier, self.highest_climb))
-            .chain(colder)
-            .chain(network_not_told(&self.warnings))
-            .chain(last.iter().cloned())
-            .collect();
-        Ok(Outcome { warnings, rates: Some(rates), ..self })
     }
 }
 

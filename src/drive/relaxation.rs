@@ -1,5 +1,6 @@
 //! The loop that relaxes a band: evaluate, judge, move; it counts and says why it stopped.
 
+use super::heights::{height, prominent_maxima};
 use super::outcome::HistoryRow;
 use super::{NebSettings, Observer, Scales, Silent, Stop};
 use crate::band::{Band, Laplacian, Sweep};
@@ -390,30 +391,6 @@ fn is_level(band: &Band, moves: &[f64]) -> bool {
 /// Whether an optimiser needs the preconditioner.
 pub fn needs_laplacian(optimiser: &OptimiserSpec) -> bool {
     optimiser.member().follows() != Follows::Sweep
-}
-
-/// Highest minus lowest energy of a band (meV).
-pub fn height(band: &Band) -> f64 {
-    let e = band.energies_mev();
-    let (low, high) = e.iter().fold((f64::MAX, f64::MIN), |(l, h), x| (l.min(*x), h.max(*x)));
-    high - low
-}
-
-/// Interior images higher than both neighbours that stand out from the valleys beside them by more than `prominence`.
-pub fn prominent_maxima(e: &[f64], prominence: f64) -> Vec<usize> {
-    let last = e.len() - 1;
-    let is_maximum = |k: usize| e[k] > e[k - 1] && e[k] >= e[k + 1];
-    let stands_out = |k: usize| {
-        let mut valleys = [e[k]; 2];
-        for j in (0..k).rev().take_while(|&j| e[j] <= e[k]) {
-            valleys[0] = valleys[0].min(e[j]);
-        }
-        for j in (k + 1..=last).take_while(|&j| e[j] <= e[k]) {
-            valleys[1] = valleys[1].min(e[j]);
-        }
-        e[k] - valleys[0].max(valleys[1]) > prominence
-    };
-    (1..last).filter(|&k| is_maximum(k) && stands_out(k)).collect()
 }
 
 /// The images to start from: fewer than `images`, halved as long as that resolves the path; coarsest first.

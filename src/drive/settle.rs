@@ -2,11 +2,11 @@
 
 use super::Images;
 use super::first_path::FirstPath;
-use super::relaxation::{Goal, LOOSELY, TIGHTLY, height, image_levels, prominent_maxima, refined};
-use super::report::Proof;
+use super::heights::{height, prominent_maxima, slack};
+use super::relaxation::{Goal, LOOSELY, TIGHTLY, image_levels, refined};
 use super::run::{FEWEST_IMAGES, Run};
 use super::search::WITH_NEWS;
-use super::settled::Settled;
+use super::settled::{Proof, Settled};
 use crate::band::Band;
 use crate::error::Result;
 use crate::landscape::{
@@ -14,7 +14,7 @@ use crate::landscape::{
 };
 use crate::path::{RESOLVED, distance, is_within};
 use crate::sphere::SAME;
-use crate::stationary::{ALIKE, FLAT, LOWER};
+use crate::stationary::{ALIKE, FLAT};
 
 /// How far apart (rad, any spin) the images of a path are that is put together, and where a band of these does not take the place.
 const APART: [f64; 2] = [0.9 * RESOLVED, 0.45 * RESOLVED];
@@ -35,11 +35,6 @@ fn over(c: &FirstPath, links: &[Pass]) -> f64 {
 /// What rises by less along a band is level (meV): rounding, and what changes no digit of its barrier that is told.
 fn level_mev(band: &Band) -> f64 {
     (FLAT * band.hamiltonian().stiffness_mev()).max(ALIKE * height(band))
-}
-
-/// Heights of a band that differ by less are one (meV): by rounding, or by what changes no digit of its barrier that is told.
-pub fn slack(band: &Band) -> f64 {
-    (LOWER * height(band)).max(band.hamiltonian().rounding_mev())
 }
 
 impl<'a> Run<'a, '_> {

@@ -1,8 +1,17 @@
 //! A first path that was followed to its end.
 
 use super::first_path::FirstPath;
-use super::report::Proof;
-use crate::landscape::Saddle;
+use crate::landscape::{Doubt, Minimum, Pass, Saddle};
+
+/// What was proven of a path.
+pub struct Proof {
+    /// The two ends, examined.
+    pub ends: [Minimum; 2],
+    /// Saddles in path order, with the minima beside them.
+    pub links: Vec<Pass>,
+    /// What stands against a certificate; nothing if it is given.
+    pub doubts: Vec<Doubt>,
+}
 
 /// A path with what is known of it.
 pub(super) struct Settled<'a> {

@@ -10,7 +10,7 @@
 
 use super::krylov::{Krylov, MOST, Modes};
 use super::ritz::{Mode, none_is_missed, rayleigh_ritz};
-use super::{Matrix, remove, slab};
+use super::{Factors, Matrix, remove, slab};
 
 /// Most factorisations.
 const ROUNDS: usize = 24;
@@ -29,91 +29,150 @@ const GIVEN: f64 = 1e-6;
 /// The wanted modes of `matrix` in the space orthogonal to `known` (orthonormal, invariant), of which the lowest may be `given`,
 /// orthonormal too, as vectors or roughly; and whether they are those, none missed.
 pub(super) fn together(matrix: &Matrix, known: &[Vec<f64>], given: &[Vec<f64>], wanted: Modes) -> (Vec<Mode>, bool) {
-    let scale = matrix.norm1().max(1e-280);
-    let known_values: Vec<f64> = known.iter().map(|k| quotient(matrix, k, &[]).0).collect();
-    let given = &given[..given.len().min(wanted.count)];
-    let mut modes: Vec<Mode> = rayleigh_ritz(matrix, given);
-    let is_sharp = |v: &&Vec<f64>| {
-        let (theta, rest) = quotient(matrix, v, known);
-        rest <= GIVEN * theta.abs()
-    };
-    // the lowest ones that are found, and with them all that is known
-    let mut sure = given.iter().take_while(is_sharp).count();
-    let mut apart = [known, &given[..sure]].concat();
-    // no other eigenvalue below the one, some below the other
-    let (mut low, mut high, mut down) = (f64::NEG_INFINITY, f64::INFINITY, FAR * scale);
-    let (mut shift, mut memory) = (-down, Matrix::default());
-    let mut went_far = false;
-    if sure == 0
-        && let Some(lowest) = modes.first()
-    {
-        let (theta, rest) = quotient(matrix, &lowest.vector, known);
-        shift = theta - rest.max(APART * scale);
-    }
+    let mut search = Search::of(matrix, known, given, wanted);
+    let mut memory = Matrix::default();
     for _ in 0..ROUNDS {
         memory.copy_from(matrix);
-        memory.shift(-shift);
+        memory.shift(-search.shift);
         let factors = memory.factor();
-        if factors.negatives() > sure + known_values.iter().filter(|v| **v < shift).count() {
-            memory = factors.into_memory();
-            high = shift;
-            if sure > 0 && !std::mem::replace(&mut went_far, true) {
-                // s may lie above the next mode
-                shift = 0.5 * (modes[sure - 1].value + high);
-                continue;
-            }
-            if sure > 0 {
-                // one of the modes below was missed: all of them once more
-                (sure, low) = (0, f64::NEG_INFINITY);
-                apart.truncate(known.len());
-            }
-            shift = if low.is_finite() { 0.5 * (low + high) } else { high - down };
-            down *= 4.0;
-            continue;
-        }
-        (low, went_far) = (shift, false);
-        // where all others lie below s, the lowest above it alone cannot be missed
-        let is_last = wanted.count == sure + 1 && modes[..sure].iter().all(|mode| mode.value < shift);
-        let mut krylov = Krylov::new(&factors, &apart, SPARE + modes.len() - sure);
-        krylov.starts = modes[sure..].iter().map(|mode| mode.vector.clone()).collect();
-        let rest = Modes { count: wanted.count - sure, below: wanted.below - low, ..wanted };
-        let mut most = (BLOCKS + 1) * (SPARE + wanted.count);
-        loop {
-            let (space, settled) = krylov.largest(rest, most);
-            modes = rayleigh_ritz(matrix, &[&apart[known.len()..], &space].concat());
-            let complete = settled && (is_last || none_is_missed(matrix, &modes, known, scale));
-            if complete || krylov.is_full(MOST) || modes.len() <= sure {
-                // the first of those beside the ones found may lie above the limit
-                let within = modes.iter().skip(1).take_while(|mode| mode.value < wanted.below).count();
-                modes.truncate(1 + within);
-                return (modes, complete);
-            }
-            if settled {
-                // more are degenerate than the block has vectors: the next one has more
-                shift = low;
-                break;
-            }
-            let inverse = krylov.residuals(space.len());
-            let here = inverse.iter().take_while(|(theta, rest)| *rest <= wanted.part * theta.abs()).count();
-            let below = |k: usize| inverse.get(k).and_then(|by| nearer(&modes, sure + k, *by, low, scale));
-            let next = below(0).filter(|s| *s < high);
-            let beyond = below(here).filter(|_| here > 0);
-            if let Some(nearer) = beyond {
-                // below that one lie the modes that are found, and no other, as the next factors tell
-                sure += here;
-                apart.extend(modes[apart.len() - known.len()..sure].iter().map(|mode| mode.vector.clone()));
-                (shift, high) = (nearer, f64::INFINITY);
-                break;
-            }
-            if let Some(nearer) = next {
-                shift = nearer;
-                break;
-            }
-            most = (2 * most).min(MOST);
+        if factors.negatives() > search.found_below() {
+            search.lower();
+        } else if let Some(complete) = search.look(&factors) {
+            return (search.modes, complete);
         }
         memory = factors.into_memory();
     }
-    (modes, false)
+    (search.modes, false)
+}
+
+/// Where s is, and what is known of the modes.
+struct Search<'a> {
+    matrix: &'a Matrix,
+    scale: f64,
+    known: &'a [Vec<f64>],
+    known_values: Vec<f64>,
+    wanted: Modes,
+    /// The lowest that are known, the first `sure` of them as modes.
+    modes: Vec<Mode>,
+    sure: usize,
+    /// Those, and with them all that is known.
+    apart: Vec<Vec<f64>>,
+    /// No other eigenvalue lies below the one, some below the other.
+    low: f64,
+    high: f64,
+    shift: f64,
+    /// How far s goes down where it lies above some, and whether it has gone up by too much.
+    down: f64,
+    went_far: bool,
+}
+
+impl<'a> Search<'a> {
+    fn of(matrix: &'a Matrix, known: &'a [Vec<f64>], given: &[Vec<f64>], wanted: Modes) -> Search<'a> {
+        let scale = matrix.norm1().max(1e-280);
+        let given = &given[..given.len().min(wanted.count)];
+        let modes: Vec<Mode> = rayleigh_ritz(matrix, given);
+        let is_sharp = |v: &&Vec<f64>| {
+            let (theta, rest) = quotient(matrix, v, known);
+            rest <= GIVEN * theta.abs()
+        };
+        let sure = given.iter().take_while(is_sharp).count();
+        let down = FAR * scale;
+        let shift = match modes.first() {
+            Some(lowest) if sure == 0 => {
+                let (theta, rest) = quotient(matrix, &lowest.vector, known);
+                theta - rest.max(APART * scale)
+            }
+            _ => -down,
+        };
+        Search {
+            matrix,
+            scale,
+            known,
+            known_values: known.iter().map(|k| quotient(matrix, k, &[]).0).collect(),
+            wanted,
+            modes,
+            sure,
+            apart: [known, &given[..sure]].concat(),
+            low: f64::NEG_INFINITY,
+            high: f64::INFINITY,
+            shift,
+            down,
+            went_far: false,
+        }
+    }
+
+    /// How many eigenvalues below s are accounted for.
+    fn found_below(&self) -> usize {
+        self.sure + self.known_values.iter().filter(|v| **v < self.shift).count()
+    }
+
+    /// The next s, where others lie below this one.
+    fn lower(&mut self) {
+        self.high = self.shift;
+        if self.sure > 0 && !std::mem::replace(&mut self.went_far, true) {
+            // s may lie above the next mode
+            self.shift = 0.5 * (self.modes[self.sure - 1].value + self.high);
+            return;
+        }
+        if self.sure > 0 {
+            // one of the modes below was missed: all of them once more
+            (self.sure, self.low) = (0, f64::NEG_INFINITY);
+            self.apart.truncate(self.known.len());
+        }
+        self.shift = if self.low.is_finite() { 0.5 * (self.low + self.high) } else { self.high - self.down };
+        self.down *= 4.0;
+    }
+
+    /// Looks for modes above s, below which no other lies, until all are found, and then whether none is missed, or a nearer s is.
+    fn look(&mut self, factors: &Factors) -> Option<bool> {
+        let (wanted, sure) = (self.wanted, self.sure);
+        (self.low, self.went_far) = (self.shift, false);
+        // where all others lie below s, the lowest above it alone cannot be missed
+        let is_last = wanted.count == sure + 1 && self.modes[..sure].iter().all(|mode| mode.value < self.shift);
+        let mut krylov = Krylov::new(factors, &self.apart, SPARE + self.modes.len() - sure);
+        krylov.starts = self.modes[sure..].iter().map(|mode| mode.vector.clone()).collect();
+        let rest = Modes { count: wanted.count - sure, below: wanted.below - self.low, ..wanted };
+        let mut most = (BLOCKS + 1) * (SPARE + wanted.count);
+        let (found, shift) = loop {
+            let (space, settled) = krylov.largest(rest, most);
+            self.modes = rayleigh_ritz(self.matrix, &[&self.apart[self.known.len()..], &space].concat());
+            let complete = settled && (is_last || none_is_missed(self.matrix, &self.modes, self.known, self.scale));
+            if complete || krylov.is_full(MOST) || self.modes.len() <= sure {
+                // the first of those beside the ones found may lie above the limit
+                let within = self.modes.iter().skip(1).take_while(|mode| mode.value < wanted.below).count();
+                self.modes.truncate(1 + within);
+                return Some(complete);
+            }
+            if settled {
+                // more are degenerate than the block has vectors: the next one has more
+                self.shift = self.low;
+                return None;
+            }
+            if let Some(next) = self.nearer_shift(&krylov.residuals(space.len())) {
+                break next;
+            }
+            most = (2 * most).min(MOST);
+        };
+        self.shift = shift;
+        if found > 0 {
+            // below that one lie the modes that are found, and no other, as the next factors tell
+            self.sure += found;
+            let modes = &self.modes[self.apart.len() - self.known.len()..self.sure];
+            self.apart.extend(modes.iter().map(|mode| mode.vector.clone()));
+            self.high = f64::INFINITY;
+        }
+        None
+    }
+
+    /// A nearer s, if there is one, by the eigenvalues in the inverse and their residuals: between so many modes more that are found and the
+    /// others, or below all of them.
+    fn nearer_shift(&self, inverse: &[(f64, f64)]) -> Option<(usize, f64)> {
+        let here = inverse.iter().take_while(|(theta, rest)| *rest <= self.wanted.part * theta.abs()).count();
+        let below =
+            |k: usize| inverse.get(k).and_then(|by| nearer(&self.modes, self.sure + k, *by, self.low, self.scale));
+        let beyond = below(here).filter(|_| here > 0).map(|s| (here, s));
+        beyond.or_else(|| below(0).filter(|s| *s < self.high).map(|s| (0, s)))
+    }
 }
 
 /// s below mode k, above the modes before it, and much nearer to it than `low` is: by its eigenvalue θ in (A − low)⁻¹ and the residual

@@ -38,32 +38,24 @@ impl StoredOutcome {
         if !missing.is_empty() {
             return Ok(Err(format!("there is no {} with the result", missing.join(", no "))));
         }
-        let must = |name: &str| {
-            text(dir, name)?.ok_or_else(|| Error::invalid(shown(dir, name), format!("is not there: {WAY_OUT}")))
-        };
         let Some(stop_code) = summary.stop_code else {
             return Ok(Err("its summary.json does not say how the run ended".into()));
         };
         let path = states(dir, "path.npz", lattice)?;
         let saddles = if has_saddles { states(dir, SADDLES, lattice)? } else { Vec::new() };
         let minima = states(dir, "minima.ovf", lattice)?;
-        let between = minima.len().saturating_sub(2);
-        if path.len() < 2 || saddles.len() != summary.saddles.len() || between != summary.intermediate_minima.len() {
+        let told = [summary.saddles.len(), summary.intermediate_minima.len()];
+        if path.len() < 2 || [saddles.len(), minima.len().saturating_sub(2)] != told {
             return Ok(Err("its files of spins are not of one result with summary.json".into()));
         }
         let images = images(dir)?;
-        let table = Columns::read(&shown(dir, "profile.csv"), &must("profile.csv")?)?;
-        let profile = table.points("reaction_coordinate_rad", "energy_above_initial_meV")?;
-        let term = |(name, column): &(String, Vec<f64>)| {
-            let term = name.strip_suffix("_above_initial_meV").filter(|term| *term != "energy")?;
-            Some((term.to_string(), column.clone()))
-        };
-        let history = history(&Columns::read(&shown(dir, "history.csv"), &must("history.csv")?)?)?;
-        let point = |(s, e)| ProfilePoint { reaction_coordinate_rad: s, above_initial_mev: e };
+        let along = table(dir, "profile.csv")?;
+        let history = history(&table(dir, "history.csv")?)?;
+        let (certificate, between) = (summary.told(), summary.intermediate_minima);
         let outcome = Outcome {
             converged: summary.head.converged,
             certified: summary.head.certified,
-            certificate: summary.told(),
+            certificate,
             stop_code,
             stop_reason: summary.stop_reason,
             warnings: summary.warnings,
@@ -72,19 +64,14 @@ impl StoredOutcome {
             saddles: summary.saddles.into_iter().zip(saddles).map(saddle).collect(),
             initial: end(&summary.initial),
             final_state: end(&summary.r#final),
-            intermediate_minima: summary
-                .intermediate_minima
-                .into_iter()
-                .zip(minima.iter().skip(1))
-                .map(minimum)
-                .collect(),
+            intermediate_minima: between.into_iter().zip(minima.iter().skip(1)).map(minimum).collect(),
             rates: None,
             search: summary.search.map(searched).unwrap_or_default(),
             rejected_paths: summary.rejected_paths.into_iter().map(rejected).collect(),
             path: SpinPath::new(&path),
             images,
-            profile: profile.into_iter().map(point).collect(),
-            profile_terms_mev: table.all().iter().filter_map(term).collect(),
+            profile: profile(&along)?,
+            profile_terms_mev: profile_terms(&along),
             history,
             work: summary.work,
             max_perpendicular_torque_mev: summary.path.max_perpendicular_torque_meV.0,
@@ -169,4 +156,26 @@ fn images(dir: &Path) -> Result<ImageTable> {
         }
     }
     Ok(table)
+}
+
+/// A table that has to be there.
+fn table(dir: &Path, name: &str) -> Result<Columns> {
+    let there = text(dir, name)?;
+    let text = there.ok_or_else(|| Error::invalid(shown(dir, name), format!("is not there: {WAY_OUT}")))?;
+    Columns::read(&shown(dir, name), &text)
+}
+
+/// The interpolated energy path.
+fn profile(table: &Columns) -> Result<Vec<ProfilePoint>> {
+    let point = |(s, e)| ProfilePoint { reaction_coordinate_rad: s, above_initial_mev: e };
+    Ok(table.points("reaction_coordinate_rad", "energy_above_initial_meV")?.into_iter().map(point).collect())
+}
+
+/// And that of each term.
+fn profile_terms(table: &Columns) -> Vec<(String, Vec<f64>)> {
+    let term = |(name, column): &(String, Vec<f64>)| {
+        let term = name.strip_suffix("_above_initial_meV").filter(|term| *term != "energy")?;
+        Some((term.to_string(), column.clone()))
+    };
+    table.all().iter().filter_map(term).collect()
 }

@@ -186,33 +186,40 @@ impl<'a> Along<'a> {
     }
 }
 
-fn transition(
-    saddles: &[SaddleRate],
-    orbits: &[Orbits],
-    settings: &RateSettings,
-    doubt: Option<&str>,
-    way: Way,
-) -> TransitionRate {
-    let path = Along::new(saddles, orbits, doubt, way);
-    // over the same saddles the other way round: what leads back along the path, made to lead on
-    let other_way = if way == Way::Forward { Way::Backward } else { Way::Forward };
-    let other = Along::new(saddles, orbits, doubt, other_way);
-    let leads_back = |t: f64| at(orbits, t).leads_back;
-    let barrier_mev = highest(&path.onward, &path.back);
-    let ln_passage = |theory: Theory, t: f64| -> Option<f64> {
-        let [on, back] = path.both(theory, t)?;
-        if !leads_back(t) {
+/// A path in one direction, and over the same saddles the other way round: what leads back along the path, made to lead on.
+struct Passage<'a> {
+    path: Along<'a>,
+    other: Along<'a>,
+    barrier_mev: f64,
+}
+
+impl<'a> Passage<'a> {
+    fn of(path: Along<'a>, other: Along<'a>) -> Passage<'a> {
+        let barrier_mev = highest(&path.onward, &path.back);
+        Passage { path, other, barrier_mev }
+    }
+
+    fn leads_back(&self, t: f64) -> bool {
+        at(self.path.orbits, t).leads_back
+    }
+
+    /// ln of one over the mean time to the other end (1/s).
+    fn ln_rate(&self, theory: Theory, t: f64) -> Option<f64> {
+        let [on, back] = self.path.both(theory, t)?;
+        if !self.leads_back(t) {
             return Some(-first_passage(&on, &back));
         }
-        let [other_on, other_back] = other.both(theory, t)?;
+        let [other_on, other_back] = self.other.both(theory, t)?;
         Some(-first_passage_by_either([[&on, &back], [&other_on, &other_back]]))
-    };
-    let row = |t: f64| -> TransitionRow {
+    }
+
+    fn row(&self, t: f64) -> TransitionRow {
+        let path = &self.path;
         let whole = Row {
             temperature_k: t,
-            barrier_over_kt: barrier_mev / (K_B * t),
-            ln_htst_per_s: ln_passage(Theory::Htst, t),
-            ln_langer_per_s: ln_passage(Theory::Langer, t),
+            barrier_over_kt: self.barrier_mev / (K_B * t),
+            ln_htst_per_s: self.ln_rate(Theory::Htst, t),
+            ln_langer_per_s: self.ln_rate(Theory::Langer, t),
             ..Row::default()
         };
         let out = path.onward[path.parting(t).first().copied().unwrap_or(0)];
@@ -225,37 +232,48 @@ fn transition(
         };
         let known_within = first.ln_lifetime_s().and_then(|_| factor(out.ln_known_within(t)));
         let first = Row { known_within, ..first };
-        let ln_known = if leads_back(t) { path.ln_known(t).max(other.ln_known(t)) } else { path.ln_known(t) };
+        let ln_known = path.ln_known(t);
+        let ln_known = if self.leads_back(t) { ln_known.max(self.other.ln_known(t)) } else { ln_known };
         TransitionRow { passage: Row { known_within: factor(ln_known), ..whole }.held(), escape: first.held() }
-    };
-    let lifetime = |t: f64| row(t).passage.ln_lifetime_s();
-    let blocking_k = [1.0, TEN_YEARS_S].map(|s| blocking_temperature(lifetime, barrier_mev, s));
-    let rows: Vec<TransitionRow> = settings.temperatures_k.iter().map(|t| row(*t)).collect();
-    let refusals = || path.onward.iter().chain(&path.back).flat_map(|r| &r.at(settings.first_k()).refused);
-    let possible =
-        settings.temperatures_k.iter().any(|t| Theory::ALL.iter().any(|theory| ln_passage(*theory, *t).is_some()));
-    let refused = match possible {
-        true => None,
-        false => doubt
-            .map(|doubt| Refusal::Path(doubt.into()))
-            .or_else(|| refusals().map(|(_, reason)| reason.clone()).next()),
-    };
-    let first = at(orbits, settings.first_k());
-    let equivalents = match first.leads_back {
-        false => first.paths.clone(),
-        true => {
-            Equivalents { count: 2 * first.paths.count, by: format!("{}, and the way back along each", first.paths.by) }
+    }
+
+    /// Why it has no rate at any of these temperatures.
+    fn refused(&self, settings: &RateSettings) -> Option<Refusal> {
+        let has_a_rate = |t: &f64| Theory::ALL.iter().any(|theory| self.ln_rate(*theory, *t).is_some());
+        if settings.temperatures_k.iter().any(has_a_rate) {
+            return None;
         }
+        let Along { onward, back, doubt, .. } = &self.path;
+        let mut refusals = onward.iter().chain(back).flat_map(|r| &r.at(settings.first_k()).refused);
+        doubt.map(|doubt| Refusal::Path(doubt.into())).or_else(|| refusals.next().map(|(_, reason)| reason.clone()))
+    }
+}
+
+fn transition(
+    saddles: &[SaddleRate],
+    orbits: &[Orbits],
+    settings: &RateSettings,
+    doubt: Option<&str>,
+    way: Way,
+) -> TransitionRate {
+    let other_way = if way == Way::Forward { Way::Backward } else { Way::Forward };
+    let [path, other] = [way, other_way].map(|way| Along::new(saddles, orbits, doubt, way));
+    let passage = Passage::of(path, other);
+    let lifetime = |t: f64| passage.row(t).passage.ln_lifetime_s();
+    let Equivalents { count, by } = at(orbits, settings.first_k()).paths.clone();
+    let equivalents = match passage.leads_back(settings.first_k()) {
+        false => Equivalents { count, by },
+        true => Equivalents { count: 2 * count, by: format!("{by}, and the way back along each") },
     };
     TransitionRate {
         way,
-        saddles: path.onward.len(),
+        saddles: passage.path.onward.len(),
         equivalents,
-        barrier_mev,
-        rows,
+        barrier_mev: passage.barrier_mev,
+        rows: settings.temperatures_k.iter().map(|t| passage.row(*t)).collect(),
         network: Vec::new(),
-        blocking_k,
-        refused,
+        blocking_k: [1.0, TEN_YEARS_S].map(|s| blocking_temperature(lifetime, passage.barrier_mev, s)),
+        refused: passage.refused(settings),
     }
 }
 

@@ -187,6 +187,13 @@ def path(value: ArrayLike, what: str) -> NDArray[np.float64]:
     return finite(m, what)
 
 
+def as_guess(value: Guess | Mapping[str, Any] | ArrayLike) -> Any:
+    """A first path as a config has it, or vectors of the shape (images, N, 3)."""
+    if isinstance(value, Mapping):
+        return value
+    return path(value, "guess")
+
+
 def numbers(value: ArrayLike, what: str) -> NDArray[np.float64]:
     """An array of real numbers, or an error that says what would be one."""
     # numpy would take what lies under a mask, real parts, and the numbers of words and truths

@@ -16,9 +16,10 @@ from numpy.typing import ArrayLike
 
 from . import _core
 from ._errors import ConfigError
-from ._values import AnyState, Guess, Piece, as_json, as_state
+from ._read import read
+from ._values import AnyState, Guess, Piece, as_guess, as_json, as_state
 from .results import Check, Landscape, Rates, Relaxed, Result, vacant_sites
-from .system import System, as_guess
+from .system import System
 
 __all__ = ["barrier", "check", "landscape", "load", "rates", "relax", "run"]
 
@@ -29,8 +30,6 @@ Progress = Union[bool, Callable[[dict[str, Any]], object], None]
 Effort = Literal["none", "quick", "normal", "thorough"]
 #: in K, or quantities; one or several, or a range ``{"from": "2 K", "to": "4 K", "points": 3}``
 Temperatures = Union[float, str, Iterable[Union[float, str]], Mapping[str, Any]]
-#: the file of a first path of vectors
-_GUESS = "guess.npy"
 
 
 def run(
@@ -302,30 +301,11 @@ def _config(config: Config, kind: str, set: Mapping[str, Any] | None) -> _core.C
     sets = [f"{key}={as_json(value)}" for key, value in (set or {}).items()]
     if isinstance(config, (str, os.PathLike)):
         return _core.Config(os.fspath(config), None, "", sets, [], kind)
-    if isinstance(config, Piece) or not isinstance(config, (System, Mapping)):
+    if isinstance(config, System):
+        return read(config.config(), config.terms, kind, sets)
+    if isinstance(config, Piece) or not isinstance(config, Mapping):
         raise TypeError(f"expected a System, a file or a dictionary as in such a file, found {config!r}")
-    import tempfile
-
-    terms = config.terms if isinstance(config, System) else []
-    with tempfile.TemporaryDirectory(prefix="spinneb-") as folder:
-        whole = _with_files(config.config() if isinstance(config, System) else dict(config), folder)
-        try:
-            return _core.Config(None, as_json(whole), os.getcwd(), sets, terms, kind)
-        except ConfigError as error:
-            # the file is ours, and gone
-            own = f"path.guess.file.path: {os.path.join(folder, _GUESS)}"
-            raise ConfigError(str(error).replace(own, "path.guess: the array")) from None
-
-
-def _with_files(config: dict[str, Any], folder: str) -> dict[str, Any]:
-    """A first path of vectors as a file; results keep it."""
-    path = config.get("path")
-    guess = path.get("guess") if isinstance(path, Mapping) else None
-    if guess is None or isinstance(guess, Mapping):
-        return config
-    file = os.path.join(folder, _GUESS)
-    np.save(file, as_guess(guess))
-    return {**config, "path": {**path, "guess": {"file": {"path": file}}}}  # type: ignore[dict-item]
+    return read(dict(config), [], kind, sets)
 
 
 def _place(out: str | os.PathLike[str] | None, resume: bool) -> str | None:

@@ -10,7 +10,9 @@ from numpy.typing import ArrayLike
 
 from . import _core
 from ._html import paragraph, table
-from ._values import AnyState, Array, Guess, Lattice, Values, as_json, as_state, in_nm, path, plain
+from ._read import read
+from ._values import AnyState, Array, Lattice, Values, as_json, as_state, in_nm, plain
+from .states import uniform
 from .term import AnyTerm, Term
 
 __all__ = ["System"]
@@ -91,10 +93,7 @@ class System:
 
     def _core(self) -> _core.Config:
         """It, read; states have no part in it."""
-        from .api import _config
-        from .states import uniform
-
-        return _config(self.replaced(initial=uniform("z"), final=uniform("z")), "relax", None)
+        return read(self.config(initial=uniform("z"), final=uniform("z")), self.terms, "relax", [])
 
     def config(self, initial: AnyState | None = None, final: AnyState | None = None, **options: Any) -> dict[str, Any]:
         """The system as a config, with these states and keys in place of its own."""
@@ -168,10 +167,3 @@ def _named(terms: list[Term]) -> None:
     for name in names:
         if names.count(name) > 1:
             raise ValueError(f"two terms are called {name!r}: give each a name of its own, Term(…, name=…)")
-
-
-def as_guess(value: Guess | Mapping[str, Any] | ArrayLike) -> Any:
-    """A first path as a config has it, or vectors of the shape (images, N, 3)."""
-    if isinstance(value, Mapping):
-        return value
-    return path(value, "guess")

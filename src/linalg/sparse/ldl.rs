@@ -18,7 +18,9 @@ impl SparseLdl {
     /// by that error's size, sign kept.
     pub fn of(mut matrix: SparseMatrix) -> SparseLdl {
         let floor = 4.0 * f64::EPSILON * matrix.size().max(1e-280);
-        let mut memory = take(&mut matrix.memory).fitting(&matrix.plan);
+        let plan = &matrix.plan;
+        let memory = if matrix.memory.l.is_empty() { plan.spare.any() } else { take(&mut matrix.memory) };
+        let mut memory = memory.fitting(plan.entries, plan.pivots, plan.waiting);
         memory.eliminate(&matrix, floor);
         let negatives = memory.d.iter().filter(|d| **d < 0.0).count();
         matrix.memory = memory;

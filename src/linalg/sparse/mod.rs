@@ -11,6 +11,7 @@
 
 mod assembly;
 mod dissection;
+mod elimination;
 mod graph;
 mod ldl;
 mod matrix;

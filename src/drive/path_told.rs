@@ -1,0 +1,102 @@
+//! What is said of a path beside its numbers.
+
+use super::Verdict;
+use super::heights::{height, prominent_maxima};
+use super::outcome::SaddlePoint;
+use crate::band::Band;
+use crate::landscape::{Doubt, Minimum, Pass};
+use crate::stationary::{LOWER, Spectrum};
+
+/// A path, with what it should have and what was proven of it.
+pub struct OfPath<'a> {
+    pub band: &'a Band<'a>,
+    /// So many images, if a number was given.
+    pub asked_for: Option<usize>,
+    pub ends: &'a [Minimum; 2],
+    pub links: &'a [Pass],
+}
+
+impl OfPath<'_> {
+    /// What is to be said of it, with the saddles as they are reported, what stands against a certificate, and what it came to.
+    pub fn warnings(&self, saddles: &[SaddlePoint], doubts: &[Doubt], verdict: &Verdict) -> Vec<String> {
+        let band = self.band;
+        let more = self.asked_for.and_then(|asked| more_images(asked, band.images(), saddles.len()));
+        let hidden = matches!(verdict, Verdict::BelowRounding { .. }).then(|| format!("not certified: {verdict}"));
+        let doubtful = doubts.iter().map(Doubt::warning).chain(hidden);
+        let images: Vec<usize> = saddles.iter().map(|saddle| saddle.image).collect();
+        let lower = lower_maxima(band.energies_mev(), LOWER * height(band), &images);
+        more.into_iter().chain(doubtful).chain(flat_warnings(self.ends, self.links)).chain(lower).collect()
+    }
+}
+
+/// Modes under the noise floor are said, not guessed: of many saddles at once.
+fn flat_warnings(ends: &[Minimum; 2], links: &[Pass]) -> Vec<String> {
+    let say = |what: &str, s: &Spectrum| {
+        format!("{what}: {} mode(s) flat to {:.1e} meV, counted with the zero modes", s.flat, s.floor_mev)
+    };
+    let of_ends = ends.iter().zip(["initial state", "final state"]).filter(|(end, _)| end.spectrum.flat > 0);
+    let mut warnings: Vec<String> = of_ends.map(|(end, which)| say(which, &end.spectrum)).collect();
+    let flat: Vec<usize> = (0..links.len()).filter(|k| links[*k].spectrum.flat > 0).collect();
+    for alike in flat.chunk_by(|a, b| say("", &links[*a].spectrum) == say("", &links[*b].spectrum)) {
+        let rows: Vec<String> = alike.chunk_by(|a, b| a + 1 == *b).map(row).collect();
+        let saddles = if alike.len() == 1 { "saddle" } else { "saddles" };
+        warnings.push(say(&format!("{saddles} {}", rows.join(", ")), &links[alike[0]].spectrum));
+    }
+    warnings
+}
+
+/// A row of numbers without a gap.
+fn row(numbers: &[usize]) -> String {
+    match numbers {
+        [first, .., last] => format!("{first}–{last}"),
+        _ => numbers.iter().map(usize::to_string).collect(),
+    }
+}
+
+/// Says that a path over proven saddles has other maxima than at their images, higher than both sides by this much (meV): where a slope
+/// forks, a relaxed path may leave the descent for another valley.
+fn lower_maxima(e: &[f64], prominence: f64, saddles: &[usize]) -> Option<String> {
+    let on_a_level = |k: usize, image: usize| e[k.min(image)..=k.max(image)].iter().all(|x| *x >= e[k] - prominence);
+    let is_other = |k: &usize| saddles.iter().all(|image| image.abs_diff(*k) > 1 && !on_a_level(*k, *image));
+    let others = prominent_maxima(e, prominence).into_iter().filter(is_other);
+    let (count, highest) = others.fold((0, f64::NEG_INFINITY), |(n, high), k| (n + 1, f64::max(high, e[k] - e[0])));
+    (count > 0 && !saddles.is_empty()).then(|| {
+        format!(
+            "the path has {count} more maxima than the saddles that are told, the highest {highest:.6} meV above the initial \
+             state: below the barrier, and not refined"
+        )
+    })
+}
+
+/// That a path has more images than were asked for.
+fn more_images(asked: usize, has: usize, saddles: usize) -> Option<String> {
+    (has > asked).then(|| {
+        format!(
+            "path.images is {asked}: the lowest route that is known, over {saddles} saddles, needs more, and its path has {has}"
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn maxima_of_a_path_that_are_no_saddles_are_told_with_the_highest() {
+        let e = [1.0, 2.0, 9.0, 4.0, 4.5, 3.0, 3.000001, 0.0, 2.5, 0.0];
+        let told = lower_maxima(&e, 1e-3, &[2]).unwrap();
+        assert!(
+            told.starts_with(
+                "the path has 2 more maxima than the saddles that are told, the highest 3.500000 meV above"
+            ),
+            "{told}"
+        );
+        // images beside a saddle's are its own
+        assert_eq!(lower_maxima(&e, 1.0, &[2]).map(|told| told.contains("has 1 more")), Some(true));
+        assert_eq!(lower_maxima(&e, 1e-3, &[1, 4, 8]), None);
+        assert_eq!(lower_maxima(&e, 1e-3, &[]), None);
+        // nor is what is level with it one more
+        let level = [0.0, 5.0, 5.000_1, 5.0, 5.0, 5.000_2, 5.0, 0.0];
+        assert_eq!(lower_maxima(&level, 1e-3, &[2]), None);
+    }
+}
