@@ -91,6 +91,21 @@ fn one_of_two_skyrmions_collapses_over_the_same_barrier_whichever_end_has_both()
 }
 
 #[test]
+fn a_skyrmion_whose_wall_leaves_its_place_by_the_long_sides_is_none() {
+    // of least energy is a stripe across a strip that is open along it, and a stripe across a region: two walls, no ring
+    let mut strip = film([0.7, 0.7], "interfacial", 0.9, skyrmion([14.5, 3.5]), up(1.0));
+    strip["lattice"] = json!({"square": {"cells": [30, 8]}});
+    let mut region = film([0.5, 0.5], "interfacial", 0.9, json!({"regions": {"r": skyrmion([19.5, 5.5])}}), up(1.0));
+    region["initial"]["regions"]["default"] = up(-1.0);
+    region["lattice"]["square"]["cells"] = json!([26, 14]);
+    region["lattice"]["square"]["regions"]["r"]["box"]["from"] = json!([8, -9]);
+    for (config, key) in [(strip, "initial"), (region, "initial.regions.r")] {
+        let said = try_problem(&config).err().unwrap();
+        assert!(said.contains(&format!("{key}.skyrmion.radius: no size of this skyrmion is stable here")), "{said}");
+    }
+}
+
+#[test]
 fn a_skyrmion_that_has_no_size_in_its_region_or_its_core_outside_is_refused() {
     let state = two_skyrmions([6.5, 5.5], [19.5, 5.5]);
     // nothing holds them
