@@ -1,7 +1,7 @@
 //! `collect`: the results of a sweep as one table and one figure; the shares of a landscape as its results.
 
+use super::messages::Messages;
 use super::points::{checked, folder};
-use super::said::Said;
 use super::{UNFINISHED, USAGE, note};
 use crate::config::sweep::Sweep;
 use crate::files::disk::File;
@@ -98,17 +98,17 @@ pub(super) fn states(dir: &Path, index: &SweepIndex) -> Vec<PointState> {
 
 /// Writes the table and the figure, and says what is in them and what is missing.
 pub(super) fn write(index: &SweepIndex, dir: &Path, states: &[PointState], quiet: bool, force: bool) -> Result<()> {
-    let said = Said { name: &index.name, quiet };
+    let messages = Messages { name: &index.name, quiet };
     let of = |word: &str| (0..states.len()).filter(|k| states[*k].word() == word).collect::<Vec<_>>();
     let counts = ["certified", "not certified", "missing", "another result", "damaged"].map(|word| (word, of(word)));
     let counted: Vec<String> =
         counts.iter().filter(|(_, points)| !points.is_empty()).map(|(word, p)| format!("{} {word}", p.len())).collect();
-    said.line(format_args!("{} points: {}", states.len(), counted.join(", ")));
+    messages.line(format_args!("{} points: {}", states.len(), counted.join(", ")));
     for (word, points) in counts.iter().skip(1).filter(|(_, points)| !points.is_empty()) {
-        said.line(format_args!("{word}: {}", few(points)));
+        messages.line(format_args!("{word}: {}", few(points)));
     }
     if states.iter().all(|state| state.found().is_none()) {
-        said.line(format_args!("no point has a result in {}: nothing is collected", dir.display()));
+        messages.line(format_args!("no point has a result in {}: nothing is collected", dir.display()));
         return Ok(());
     }
     let place = dir.join("barriers.csv");
@@ -131,12 +131,12 @@ pub(super) fn write(index: &SweepIndex, dir: &Path, states: &[PointState], quiet
     }
     index.collect(dir, &files, force)?;
     match barriers {
-        1 => said.line(format_args!("{} is written; no point has a barrier to draw", place.display())),
-        _ => said.line(format_args!("{}, barriers.svg and barriers.png are written", place.display())),
+        1 => messages.line(format_args!("{} is written; no point has a barrier to draw", place.display())),
+        _ => messages.line(format_args!("{}, barriers.svg and barriers.png are written", place.display())),
     }
     let more: Vec<&str> = files[barriers..].iter().map(|file| file.name.as_str()).collect();
     if !more.is_empty() {
-        said.line(format_args!("{} too", more.join(", ")));
+        messages.line(format_args!("{} too", more.join(", ")));
     }
     Ok(())
 }

@@ -1,9 +1,9 @@
 //! `landscape`: all minima and saddles of a config below an energy.
 
+use super::messages::{Messages, how_it_goes_on};
 use super::points::{ShareOf, share};
 use super::progress::Progress;
 use super::run::no_figure;
-use super::said::{Said, how_it_goes_on};
 use super::signals::Signals;
 use super::threads::start_threads;
 use super::{Interval, Looking, UNFINISHED, at_least_one, interval, report};
@@ -90,17 +90,17 @@ pub struct Arguments {
 pub fn landscape(arguments: &Arguments) -> Result<u8> {
     start_threads(arguments.threads)?;
     let loaded = load_landscape(&arguments.config, &arguments.set())?;
-    let said = Said { name: &loaded.name, quiet: arguments.quiet };
-    let directory = folder_of(said.name, arguments.out.as_deref());
+    let messages = Messages { name: &loaded.name, quiet: arguments.quiet };
+    let directory = folder_of(messages.name, arguments.out.as_deref());
     let mut asked = loaded.survey()?;
     let signals = Signals::watch()?;
     asked.problem.control.obey(signals.switch());
     let Some(lock) = loaded.reserve(&directory, &loaded.survey_file_names(), arguments.force)? else {
-        said.is_done(&directory, "makes");
-        return print(arguments.json, said.name, &directory);
+        messages.is_done(&directory, "makes");
+        return print(arguments.json, messages.name, &directory);
     };
-    said.lock(&lock, &directory, "nobody else");
-    let mut progress = Progress::new(said.name, arguments.quiet);
+    messages.lock(&lock, &directory, "nobody else");
+    let mut progress = Progress::new(messages.name, arguments.quiet);
     let keeping = Keeping { every: arguments.checkpoint_every.0, resume: arguments.resume, force: arguments.force };
     if let Some(checkpoint) = loaded.checkpoint(&directory, &keeping, || progress.speaker())? {
         asked.problem.control.record(Box::new(checkpoint));
@@ -110,7 +110,7 @@ pub fn landscape(arguments: &Arguments) -> Result<u8> {
         (Err(Error::Stopped), Some((code, word))) => {
             let stage = progress.stage_now().to_string();
             drop(progress);
-            said.line(format_args!("{word} while {stage}; {}", how_it_goes_on(&directory, arguments.resume)));
+            messages.line(format_args!("{word} while {stage}; {}", how_it_goes_on(&directory, arguments.resume)));
             return Ok(code);
         }
         (Err(error), _) => return Err(error.into()),
@@ -125,11 +125,11 @@ pub fn landscape(arguments: &Arguments) -> Result<u8> {
     if let Err(error) = discard_leftovers(&directory) {
         report(&error.into());
     }
-    said.warnings(&loaded.survey_report(&found)?.warnings());
+    messages.warnings(&loaded.survey_report(&found)?.warnings());
     let temperatures = found.lifetimes.as_ref().map_or(0, |lifetimes| lifetimes.settings.temperatures_k.len());
     let missing = no_figure(&directory, "lifetimes", temperatures, &loaded.config.output.plots);
-    missing.into_iter().for_each(|line| said.line(line));
-    print(arguments.json, said.name, &directory)
+    missing.into_iter().for_each(|line| messages.line(line));
+    print(arguments.json, messages.name, &directory)
 }
 
 impl Arguments {

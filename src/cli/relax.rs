@@ -1,6 +1,6 @@
 //! `relax`: the ends of a path by themselves, what they relax to and whether that is a minimum.
 
-use super::said::Said;
+use super::messages::Messages;
 use super::threads::start_threads;
 use super::{UNFINISHED, at_least_one, in_the_way, report, worse};
 use crate::config::{Loaded, OutputConfig, load_states};
@@ -78,7 +78,7 @@ fn relax_one(arguments: &Relax, config: &Path) -> Result<u8> {
     let (loaded, with_final) = load_states(config, &arguments.set)?;
     let states = loaded.states(with_final)?;
     let (name, formats) = (&loaded.name, &loaded.config.output.formats);
-    let said = Said { name, quiet: arguments.quiet };
+    let messages = Messages { name, quiet: arguments.quiet };
     let given = [("initial", Some(&states.initial)), ("final", states.final_state.as_ref())];
     let given: Vec<_> = given.into_iter().filter_map(|(which, spins)| Some((which, spins?))).collect();
     let directory = directory(arguments, &loaded);
@@ -91,13 +91,13 @@ fn relax_one(arguments: &Relax, config: &Path) -> Result<u8> {
             &loaded.made_from,
         )?;
     }
-    said.warnings(&loaded.warnings);
+    messages.warnings(&loaded.warnings);
     let h = &states.hamiltonian;
     let mut relaxed = Vec::new();
     for (which, spins) in given {
-        said.line(format_args!("relaxing the {which} state"));
+        messages.line(format_args!("relaxing the {which} state"));
         let state = relaxed_state(h.into(), spins, arguments.modes, which)?;
-        said.warnings(&state.warnings);
+        messages.warnings(&state.warnings);
         relaxed.push((which, state));
     }
     let same_minimum = match &relaxed[..] {
@@ -118,11 +118,11 @@ fn relax_one(arguments: &Relax, config: &Path) -> Result<u8> {
         for file in found.files()? {
             disk::write_file(&dir.join(&file.name), &file.bytes)?;
         }
-        said.line(format_args!("the states are in {}", dir.display()));
+        messages.line(format_args!("the states are in {}", dir.display()));
         let left_out = formats_of_paths(formats);
         // the default, which nobody wrote, has formats of paths
         if !left_out.is_empty() && *formats != OutputConfig::default().formats {
-            said.line(format_args!(
+            messages.line(format_args!(
                 "not written: {}, which a path has and a single state has not",
                 left_out.join(", ")
             ));

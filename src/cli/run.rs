@@ -1,7 +1,7 @@
 //! `run`: from each config to its results.
 
+use super::messages::{Messages, how_it_goes_on};
 pub(super) use super::progress::Progress;
-use super::said::{Said, how_it_goes_on};
 use super::signals::Signals;
 use super::threads::start_threads;
 use super::write::{Earlier, write};
@@ -91,15 +91,15 @@ fn distinct(loaded: &[Loaded], directories: &[PathBuf]) -> u8 {
 
 /// Runs one config into its folder, or says that it is done.
 pub(super) fn run_one(arguments: &Run, signals: &Signals, loaded: &Loaded, directory: &Path) -> Result<u8> {
-    let said = Said { name: &loaded.name, quiet: arguments.quiet };
+    let messages = Messages { name: &loaded.name, quiet: arguments.quiet };
     let mut problem = loaded.problem()?;
     problem.control.obey(signals.switch());
     let Some(lock) = loaded.reserve(directory, &loaded.file_names(), arguments.force)? else {
-        said.is_done(directory, "runs");
-        return print(arguments, said.name, directory);
+        messages.is_done(directory, "runs");
+        return print(arguments, messages.name, directory);
     };
-    said.lock(&lock, directory, "no other run");
-    let mut progress = Progress::new(said.name, arguments.quiet);
+    messages.lock(&lock, directory, "no other run");
+    let mut progress = Progress::new(messages.name, arguments.quiet);
     if let Some(checkpoint) = loaded.checkpoint(directory, &arguments.keeping(), || progress.speaker())? {
         problem.control.record(Box::new(checkpoint));
     }
@@ -116,25 +116,25 @@ pub(super) fn run_one(arguments: &Run, signals: &Signals, loaded: &Loaded, direc
                 }
             };
             let on = how_it_goes_on(directory, arguments.resume);
-            said.line(format_args!("{word} while {stage}; {on}; {partial}"));
+            messages.line(format_args!("{word} while {stage}; {on}; {partial}"));
             return Ok(code);
         }
         (Err(error), _) => return Err(error.into()),
     };
     drop(progress);
-    keep(said, arguments, loaded, &problem, &outcome, directory)?;
+    keep(messages, arguments, loaded, &problem, &outcome, directory)?;
     // its checkpoint is closed
     drop(problem);
     if let Err(error) = discard_leftovers(directory) {
-        said.line(format_args!("the checkpoint is of no use any more but cannot be taken away: {error}"));
+        messages.line(format_args!("the checkpoint is of no use any more but cannot be taken away: {error}"));
     }
-    tell(said, &outcome, directory, &loaded.config.output.plots);
-    print(arguments, said.name, directory)
+    tell(messages, &outcome, directory, &loaded.config.output.plots);
+    print(arguments, messages.name, directory)
 }
 
 /// Writes the files of a result; where that fails, what was computed is not lost with them.
 fn keep(
-    said: Said,
+    messages: Messages,
     arguments: &Run,
     loaded: &Loaded,
     problem: &drive::Problem,
@@ -145,13 +145,13 @@ fn keep(
     match write(loaded, outcome, directory, earlier(loaded.source_name().as_deref()), arguments.force) {
         Ok(Some(kept)) => {
             let still_earlier = if kept.another_gave_way { ", in the place of a still earlier one" } else { "" };
-            said.line(format_args!("the earlier result is kept in {}{still_earlier}", kept.place.display()));
+            messages.line(format_args!("the earlier result is kept in {}{still_earlier}", kept.place.display()));
         }
         Ok(None) => {}
         Err(error) => {
             problem.control.recorder().save();
             if Checkpoint::exists(directory) {
-                said.line("the checkpoint is kept: once files can be written, --resume makes the result of it");
+                messages.line("the checkpoint is kept: once files can be written, --resume makes the result of it");
             }
             return Err(error.into());
         }
@@ -160,11 +160,11 @@ fn keep(
 }
 
 /// Its warnings, its lifetimes, and which figure it has not.
-fn tell(said: Said, outcome: &drive::Outcome, directory: &Path, plots: &[String]) {
-    said.warnings(&outcome.warnings);
+fn tell(messages: Messages, outcome: &drive::Outcome, directory: &Path, plots: &[String]) {
+    messages.warnings(&outcome.warnings);
     let temperatures = outcome.rates.as_ref().map_or(0, |rates| rates.settings.temperatures_k.len());
     let lines = super::rate::lifetimes(outcome).into_iter();
-    lines.chain(no_figure(directory, "arrhenius", temperatures, plots)).for_each(|line| said.line(line));
+    lines.chain(no_figure(directory, "arrhenius", temperatures, plots)).for_each(|line| messages.line(line));
 }
 
 /// That a figure of times which was asked for, at several temperatures, is not there.

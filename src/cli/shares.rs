@@ -2,9 +2,9 @@
 
 use super::collect::Collect;
 use super::landscape::{Arguments, folder_of, print, write};
+use super::messages::Messages;
 use super::points::ShareOf;
 use super::progress::Progress;
-use super::said::Said;
 use super::signals::Signals;
 use super::threads::start_threads;
 use super::{UNFINISHED, USAGE, note};
@@ -24,13 +24,13 @@ pub(super) fn take(arguments: &Arguments, of: ShareOf) -> Result<u8> {
     let set = arguments.set();
     let loaded = load_landscape(&arguments.config, &set)?;
     let (name, directory) = (&loaded.name, folder_of(&loaded.name, arguments.out.as_deref()));
-    let said = Said { name, quiet: arguments.quiet };
+    let messages = Messages { name, quiet: arguments.quiet };
     let mut asked = loaded.survey()?;
     asked.shares = of.shares;
     let signals = Signals::watch()?;
     asked.problem.control.obey(signals.switch());
     if loaded.is_finished(&directory, &loaded.survey_file_names(), false)? {
-        said.line(format_args!("{} holds the finished result of this config already", directory.display()));
+        messages.line(format_args!("{} holds the finished result of this config already", directory.display()));
         return print(arguments.json, name, &directory);
     }
     let mut progress = Progress::new(name, arguments.quiet);
@@ -43,7 +43,7 @@ pub(super) fn take(arguments: &Arguments, of: ShareOf) -> Result<u8> {
             (Error::Stopped, Some((code, word))) => {
                 let stage = progress.stage_now().to_string();
                 drop(progress);
-                said.line(format_args!("{word} while {stage}; the same command goes on from there"));
+                messages.line(format_args!("{word} while {stage}; the same command goes on from there"));
                 return Ok(code);
             }
             _ => return Err(error.into()),

@@ -5,7 +5,7 @@
 //! as in a survey: the mean first passage from one end to the other through the network of all that was found. (What is higher than
 //! the top by n k_BT adds a part of some e⁻ⁿ.)
 
-use super::rates_told::{ALONE, FIELD};
+use super::rate_warnings::{ALONE, FIELD};
 use super::run::Run;
 use super::survey::{Lifetime, Lifetimes, Survey, Told};
 use crate::band::Band;

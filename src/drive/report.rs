@@ -3,10 +3,10 @@
 use super::judge::{Judgement, Seen};
 use super::network::NetworkTimes;
 use super::outcome::*;
-use super::path_told::OfPath;
+use super::path_warnings::OfPath;
 use super::points::{end_of, highest_climb, image_state, minima_between, places_of, saddles, tell_eigenvalues};
+use super::rate_warnings;
 use super::rates::{self, Known};
-use super::rates_told;
 use super::run::Run;
 use super::settled::{Proof, Settled};
 use super::tables::{image_table, profile, profile_terms};
@@ -93,7 +93,7 @@ pub fn outcome(
     let highest_climb =
         barrier.map(|b| highest_climb(b, &saddles, &intermediate_minima, [h.energy_mev(initial), above_final]));
     let of_path = OfPath { band, asked_for: run.problem.images.asked_for(), ends: &ends, links: &links };
-    let of_rates = rates.iter().flat_map(|rates| rates_told::warnings(rates, &search, barrier, highest_climb));
+    let of_rates = rates.iter().flat_map(|rates| rate_warnings::warnings(rates, &search, barrier, highest_climb));
     let of_network = rates.iter().zip(&rated.network).flat_map(|(rates, network)| network.warnings(rates));
     let warnings =
         run.told(of_path.warnings(&saddles, &doubts, &verdict).into_iter().chain(of_rates).chain(of_network));

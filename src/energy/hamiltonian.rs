@@ -1,13 +1,13 @@
 //! The sum of the terms, on a lattice.
 
+use super::construction::{constant_blocks, fit, stiffness_mev, twice};
 use super::exchange_matrix::ExchangeMatrix;
 use super::{Blocks, Coupling, EnergyTerm, symmetry_axes};
 use crate::error::{Error, Result};
 use crate::field::{Components, ComponentsMut, TILE, project_row, tiles};
-use crate::geometry::{Direction, Vector, vector};
-use crate::lattice::{BondFamily, Hop, Lattice};
+use crate::geometry::{Vector, vector};
+use crate::lattice::Lattice;
 use crate::linalg::{Layout, slab};
-use crate::spins::Spins;
 use multiversion::multiversion;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -45,9 +45,6 @@ pub struct Hamiltonian {
 
 /// Unit vectors whose vector product is shorter are parallel.
 const PARALLEL: f64 = 1e-6;
-/// A sum of the energies of sites is uncertain by this part of them: some ulp.
-const ROUNDED: f64 = 8.0 * f64::EPSILON;
-
 impl Hamiltonian {
     /// The sum of `terms` on `lattice`; an error where one does not fit it, by its number of sites, the lengths of its arrays or its bonds,
     /// or two reach from all sites to all.
@@ -168,45 +165,9 @@ impl Hamiltonian {
         self.stiffness
     }
 
-    /// The same of the term of this number alone.
-    fn term_stiffness_mev(&self, k: usize) -> f64 {
-        let (term, alone) = (&self.terms[k], &self.terms[k..=k]);
-        let blocks = constant_blocks(&self.lattice, alone);
-        stiffness_mev(&blocks, term.is_quadratic(), |m, g| {
-            let mut density = vec![0.0; self.sites];
-            term.add_gradient(Components::new(m), ComponentsMut::new(g), &mut density, 0..self.sites);
-        })
-    }
-
-    /// The rounding error (meV) of the energies of these configurations, where it may hide a barrier between them: a term that differs
-    /// among them, by more than its own rounding, is not stiffer for a spin than that error. Nothing where no such term is there.
-    pub fn hiding_rounding_mev<'a>(&self, configurations: impl Iterator<Item = &'a [f64]> + Clone) -> Option<f64> {
-        let largest = |sizes: &mut dyn Iterator<Item = f64>| sizes.fold(0.0, f64::max);
-        let rounding = |stiffness: f64, size: f64| ROUNDED * (stiffness * self.sites as f64).max(size);
-        let all = largest(&mut configurations.clone().map(|m| size(&self.density(m))));
-        let error = rounding(self.stiffness, all);
-        let may_be_hidden = |k: usize| {
-            let stiffness = self.term_stiffness_mev(k);
-            let densities: Vec<Vec<f64>> =
-                configurations.clone().map(|m| super::density_of(self.terms[k].as_ref(), m)).collect();
-            let own = rounding(stiffness, largest(&mut densities.iter().map(|density| size(density))));
-            let rises = |density: &Vec<f64>| {
-                let rise: f64 = density.iter().zip(&densities[0]).map(|(here, first)| here - first).sum();
-                rise.abs() > own
-            };
-            stiffness <= error && densities.iter().any(rises)
-        };
-        (0..self.terms.len()).any(may_be_hidden).then_some(error)
-    }
-
     /// What the Hessian is uncertain by (meV), rounding apart: what long-ranged and custom terms leave out.
     pub fn hessian_error_mev(&self) -> f64 {
         self.coupling().error_mev() + self.terms.iter().map(|t| t.hessian_error_mev()).sum::<f64>()
-    }
-
-    /// What the energy of a configuration is uncertain by (meV): a site's share of it by some ulp of the largest stiffness.
-    pub fn rounding_mev(&self) -> f64 {
-        ROUNDED * self.stiffness * self.sites as f64
     }
 
     /// Unit vectors about which a rotation of all spins leaves every term as it is: none, one, or x, y and z.
@@ -460,112 +421,5 @@ fn curve(m: Components, g: Components, v: Components, ox: &mut [f64], oy: &mut [
         ox[i] -= radial * m.x[i] + bent * v.x[i];
         oy[i] -= radial * m.y[i] + bent * v.y[i];
         oz[i] -= radial * m.z[i] + bent * v.z[i];
-    }
-}
-
-/// The largest stiffness or torque that a site can feel (meV), roughly, of terms with these constant blocks and this gradient.
-fn stiffness_mev(blocks: &Blocks, is_quadratic: bool, gradient: impl Fn(&[f64], &mut [f64])) -> f64 {
-    let diagonal = |b: super::blocks::Block| b[0][0].abs() + b[1][1].abs() + b[2][2].abs();
-    let of_blocks = blocks.sites().map(diagonal).fold(1e-280, f64::max);
-    let sites = blocks.sites().count();
-    // a cubic anisotropy has no torque and no gradient along its axes, and some between them
-    let between = (!is_quadratic).then(|| Direction::new([1.0, 2.0, 3.0])).and_then(Result::ok);
-    let axes = [Direction::X, Direction::Y, Direction::Z].into_iter().chain(between);
-    let largest = axes.map(|axis| {
-        let mut g = vec![0.0; 3 * sites];
-        gradient(Spins::uniform(sites, axis).as_slice(), &mut g);
-        slab::max_abs(&g)
-    });
-    largest.fold(of_blocks, f64::max)
-}
-
-/// The sum of the sizes of densities.
-fn size(density: &[f64]) -> f64 {
-    density.iter().map(|e| e.abs()).sum()
-}
-
-/// What of a term does not fit a lattice, in words.
-fn fit(lattice: &Lattice, term: &dyn EnergyTerm) -> std::result::Result<(), String> {
-    let sites = lattice.sites;
-    if let Some(found) = term.sites().filter(|n| *n != sites) {
-        return Err(format!("a term of {found} sites on a lattice of {sites}"));
-    }
-    if !term.fits(sites) {
-        return Err(format!("its arrays are of different lengths: each has an entry for each of the {sites} sites"));
-    }
-    match term.families().into_iter().find(|family| !family.is_of(lattice)) {
-        None => Ok(()),
-        Some(family) => {
-            let Hop { atoms: [from, to], shift } = family.hop;
-            let bonds = format!("bonds from atom {from} to atom {to}, {shift:?} cells on");
-            Err(format!(
-                "a term of another lattice, which has other {bonds}: make it for the lattice of the Hamiltonian"
-            ))
-        }
-    }
-}
-
-/// The blocks of the quadratic terms, for the bonds of all terms; in a row for all shells up to the furthest.
-fn constant_blocks(lattice: &Lattice, terms: &[Box<dyn EnergyTerm>]) -> Blocks {
-    let families = match lattice.is_row() {
-        true => {
-            let reach = terms.iter().map(|t| t.reach()).max().unwrap_or(0);
-            lattice.families(reach.min(lattice.sites - 1))
-        }
-        false => distinct(terms.iter().flat_map(|t| t.families())),
-    };
-    let mut blocks = Blocks::zeros(lattice.sites, families);
-    for t in terms.iter().filter(|t| t.is_quadratic()) {
-        t.add_blocks(Components::new(&vec![0.0; 3 * lattice.sites]), &mut blocks);
-    }
-    blocks
-}
-
-/// Each family once.
-fn distinct<'a>(families: impl Iterator<Item = &'a BondFamily>) -> Vec<BondFamily> {
-    let mut known: Vec<BondFamily> = Vec::new();
-    for family in families {
-        if !known.iter().any(|other| other.hop == family.hop) {
-            known.push(family.clone());
-        }
-    }
-    known
-}
-
-/// Two terms that count the same forces.
-fn twice(first: &str, second: &str) -> Error {
-    let what = if first == second {
-        format!("\"{first}\" is there twice")
-    } else {
-        format!("there are both \"{first}\" and \"{second}\"")
-    };
-    Error::invalid(
-        "energy",
-        format!("{what}, of the material or here: keep one, or the moments act on each other twice"),
-    )
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::energy::test_terms::{hamiltonian, lattice};
-
-    #[test]
-    fn rounding_hides_what_a_term_no_stiffer_than_that_would_make() {
-        let lattice = lattice(r#"{"chain": {"sites": 12}}"#);
-        let turn = |h: &Hamiltonian, axes: [Direction; 2]| {
-            let states = axes.map(|axis| Spins::uniform(h.sites(), axis));
-            h.hiding_rounding_mev(states.iter().map(Spins::as_slice))
-        };
-        let of = |j: &str| {
-            let exchange = format!(r#"{{"exchange": {{"J": ["{j}"]}}}}"#);
-            hamiltonian(&lattice, &[&exchange, r#"{"anisotropy": {"K": "0.5 meV", "axis": [0, 0, 1]}}"#])
-        };
-        let [weak, strong] = ["10 meV", "1e14 meV"].map(of);
-        let out_of_the_axis = [Direction::Z, Direction::X];
-        assert_eq!(turn(&weak, out_of_the_axis), None);
-        assert!(turn(&strong, out_of_the_axis).is_some_and(|mev| mev > 1.0));
-        // about the axis no term changes, so none is hidden
-        assert_eq!(turn(&strong, [Direction::X, Direction::Y]), None);
     }
 }

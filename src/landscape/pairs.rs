@@ -19,10 +19,38 @@ pub(super) type Alike = ([usize; 2], i64);
 /// What is known of pairs of minima.
 #[derive(Debug, Default)]
 pub(super) struct Pairs {
-    /// Squares of distances of minimum k from all others, as far as they were asked for; NaN where they were not.
+    /// Squares of distances of minimum k from those before it, as far as they were asked for; NaN where they were not.
     apart: Vec<Vec<f64>>,
     /// How often each was tried, it or an image of it by symmetry.
     tried: BTreeMap<Alike, usize>,
+}
+
+impl Pairs {
+    /// The square of the distance of two minima.
+    pub fn squared(&mut self, land: &Landscape, pair: [usize; 2]) -> f64 {
+        let [before, k] = [pair[0].min(pair[1]), pair[0].max(pair[1])];
+        if self.apart.len() <= k {
+            self.apart.resize(k + 1, Vec::new());
+        }
+        let row = &mut self.apart[k];
+        row.resize(k, f64::NAN);
+        if row[before].is_nan() {
+            row[before] = land.squared_distance(pair);
+        }
+        row[before]
+    }
+
+    /// How often a pair was tried.
+    pub fn tries(&self, pair: &Alike) -> usize {
+        self.tried.get(pair).copied().unwrap_or(0)
+    }
+
+    /// The same; one time more from now on.
+    pub fn try_once_more(&mut self, pair: Alike) -> usize {
+        let tried = self.tried.entry(pair).or_default();
+        *tried += 1;
+        *tried - 1
+    }
 }
 
 /// The square of a distance that counts a pair as further apart with every try.
@@ -42,23 +70,10 @@ impl Landscape<'_> {
         2.0 * (a.sites() as f64 - together).max(0.0)
     }
 
-    fn known_distance(&self, pairs: &mut Pairs, [here, there]: [usize; 2]) -> f64 {
-        if pairs.apart[here].len() <= there {
-            pairs.apart[here].resize(self.minima().len(), f64::NAN);
-        }
-        if pairs.apart[here][there].is_nan() {
-            let other_way = pairs.apart[there].get(here).copied().filter(|squared| !squared.is_nan());
-            pairs.apart[here][there] = other_way.unwrap_or_else(|| self.squared_distance([here, there]));
-        }
-        pairs.apart[here][there]
-    }
-
     /// How often a pair was tried; one time more from now on.
     pub(super) fn try_once_more(&mut self, pair: [usize; 2]) -> usize {
         let key = self.alike(pair, self.squared_distance(pair));
-        let tried = self.pairs.tried.entry(key).or_default();
-        *tried += 1;
-        *tried - 1
+        self.pairs.try_once_more(key)
     }
 
     /// What pairs share that are images of each other by symmetry.
@@ -75,7 +90,6 @@ impl Landscape<'_> {
         let is_node = |k: usize| self.standing_for(k) == k && (self.heights_mev()[k] < below_mev || k == to);
         let mut open: Vec<usize> = (0..part.len()).filter(|k| is_node(*k)).collect();
         let mut pairs = std::mem::take(&mut self.pairs);
-        pairs.apart.resize(part.len(), Vec::new());
         // the shortest way to each minimum so far, and where its last step comes from
         let mut far = vec![f64::INFINITY; part.len()];
         let mut before = vec![from; part.len()];
@@ -87,10 +101,10 @@ impl Landscape<'_> {
             }
             for &there in &open {
                 let is_apart = part[here] != part[there];
-                let mut step = if is_apart { self.known_distance(&mut pairs, [here, there]) } else { 0.0 };
+                let mut step = if is_apart { pairs.squared(self, [here, there]) } else { 0.0 };
                 // most are far from here however often they were tried
                 if is_apart && far[here] + step < far[there] {
-                    let tried = pairs.tried.get(&self.alike([here, there], step)).copied().unwrap_or(0);
+                    let tried = pairs.tries(&self.alike([here, there], step));
                     step = if tried < tries { tired(step, tried) } else { f64::INFINITY };
                 }
                 if far[here] + step < far[there] {

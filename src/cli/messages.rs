@@ -7,12 +7,12 @@ use std::path::Path;
 
 /// Says it, or keeps quiet.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Said<'a> {
+pub(super) struct Messages<'a> {
     pub name: &'a str,
     pub quiet: bool,
 }
 
-impl Said<'_> {
+impl Messages<'_> {
     /// A line.
     pub fn line(&self, words: impl Display) {
         if !self.quiet {

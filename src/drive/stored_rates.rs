@@ -2,8 +2,8 @@
 
 use super::Problem;
 use super::outcome::{Outcome, SaddlePoint};
+use super::rate_warnings::{exits_not_told, is_said_of_rates, network_not_told, warnings};
 use super::rates::{Known, of_path};
-use super::rates_told::{exits_not_told, is_said_of_rates, network_not_told, warnings};
 use crate::energy::Evaluator;
 use crate::landscape::{Minimum, Pass, Peak, Saddle};
 use crate::linalg::slab;
