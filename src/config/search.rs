@@ -10,8 +10,9 @@ use serde::Deserialize;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SearchConfig {
-    /// none: not at all; the others look until 8 (quick), 24, and 16 more for each saddle found up to 100, and to 100 more for each time
-    /// that the route became lower (normal), or 400 or as many (thorough) searches in a row brought no news.
+    /// none: not at all; the others look until 8 (quick), 24 for each direction of the lattice, and 16 more for each saddle found up to
+    /// 100, and to 100 more for each time that the route became lower (normal), or 400 or as many (thorough) searches in a row brought no
+    /// news.
     pub effort: Effort,
 }
 

@@ -3,7 +3,7 @@
 //! T is the highest saddle of the best route known. A rival names a state from which a saddle below T may be reached; from there a
 //! climb goes to one, descents from it to its two minima, and both go into the landscape: the route may then have a lower T.
 //! News is a lower T, or a saddle of an energy that none had before; the search ends after so many searches in a row without any, or
-//! after so much work if the last few brought none.
+//! after so much work if the last few brought none and T never became lower.
 //! Searches are made in batches, each batch from what is known before it, its searches side by side: what is found does not depend
 //! on how many threads there are.
 //!
@@ -29,7 +29,7 @@ use serde::{Deserialize, Serialize};
 pub const KINDS: usize = 1000;
 /// The seed of everything random in a search.
 const SEED: u64 = 0x5ea2c4;
-/// Searches in a row without news that end a search which found nothing, and joins that bring two minima no nearer to each other.
+/// Searches in a row without news, in a row of sites, that end a search which found nothing, and joins that bring two minima no nearer to each other.
 pub(super) const QUIET: usize = 24;
 
 /// How long lower passes are looked for.
@@ -40,8 +40,8 @@ pub enum Effort {
     None,
     /// Until 8 searches in a row brought no news.
     Quick,
-    /// Until 24 searches in a row brought no news, and 16 more for each saddle that was found, up to 100, and to 100 more for each time
-    /// that the route became lower.
+    /// Until 24 searches in a row brought no news for each direction in which the lattice extends, and 16 more for each saddle that was
+    /// found, up to 100, and to 100 more for each time that the route became lower.
     #[default]
     Normal,
     /// Until 400 searches in a row brought no news, or as many as `normal` waits for: on soft films one in sixty leads lower.
@@ -49,20 +49,20 @@ pub enum Effort {
 }
 
 impl Effort {
-    /// So many searches in a row without news end a search that found so many saddles, and a lower route so many times: where there are
-    /// many, more may be missing.
-    fn quiet(self, found: usize, lowered: usize) -> usize {
+    /// So many searches in a row without news end a search that found so many saddles, and a lower route so many times, on a lattice of so
+    /// many directions: where there are many, more may be missing, and a film's texture goes more ways than a row's.
+    fn quiet(self, [found, lowered]: [usize; 2], directions: usize) -> usize {
         match self {
             Effort::None => 0,
             Effort::Quick => 8,
-            Effort::Normal => (QUIET + 16 * found).min(100 * (1 + lowered)),
-            Effort::Thorough => Effort::Normal.quiet(found, lowered).max(400),
+            Effort::Normal => (QUIET * directions + 16 * found).min(100 * (1 + lowered)),
+            Effort::Thorough => Effort::Normal.quiet([found, lowered], directions).max(400),
         }
     }
 
     /// As many times as much work may it do as `normal` as it waits longer for news, or as much.
     pub fn works(self) -> usize {
-        (self.quiet(1, 0) / Effort::Normal.quiet(1, 0)).max(1)
+        (self.quiet([1, 0], 1) / Effort::Normal.quiet([1, 0], 1)).max(1)
     }
 
     /// And so many for each pass that is known, where all are looked for.
@@ -114,11 +114,11 @@ impl Aim {
     }
 
     /// So many searches in a row without news end the search, which brought news so often, and a lower route.
-    fn quiet(self, effort: Effort, [found, lowered]: [usize; 2], land: &Landscape) -> usize {
+    fn quiet(self, effort: Effort, counts: [usize; 2], land: &Landscape) -> usize {
         match self {
-            Aim::Route(..) => effort.quiet(found, lowered),
+            Aim::Route(..) => effort.quiet(counts, land.evaluator().lattice().directions()),
             Aim::All(_) | Aim::Below(_) => {
-                effort.quiet(1, 0).max(effort.a_pass() * land.passes_below(self.top_mev(land)))
+                effort.quiet([1, 0], 1).max(effort.a_pass() * land.passes_below(self.top_mev(land)))
             }
         }
     }
@@ -133,7 +133,7 @@ pub struct Settings<'a> {
     pub shares: usize,
     /// Most gradients and Hessians of single states.
     pub most: Count,
-    /// And as long as one of the last few searches brought news: what is still found may be worth more.
+    /// And as long as one of the last few searches brought news, or once T became lower: what is still found may be worth more.
     pub most_with_news: Count,
     /// And of the climbs that are made before their work is looked at.
     pub together: Count,
@@ -192,7 +192,7 @@ pub fn search(
         }
         let wanted = aim.quiet(settings.effort, [found, lowered], land);
         let worked = h.evaluated().since(before);
-        let most = if done.quiet < FEW { settings.most_with_news } else { settings.most };
+        let most = if done.quiet < FEW || lowered > 0 { settings.most_with_news } else { settings.most };
         let spent = worked.part_of(most).max(land.kinds() as f64 / settings.most_kinds as f64);
         // what comes to its own stop has not missed the work that it has used up
         done.spent = spent >= 1.0 && done.quiet < wanted;

@@ -6,6 +6,12 @@ use super::Lattice;
 const SAME: f64 = 1e-6;
 
 impl Lattice {
+    /// In how many directions sites are beside each other: 1 in a row, 2 in a film, and 1 at least.
+    pub fn directions(&self) -> usize {
+        let places = self.places_in_cell();
+        (0..3).filter(|d| self.grid.size[*d] * places[*d] > 1).count().max(1)
+    }
+
     /// How many places for atoms there are along each vector of a cell: as many as different ones are taken, or, where atoms leave
     /// most of these free, as many as atoms spread evenly would take.
     pub fn places_in_cell(&self) -> [usize; 3] {
