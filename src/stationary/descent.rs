@@ -78,33 +78,15 @@ pub struct Downhill<'a> {
 
 /// Descends from a saddle along ± its valley (a unit field of 3N numbers).
 pub fn descend(h: Evaluator, saddle: &State, valley: &[f64], to: Downhill) -> Descent {
-    let Downhill { c, level_mev, beside, most } = to;
-    let mut walk = Walk {
-        h,
-        c,
-        beside,
-        level_mev: if level_mev > FLAT * h.stiffness_mev() && !h.forgoes_factors() { level_mev } else { 0.0 },
-        here: saddle.point.clone(),
-        next: Point::default(),
-        left: most,
-        tau: valley.to_vec(),
-        last: None,
-        trail: Trail::from(&saddle.m),
-        room: Room::default(),
-        // where a state that came to rest is left, with no minimum beside it, the fall may be of 1e-9 meV, less than the noise without factors
-        unfactored: match beside {
-            [] if !h.forgoes_factors() => None,
-            _ => h.has_dear_factors().then(|| Unfactored::about(&h, &saddle.point, c)),
-        },
-    };
-    let nearly = walk.unfactored.is_some() && !beside.is_empty();
+    let mut walk = Walk::from(h, saddle, valley, to);
+    let nearly = walk.unfactored.is_some() && !to.beside.is_empty();
     let arrived = h.has_dear_factors() && (nearly && walk.roll(true) || walk.roll(false)) || walk.down();
     let given_up = !arrived && walk.left == 0;
     Descent {
         fallen_mev: saddle.above_mev(&walk.here),
         arrived,
         given_up,
-        steps: most - walk.left,
+        steps: to.most - walk.left,
         m: walk.here.m,
         way: walk.trail.into_points(),
     }
@@ -149,6 +131,31 @@ enum Fall {
     Crawling,
     /// Nowhere.
     Stuck,
+}
+
+impl<'a> Walk<'a> {
+    /// At a saddle, about to go along ± its valley.
+    fn from(h: Evaluator<'a>, saddle: &State, valley: &[f64], to: Downhill<'a>) -> Walk<'a> {
+        let Downhill { c, level_mev, beside, most } = to;
+        Walk {
+            h,
+            c,
+            beside,
+            level_mev: if level_mev > FLAT * h.stiffness_mev() && !h.forgoes_factors() { level_mev } else { 0.0 },
+            here: saddle.point.clone(),
+            next: Point::default(),
+            left: most,
+            tau: valley.to_vec(),
+            last: None,
+            trail: Trail::from(&saddle.m),
+            room: Room::default(),
+            // where a state that came to rest is left, with no minimum beside it, the fall may be of 1e-9 meV, less than the noise without factors
+            unfactored: match beside {
+                [] if !h.forgoes_factors() => None,
+                _ => h.has_dear_factors().then(|| Unfactored::about(&h, &saddle.point, c)),
+            },
+        }
+    }
 }
 
 impl Walk<'_> {
@@ -199,7 +206,6 @@ impl Walk<'_> {
     /// Down the gradient's flow to a point where it vanishes.
     fn fall(&mut self) -> Fall {
         let scale = self.h.stiffness_mev();
-        let gentle = STATIONARY * scale..GENTLE * scale;
         let mut short = 0;
         // a step of the first's length, if the slope stays as it is
         let mut rate = self.here.max_torque_mev() / (D * LAST_DIGITS);
@@ -231,8 +237,12 @@ impl Walk<'_> {
             if step.rotation < LAST_DIGITS && there < slope && self.rest() {
                 return Fall::Arrived;
             }
-            short = if step.rotation < LAST_DIGITS && gentle.contains(&slope) { short + 1 } else { 0 };
+            short = if step.rotation < LAST_DIGITS && slope < GENTLE * scale { short + 1 } else { 0 };
             if short >= FEW {
+                // no flow any more, but rounding
+                if slope < STATIONARY * scale {
+                    return Fall::Arrived;
+                }
                 self.tau = step.v;
                 project(&self.here.m, &mut self.tau);
                 return Fall::Crawling;
@@ -318,5 +328,29 @@ impl Walk<'_> {
     /// Whether in no direction the energy's curvature here is less than this (meV).
     fn has_none_softer(&mut self, curvature_mev: f64) -> bool {
         Spectrum::softer(self.h, &self.here, curvature_mev, &mut self.room.matrix) == 0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::energy::{Anisotropy, EnergyTerm, Hamiltonian};
+    use crate::geometry::Direction;
+    use crate::lattice::Chain;
+
+    #[test]
+    fn where_a_slope_is_rounding_no_flow_is_followed() {
+        let lattice = Chain::open(3).resolve().unwrap();
+        // two spins all but free on the top of a hill: along the one that has left it steps are short, as the other may fall sooner
+        let hills = Anisotropy { k: vec![1.0, -1e-10, -1e-8], ..Anisotropy::uniform(3, 1.0, Direction::Z) };
+        let h = Hamiltonian::new(&lattice, vec![Box::new(hills) as Box<dyn EnergyTerm>]).unwrap();
+        let h = Evaluator::from(&h);
+        let m = Spins::from_vectors(&[[0.0, 0.0, 1.0], [1e-4, 0.0, 1.0], [0.0, 0.0, 1.0]]).unwrap();
+        let state = State::of(h, Point::at(h, m.as_slice().to_vec()));
+        let to = Downhill { c: h.stiffness_mev(), level_mev: 0.0, beside: &[], most: STEPS };
+        let mut walk = Walk::from(h, &state, &[0.0; 9], to);
+        assert!(matches!(walk.fall(), Fall::Arrived));
+        let steps = STEPS - walk.left;
+        assert!((FEW..8 * FEW).contains(&steps), "{steps} steps");
     }
 }
