@@ -11,7 +11,6 @@
 //! lattice, the descent goes to the minimum beside it that was given.
 
 use super::flow::{D, flow};
-use super::pinned::Pinned;
 use super::point::Point;
 use super::polish::polish;
 use super::quench::quench;
@@ -19,11 +18,10 @@ use super::spectrum::Spectrum;
 use super::state::State;
 use super::stroll::SOFT;
 use super::tolerances::{FAR, FEW, FLAT, LARGER, LAST_DIGITS, LAST_SHIFT, SHARP, STATIONARY, STEP};
-use super::trail::Trail;
-use super::unfactored::Unfactored;
+use super::walk::{Downhill, GENTLE, NOISE, STEEP, STEPS, Walk};
 use crate::energy::Evaluator;
 use crate::field::project;
-use crate::linalg::{Matrix, slab};
+use crate::linalg::slab;
 use crate::path::{blend, largest_angle};
 use crate::sphere::rotation_of;
 use crate::spins::Spins;
@@ -31,18 +29,10 @@ use std::mem::swap;
 
 /// The flow's error a step, at most (rad, any spin).
 const ERROR: f64 = 0.01;
-/// A few of the flow's steps shorter than the first are a crawl, where the slope is below this part of the stiffness (a radian): what
-/// lies across the valley relaxes long before it bends.
-const GENTLE: f64 = 1e-5;
-/// Where the valley itself was followed, the flow takes over at this slope.
-pub(super) const STEEP: f64 = LARGER * GENTLE;
 /// A state whose spins are turned by less than this (rad, any spin) has been reached.
 const REACHED: f64 = 0.03;
-/// Differences of energies below this part of the stiffness may be rounding error.
-pub(super) const NOISE: f64 = 64.0 * f64::EPSILON;
-/// Most times that a descent goes on along a valley, and most steps of the flow each time.
+/// Most times that a descent goes on along a valley.
 const ROUNDS: usize = 24;
-pub(super) const STEPS: usize = 20_000;
 
 /// Where a descent ended.
 #[derive(Debug)]
@@ -62,20 +52,6 @@ pub struct Descent {
     pub way: Vec<Vec<f64>>,
 }
 
-/// What a descent needs to know.
-#[derive(Clone, Copy)]
-pub struct Downhill<'a> {
-    /// The stiffness scale (meV).
-    pub c: f64,
-    /// What rises by less is level (meV): where that is more than rounding, a descent goes on over minima that no more parts.
-    pub level_mev: f64,
-    /// Proven minima beside the saddle: a descent ends in one where its slope forks, where it has all but reached it, and where it comes
-    /// by on a level with it.
-    pub beside: &'a [&'a Spins],
-    /// Most steps by factors: a descent that takes more is given up.
-    pub most: usize,
-}
-
 /// Descends from a saddle along ± its valley (a unit field of 3N numbers).
 pub fn descend(h: Evaluator, saddle: &State, valley: &[f64], to: Downhill) -> Descent {
     let mut walk = Walk::from(h, saddle, valley, to);
@@ -92,37 +68,6 @@ pub fn descend(h: Evaluator, saddle: &State, valley: &[f64], to: Downhill) -> De
     }
 }
 
-/// A descent on its way.
-pub(super) struct Walk<'a> {
-    pub(super) h: Evaluator<'a>,
-    pub(super) c: f64,
-    pub(super) beside: &'a [&'a Spins],
-    /// Over minima that so little of a rise parts (meV) the descent goes on; over none if 0.
-    pub(super) level_mev: f64,
-    pub(super) here: Point,
-    /// Where the step that is being tried leads.
-    pub(super) next: Point,
-    /// So many steps by factors may be taken yet.
-    pub(super) left: usize,
-    /// The valley's direction (3N), of any length.
-    pub(super) tau: Vec<f64>,
-    /// The direction at the start of the last step along the valley, a radian a unit of length, and that step's length (rad).
-    pub(super) last: Option<(Vec<f64>, f64)>,
-    pub(super) trail: Trail,
-    pub(super) room: Room,
-    /// In place of factors.
-    pub(super) unfactored: Option<Unfactored>,
-}
-
-/// Memory for the linear algebra.
-#[derive(Default)]
-pub(super) struct Room {
-    pub pinned: Pinned,
-    pub matrix: Matrix,
-    pub x: Vec<f64>,
-    pub v: Vec<f64>,
-}
-
 /// How a fall ended.
 enum Fall {
     /// Where the gradient vanishes.
@@ -131,31 +76,6 @@ enum Fall {
     Crawling,
     /// Nowhere.
     Stuck,
-}
-
-impl<'a> Walk<'a> {
-    /// At a saddle, about to go along ± its valley.
-    fn from(h: Evaluator<'a>, saddle: &State, valley: &[f64], to: Downhill<'a>) -> Walk<'a> {
-        let Downhill { c, level_mev, beside, most } = to;
-        Walk {
-            h,
-            c,
-            beside,
-            level_mev: if level_mev > FLAT * h.stiffness_mev() && !h.forgoes_factors() { level_mev } else { 0.0 },
-            here: saddle.point.clone(),
-            next: Point::default(),
-            left: most,
-            tau: valley.to_vec(),
-            last: None,
-            trail: Trail::from(&saddle.m),
-            room: Room::default(),
-            // where a state that came to rest is left, with no minimum beside it, the fall may be of 1e-9 meV, less than the noise without factors
-            unfactored: match beside {
-                [] if !h.forgoes_factors() => None,
-                _ => h.has_dear_factors().then(|| Unfactored::about(&h, &saddle.point, c)),
-            },
-        }
-    }
 }
 
 impl Walk<'_> {

@@ -27,9 +27,10 @@ mod tolerances;
 mod trail;
 mod unfactored;
 mod valley;
+mod walk;
 
 pub(crate) use border::{Border, Pin, pin, pin_all};
-pub use descent::{Descent, Downhill, descend};
+pub use descent::{Descent, descend};
 pub use pinned::Pinned;
 pub use point::{Point, move_free};
 pub use refine::{Refined, refine};
@@ -40,3 +41,4 @@ pub use state::{State, both_by_factors, is_very_dear};
 pub use tolerances::{
     ALIKE, FAR, FEW, FLAT, INDEPENDENT, LAST_DIGITS, LOWER, MANY, RELAXED, ROUGHLY, STATIONARY, STEP, STRIDE,
 };
+pub use walk::Downhill;

@@ -1,11 +1,11 @@
 //! Relaxing a state to its minimum: Newton's method with a shift that keeps the Hessian positive, and descent checked.
 
-use super::descent::{NOISE, STEPS};
 use super::polish::polish;
 use super::tolerances::{
     ALIKE, FIRST_SHIFT, LARGER, LAST_DIGITS, LAST_SHIFT, MANY, NEARLY, ROUNDING, STATIONARY, STRIDE,
 };
 use super::unfactored::Unfactored;
+use super::walk::{NOISE, STEPS};
 use super::{Downhill, Point, Spectrum, State, descend, pin_all};
 use crate::energy::Evaluator;
 use crate::error::{Error, Result};

@@ -2,11 +2,11 @@
 //! than any digit that is told, but a well at every site, and a descent that ended in the first would need a saddle for each to go on.
 //! It goes on over them as long as the energy stays level: to where it falls, or to a minimum that it was to reach.
 
-use super::descent::{STEEP, STEPS, Walk};
 use super::point::Point;
 use super::state::State;
 use super::tolerances::{LARGER, LAST_DIGITS, STEP};
 use super::valley::{GROWTH, SHORTEST};
+use super::walk::{STEEP, STEPS, Walk};
 use crate::linalg::slab;
 use crate::path::{largest_angle, turned, turns};
 use crate::spins::Spins;

@@ -1,8 +1,8 @@
 //! Along a valley's floor, where the gradient is rounding error and no guide: steps along it, and Newton's method across.
 
-use super::descent::{NOISE, Room, Walk};
 use super::pinned::Pinned;
 use super::tolerances::{LARGER, LAST_DIGITS, MANY, ROUGHLY, STEP};
+use super::walk::{NOISE, Room, Walk};
 use crate::field::project;
 use crate::linalg::slab;
 use crate::sphere::rotation_of;
