@@ -52,3 +52,40 @@ fn the_front_page_names_every_module_and_none_imports_one_above_it() {
         }
     }
 }
+
+/// The neighbours in its folder whose names a file takes, its tests and comments left out.
+fn neighbours<'a>(text: &'a str, all: &BTreeMap<String, String>) -> Vec<&'a str> {
+    let code = text.split("#[cfg(test)]").next().unwrap_or_default();
+    let lines = code.lines().filter(|line| !line.trim_start().starts_with("//"));
+    let names = lines.flat_map(|line| line.split("super::").skip(1));
+    let first = names.map(|rest| rest.split(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap_or_default());
+    first.filter(|name| all.contains_key(*name)).collect()
+}
+
+/// Files that import each other in a circle, if any do: what is left once those that import none of the others are taken away.
+fn circle(mut all: BTreeMap<String, String>) -> Vec<String> {
+    loop {
+        let ends = all.iter().find(|(name, text)| neighbours(text, &all).iter().all(|other| other == name));
+        let Some(end) = ends.map(|(name, _)| name.clone()) else { return all.into_keys().collect() };
+        all.remove(&end);
+    }
+}
+
+#[test]
+fn no_files_of_a_folder_import_each_other_in_a_circle() {
+    let mut files = Vec::new();
+    sources(Path::new(&format!("{ROOT}/src")), &mut files);
+    let mut folders: BTreeMap<PathBuf, BTreeMap<String, String>> = BTreeMap::new();
+    for file in files {
+        let (folder, name) = (file.parent().unwrap().to_path_buf(), file.file_stem().unwrap().to_string_lossy());
+        folders.entry(folder).or_default().insert(name.into_owned(), fs::read_to_string(&file).unwrap());
+    }
+    assert!(folders.len() > 20);
+    for (folder, files) in folders {
+        let all = circle(files);
+        assert!(all.is_empty(), "{}: {all:?}", folder.display());
+    }
+    let two = [("a", "use super::b::B;"), ("b", "use super::a::A;"), ("c", "use super::a::A;")];
+    let two = two.map(|(name, text)| (name.to_string(), text.to_string()));
+    assert_eq!(circle(two.into()), ["a", "b", "c"]);
+}
