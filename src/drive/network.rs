@@ -13,9 +13,11 @@ use crate::energy::Evaluator;
 use crate::error::Result;
 use crate::landscape::{Aim, Effort, KINDS, Landscape, Minimum, Pass, Searched, Settings, search};
 use crate::rates::{
-    LEAST_BARRIER, NetworkTime, RateSettings, Rates, Row, Symmetry, TransitionRate, Way, ZeroModes, digits,
+    LEAST_BARRIER, NetworkTime, RateSettings, Rates, Regime, Row, Symmetry, TransitionRate, Way, ZeroModes, digits,
+    may_slide_to,
 };
 use crate::record::Count;
+use crate::symmetry::Group;
 use crate::units::K_B;
 use crate::words::number;
 
@@ -85,7 +87,8 @@ impl Run<'_, '_> {
         let groups = Way::BOTH.into_iter().zip(ends).map(|(way, end)| (way.name().into(), vec![end])).collect();
         let found = Lifetimes::of(&survey, groups, settings, &land, &Symmetry::exactly(group), &passes)?;
         let kinds = survey.saddle_kinds.len();
-        Ok(Some(NetworkTimes { times: Way::BOTH.map(|way| times(&found, way)), kinds, above_mev, searched }))
+        let untold = |kelvin: f64| slides(&found, kelvin) || overlap(&found, &survey, group, kelvin);
+        Ok(Some(NetworkTimes { times: Way::BOTH.map(|way| times(&found, way, &untold)), kinds, above_mev, searched }))
     }
 }
 
@@ -153,20 +156,37 @@ fn hottest(h: Evaluator, settings: &RateSettings, links: &[Pass]) -> Option<f64>
     held.max_by(f64::total_cmp)
 }
 
-/// From one end to the other. None where a state slides: its places are minima, of which the network need not have what joins them.
-fn times(found: &Lifetimes, way: Way) -> Vec<NetworkTime> {
+/// From one end to the other, but for the temperatures (K) at which they are `untold`.
+fn times(found: &Lifetimes, way: Way, untold: &dyn Fn(f64) -> bool) -> Vec<NetworkTime> {
     let rows = found.rows.iter().filter(|row| row.from == way.name() && row.to.is_some());
     let time = |row: &Lifetime| {
-        let kelvin = row.temperature_k;
-        let mut zeros = found.saddles.iter().flatten().flat_map(|rate| &rate.at(kelvin).minimum_zeros);
-        let slides = zeros.any(ZeroModes::slides);
+        let (kelvin, is_told) = (row.temperature_k, !untold(row.temperature_k));
         NetworkTime {
             temperature_k: kelvin,
-            ln_time_s: row.ln_time_s.map(|ln| ln.filter(|_| !slides)),
-            known_within: row.known_within.filter(|_| !slides),
+            ln_time_s: row.ln_time_s.map(|ln| ln.filter(|_| is_told)),
+            known_within: row.known_within.filter(|_| is_told),
         }
     };
     rows.map(time).collect()
+}
+
+/// Whether a minimum slides at a temperature (K): its places are minima, of which the network need not have what joins them.
+fn slides(found: &Lifetimes, kelvin: f64) -> bool {
+    found.saddles.iter().flatten().flat_map(|rate| &rate.at(kelvin).minimum_zeros).any(ZeroModes::slides)
+}
+
+/// Whether a saddle may slide at a temperature (K) to where one of another kind does: each has the volume of all places, and they
+/// would be counted twice.
+fn overlap(found: &Lifetimes, survey: &Survey, group: &Group, kelvin: f64) -> bool {
+    let regimes: Vec<&Regime> = found.saddles.iter().map(|[on, _]| on.at(kelvin)).collect();
+    let sliding: Vec<usize> =
+        (0..regimes.len()).filter(|k| regimes[*k].saddle_zeros.iter().any(ZeroModes::slides)).collect();
+    let turn = regimes.iter().find_map(|regime| regime.turn);
+    let along = turn.map(|turn| group.with_axis(turn.axis));
+    let group = along.as_ref().unwrap_or(group);
+    let of = |kind: usize| survey.saddles.iter().filter(move |s| s.kind == kind).map(|s| s.spins.as_slice());
+    let meet = |a: usize, b: usize| of(a).next().is_some_and(|m| of(b).any(|other| may_slide_to(group, other, m)));
+    sliding.iter().enumerate().any(|(n, a)| sliding[n + 1..].iter().any(|b| meet(*a, *b)))
 }
 
 #[cfg(test)]

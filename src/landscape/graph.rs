@@ -7,12 +7,13 @@
 
 use super::pairs::Pairs;
 use super::places::Places;
+use super::slid::is_slid;
 use super::{Minimum, Pass, Saddle, Seen, is_same_state, turned, turns};
 use crate::energy::Evaluator;
 use crate::path::{Path, is_within, largest_angle};
 use crate::sphere::SAME;
 use crate::spins::Spins;
-use crate::stationary::{ALIKE, LAST_DIGITS, LOWER};
+use crate::stationary::{ALIKE, LAST_DIGITS, LOWER, STEP};
 use crate::symmetry::{Group, Operation};
 
 /// Images by symmetry of every minimum and pass, at most, and of how many spins; and minima, from which on no more images are added:
@@ -313,9 +314,9 @@ impl<'a> Landscape<'a> {
         self.stands_for[k]
     }
 
-    /// Puts a certified pass in, with its minima and all its images; false if its saddle is known.
+    /// Puts a certified pass in, with its minima and all its images; false if its saddle is known, or a place of one that is.
     pub fn add(&mut self, pass: Pass) -> bool {
-        if self.knows(&pass.saddle) {
+        if self.knows(&pass.saddle) || self.is_place(&pass) {
             return false;
         }
         let ends = [&pass.before, &pass.after].map(|minimum| self.add_minimum(minimum));
@@ -367,6 +368,17 @@ impl<'a> Landscape<'a> {
     /// Whether a saddle is known.
     pub fn knows(&self, saddle: &Saddle) -> bool {
         self.edges_over(saddle.spins(), self.height_mev(saddle.spins())).next().is_some()
+    }
+
+    /// Whether a pass leads over another place of a known saddle that slides along a flat valley, between the same minima.
+    fn is_place(&self, pass: &Pass) -> bool {
+        let ends = [&pass.before, &pass.after].map(|minimum| self.known(minimum).map(|k| self.stands_for[k]));
+        let [Some(a), Some(b)] = ends else { return false };
+        let (m, height_mev) = (pass.saddle.spins(), self.height_mev(pass.saddle.spins()));
+        let near = ALIKE * self.h.stiffness_mev();
+        let alike = |e: &&Edge| (e.height_mev - height_mev).abs() < near && (e.ends == [a, b] || e.ends == [b, a]);
+        let mut places = self.edges.iter().filter(alike).flat_map(|e| self.places.beside(self.h, &e.saddle, m, STEP));
+        places.any(|place| is_slid(self.h, &place, m))
     }
 
     /// The edges over a saddle.

@@ -14,7 +14,8 @@
 //! # Words
 //! *minimum*: a stationary state without a descending mode, each state one of its own; two are the same if rotations about the symmetry
 //! axes make them so, or if a valley that is flat to rounding joins them. *Peak*: a maximum of a band, where a saddle is looked for.
-//! *Saddle*: the stationary state that is reached from there, of index one if it is to count. *Descent*: the way down from a saddle on
+//! *Saddle*: the stationary state that is reached from there, of index one if it is to count; places of it along a valley that is flat to
+//! rounding are one saddle where it parts the same minima. *Descent*: the way down from a saddle on
 //! one side. *Pass*: a saddle with the minima that its two descents reach. *Route*: passes that lead from one minimum to another.
 //! *Way*: a first path between two minima, not relaxed. *Rival*: a rule that names states from which a climb may lead to a pass below T.
 //! *Climb*: the search for a saddle of index one from any state. *Quiet*: searches since the last news. *Image*: what an operation of
@@ -36,6 +37,7 @@ mod rivals;
 mod route;
 mod saddle;
 mod search;
+mod slid;
 mod stored;
 mod ways;
 mod zoom;

@@ -30,6 +30,20 @@ impl Places {
         }
     }
 
+    /// The places of `a`, its own first, of which every spin may be less than `off` (rad) beside that of `b`.
+    pub fn beside<'p>(
+        &'p self,
+        h: Evaluator<'p>,
+        a: &'p [f64],
+        b: &'p [f64],
+        off: f64,
+    ) -> impl Iterator<Item = Vec<f64>> + 'p {
+        let seen = Seen::of(h, b);
+        let all = std::iter::once(None).chain(self.0.iter().map(Some));
+        let near = all.filter(move |by| seen.may_be_within(*by, a, off));
+        near.map(|by| by.map_or_else(|| a.to_vec(), |by| by.apply(a)))
+    }
+
     /// At how many places a state may be.
     pub fn count(&self, h: Evaluator, m: &[f64]) -> usize {
         let seen = Seen::of(h, m);
@@ -62,12 +76,17 @@ impl<'a> Seen<'a> {
 
     /// Whether an operation, or none, may make it of another state: what no rotation about the symmetry axes changes is compared.
     pub fn may_be(&self, by: Option<&Operation>, of: &[f64]) -> bool {
+        self.may_be_within(by, of, SAME)
+    }
+
+    /// The same, each spin to less than `far` (rad) beside it.
+    fn may_be_within(&self, by: Option<&Operation>, of: &[f64], far: f64) -> bool {
         let [own, from] = [self.m, of].map(Components::new);
         let sites = own.sites();
         let off = |i: usize| vector::sub(by.map_or_else(|| from.get(i), |by| by.at(from, i)), own.get(i));
         let is_off = |i: usize| match self.h.symmetry_axes() {
-            [] => vector::norm(off(i)) > SAME,
-            [axis] => vector::dot(*axis, off(i)).abs() > SAME,
+            [] => vector::norm(off(i)) > far,
+            [axis] => vector::dot(*axis, off(i)).abs() > far,
             _ => false,
         };
         !(0..sites).map(|k| (self.first + k) % sites).any(is_off)

@@ -55,7 +55,7 @@ pub use refusal::{Refusal, UnknownModes};
 pub use settings::{RateSettings, Theory, checked_damping, checked_g_factor, checked_temperature};
 pub use siblings::{APART, Family, Kin, Sibling, Siblings, Symmetry};
 pub use sliding::{Pinning, Turn};
-pub use symmetry::{Equivalents, KEPT, KEPT_OR_EXCHANGED, OneState, equivalent_saddles, leads_back_by};
+pub use symmetry::{Equivalents, KEPT, KEPT_OR_EXCHANGED, OneState, equivalent_saddles, leads_back_by, may_slide_to};
 pub use transition::{Kindred, NetworkTime, Orbits, TransitionRate, TransitionRow, transitions};
 pub use unstable::{Unstable, unstable_mode};
 pub use validity::{LOW_BARRIER, ORDER, Validity, digits};

@@ -3,10 +3,12 @@
 //! An operation of the group counts where it keeps both minima, or makes each the other, and moves the saddle, rotations about a symmetry
 //! axis (and shifts of states that slide) apart: those are in the volume of zero modes.
 
+use super::siblings::APART;
 use crate::field::Components;
 use crate::geometry::vector;
 use crate::lattice::Lattice;
 use crate::linalg::slab;
+use crate::path::largest_angle;
 use crate::sphere::{SAME, write_logs};
 use crate::symmetry::{Group, Operation};
 
@@ -158,6 +160,14 @@ pub(super) fn states_along_turn(group: &Group, along: &Group, m: &[f64]) -> usiz
 /// Whether a multiple of shifts takes state a to b: each spin to less than `off` beside it.
 pub(super) fn slid(group: &Group, steps: &[usize], a: &[f64], b: &[f64], off: f64) -> bool {
     group.multiples(steps).any(|shift| group.takes(&shift, a, b, off))
+}
+
+/// Whether shifts bring state a so near to b that a may slide there: no farther than half-way to the places next to b, each spin to less
+/// than [`APART`] beside that.
+pub fn may_slide_to(group: &Group, a: &[f64], b: &[f64]) -> bool {
+    let shifts = group.shifts();
+    let hops: f64 = shifts.iter().map(|shift| largest_angle(&shift.operation.apply(b), b)).sum();
+    slid(group, &vec![1; shifts.len()], a, b, APART + 0.5 * hops)
 }
 
 /// Likewise, and what is left between b and the shifted a lies along orthonormal fields (3N) at b, if there are any: a state that slides along
