@@ -175,6 +175,26 @@ fn a_number_of_saddles_goes_with_their_heights() {
 }
 
 #[test]
+fn what_a_near_symmetry_makes_of_a_saddle_in_its_own_basin_is_no_other_one() {
+    // a hard axis at any angle to the cells of a film that shows it its edges alone
+    let film = |degrees: f64| {
+        let (sine, cosine) = degrees.to_radians().sin_cos();
+        let hard = json!({"anisotropy": {"K": "-0.25 meV", "axis": [cosine, sine, 0.0]}});
+        let energy = json!([{"exchange": {"J": ["1.6 meV"]}}, anisotropy("0.31 meV", [0, 0, 1]), hard]);
+        let outcome = solve(&config(energy, json!({"square": {"cells": [4, 4]}}), up(), 6.0));
+        let siblings =
+            outcome.rates.as_ref().unwrap().saddles.iter().map(|r| r.at(6.0).siblings.0.len()).sum::<usize>();
+        (rates(&outcome), siblings)
+    };
+    let (straight, _) = film(0.0);
+    for degrees in [36.0, 40.0] {
+        let (turned, siblings) = film(degrees);
+        assert_eq!(siblings, 0, "{degrees}°");
+        assert!((turned[0] / straight[0] - 1.0).abs() < 0.01, "{degrees}°: {turned:?} {straight:?}");
+    }
+}
+
+#[test]
 fn a_small_circle_about_an_axis_is_no_valley() {
     let rate = |tesla: [f64; 3], kelvin: f64| {
         let energy = json!([anisotropy("10 meV", [0, 0, 1]), anisotropy("7 meV", [0, 1, 0]), field(tesla)]);

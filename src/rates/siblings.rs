@@ -14,7 +14,7 @@ use super::unstable::Unstable;
 use crate::energy::{Evaluator, Hamiltonian};
 use crate::linalg::slab;
 use crate::sphere::rotation_of;
-use crate::stationary::State;
+use crate::stationary::{Point, State};
 use crate::symmetry::{Group, Operation};
 use std::borrow::Cow;
 
@@ -170,42 +170,93 @@ impl<'a> Family<'a> {
             true => slid(self.exact, &self.steps, a, b, off),
             false => self.near.takes(&self.exact.classes()[0], a, b, APART),
         };
-        let mut kept: Vec<Vec<f64>> = Vec::new();
-        let mut is_new = |image: &Vec<f64>| {
-            let new = !kept.iter().any(|known| is_one(image, known));
-            kept.extend(Some(image.clone()).filter(|_| new));
-            new
-        };
-        self.exactly.iter().for_each(|by| _ = is_new(&by.apply(&state.m)));
-        let images = self.nearly.iter().map(|by| (by, by.apply(&state.m)));
-        let mut new: Vec<(&Operation, Vec<f64>)> = images.filter(|(_, image)| is_new(image)).collect();
-        if !new.is_empty() && !counted.is_empty() {
-            let all = self.operations(self.exact, KEPT_OR_EXCHANGED);
-            let counted: Vec<Vec<f64>> = all.iter().flat_map(|by| counted.iter().map(|m| by.apply(m))).collect();
-            new.retain(|(_, image)| !counted.iter().any(|known| is_one(image, known)));
-        }
-        if new.is_empty() || self.h.is_stopped() {
+        let exact = self.exactly.iter().map(|by| by.apply(&state.m)).collect();
+        let mut known = distinct(exact, Vec::new(), &is_one);
+        let is_new = |image: &[f64], known: &[Vec<f64>]| !known.iter().any(|other| is_one(image, other));
+        let is_more = |known: &[Vec<f64>]| self.nearly.iter().any(|by| is_new(&by.apply(&state.m), known));
+        if !is_more(&known) || self.h.is_stopped() {
             return Siblings::default();
         }
-        let kappa = self.h.stiffness_mev() / 3.0;
-        let pinned = PinnedHessian::new(&state.hessian, &state.zeros, unstable, kappa);
-        let sibling = |(operation, image): (&Operation, Vec<f64>)| {
-            let there = State::at(self.h, image);
-            let force = state.basis.coordinates(&operation.undone_field(&there.field(&there.slope)));
-            // down across the descent, up along it
-            let mut way = force.clone();
-            pinned.solve(&mut way);
-            if let Some(Unstable { eigenvalue_mev, mode }) = unstable {
-                slab::add_scaled(&mut way, slab::dot(mode, &force) / eigenvalue_mev, mode);
+        if !counted.is_empty() {
+            let all = self.operations(self.exact, KEPT_OR_EXCHANGED);
+            let others = all.iter().flat_map(|by| counted.iter().map(|m| by.apply(m))).collect();
+            known = distinct(others, known, &is_one);
+            if !is_more(&known) {
+                return Siblings::default();
             }
-            let falls_mev = 0.5 * slab::dot(&way, &force);
-            let falling = PinnedHessian::new(&there.hessian, &there.zeros, None, kappa).negatives();
-            let is_one = rotation_of(&state.field(&way)) < APART && falling <= usize::from(unstable.is_some()) + soft;
-            let above_mev = there.above_mev(&state.point) - falls_mev;
-            // free shifts of what slides are in the volumes
-            let places = if self.by_class && !slides { places(self.exact, &there.m, &self.steps) } else { 1 };
-            is_one.then_some(Sibling { above_mev, off_mev: falls_mev.abs(), places })
-        };
-        Siblings(new.into_iter().filter_map(sibling).collect())
+        }
+        let near = Near::of(self.h, state, unstable, soft);
+        let mut tried = known.clone();
+        let mut siblings = Vec::new();
+        for operation in &self.nearly {
+            let image = operation.apply(&state.m);
+            if !is_new(&image, &tried) {
+                continue;
+            }
+            tried.push(image.clone());
+            let Some((there, mut sibling)) = near.rests(operation, image) else { continue };
+            // what the symmetry makes may lie in the basin of what is known
+            if is_new(&there, &known) {
+                // free shifts of what slides are in the volumes
+                sibling.places = if self.by_class && !slides { places(self.exact, &there, &self.steps) } else { 1 };
+                siblings.push(sibling);
+                known.push(there);
+            }
+        }
+        Siblings(siblings)
+    }
+}
+
+/// Known states, and those of others that are none of them, each once.
+fn distinct(others: Vec<Vec<f64>>, mut known: Vec<Vec<f64>>, is_one: &dyn Fn(&[f64], &[f64]) -> bool) -> Vec<Vec<f64>> {
+    for m in others {
+        if !known.iter().any(|other| is_one(&m, other)) {
+            known.push(m);
+        }
+    }
+    known
+}
+
+/// A stationary state, by whose Hessian the states of rest are found beside what operations make of it.
+struct Near<'a> {
+    h: Evaluator<'a>,
+    state: &'a State,
+    unstable: Option<&'a Unstable>,
+    soft: usize,
+    kappa: f64,
+    pinned: PinnedHessian,
+}
+
+impl<'a> Near<'a> {
+    fn of(h: Evaluator<'a>, state: &'a State, unstable: Option<&'a Unstable>, soft: usize) -> Near<'a> {
+        let kappa = h.stiffness_mev() / 3.0;
+        let pinned = PinnedHessian::new(&state.hessian, &state.zeros, unstable, kappa);
+        Near { h, state, unstable, soft, kappa, pinned }
+    }
+
+    /// The way to rest (tangent coordinates of the state) against the slope at what an operation makes of it: down across the descent, up
+    /// along it; and by how much the energy falls on it (meV).
+    fn way(&self, operation: &Operation, there: &Point) -> (Vec<f64>, f64) {
+        let force = self.state.basis.coordinates(&operation.undone_field(&there.field(&there.slope)));
+        let mut way = force.clone();
+        self.pinned.solve(&mut way);
+        if let Some(Unstable { eigenvalue_mev, mode }) = self.unstable {
+            slab::add_scaled(&mut way, slab::dot(mode, &force) / eigenvalue_mev, mode);
+        }
+        let falls_mev = 0.5 * slab::dot(&way, &force);
+        way.iter_mut().for_each(|x| *x = -*x);
+        (way, falls_mev)
+    }
+
+    /// The state of rest beside what an operation makes of it, by one step, with its height; nothing where there is none of this kind.
+    fn rests(&self, operation: &Operation, image: Vec<f64>) -> Option<(Vec<f64>, Sibling)> {
+        let there = State::at(self.h, image);
+        let (way, falls_mev) = self.way(operation, &there);
+        let step = self.state.field(&way);
+        let falling = PinnedHessian::new(&there.hessian, &there.zeros, None, self.kappa).negatives();
+        let is_one = rotation_of(&step) < APART && falling <= usize::from(self.unstable.is_some()) + self.soft;
+        let above_mev = there.above_mev(&self.state.point) - falls_mev;
+        let sibling = Sibling { above_mev, off_mev: falls_mev.abs(), places: 1 };
+        is_one.then(|| (there.moved(&self.h, &operation.apply_field(&step)), sibling))
     }
 }
