@@ -96,7 +96,15 @@ impl<'a> Run<'a, '_> {
         // rates are over the kin of the path's saddles too
         let ends = [&first.before, &links[links.len() - 1].after].map(|minimum| minimum.spins.as_slice());
         let tops: Vec<&[f64]> = links.iter().map(|link| link.saddle.spins()).collect();
-        let kin = symmetry.map(|symmetry| Kin::of(symmetry, ends));
+        let kin = symmetry.map(|symmetry| {
+            // a state that slides from place to place
+            let loose = [0, links.len()].map(|k| {
+                let mut others = self.land.one_with(minima[k], within_mev);
+                let own = self.land.minima()[minima[k]].spins.as_slice();
+                others.any(|other| symmetry.shifts(own, other.spins.as_slice()))
+            });
+            Kin::of(symmetry, ends, loose)
+        });
         let exit = |minima: &[usize], saddles: &[f64], last: usize| {
             let is_told = |edge: &Edge| kin.as_ref().is_some_and(|kin| kin.holds(last, &tops, &edge.saddle));
             self.land.lowest_exit_mev(minima, saddles, within_mev, &is_told)

@@ -1,6 +1,6 @@
 //! Saddles beside a path, by which the state that it begins in is left for states that are not on it.
 
-use super::{Edge, Landscape, Seen};
+use super::{Edge, Landscape, Minimum, Seen};
 use crate::network::Parts;
 use crate::symmetry::Operation;
 
@@ -39,15 +39,27 @@ impl Landscape<'_> {
             let leads_off = !on_path || !before.contains(&state(to)) && !is_own(height);
             leads_off.then(|| (saddles_mev[..place].iter().copied().fold(height, f64::max), (!on_path).then_some(to)))
         };
-        let ways = self.edges().iter().filter(|edge| !is_told(edge)).flat_map(|edge| {
+        let ways = self.edges().iter().flat_map(|edge| {
             let [a, b] = edge.ends;
-            [way(a, b, edge.height_mev), way(b, a, edge.height_mev)]
+            [way(a, b, edge.height_mev), way(b, a, edge.height_mev)].into_iter().flatten().map(move |way| (way, edge))
         });
-        let mut ways: Vec<(f64, Option<usize>)> = ways.flatten().collect();
-        ways.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        let mut ways: Vec<((f64, Option<usize>), &Edge)> = ways.collect();
+        ways.sort_by(|((a, _), _), ((b, _), _)| a.total_cmp(b));
         // images are dear to tell: from the lowest way up, as few as may be
-        let lowest = ways.into_iter().find(|(_, off)| off.is_none_or(|to| !self.is_alike(&path, to)));
-        lowest.map(|(height, _)| height - self.heights_mev()[nodes[0]])
+        let is_other = |((_, off), edge): &((f64, Option<usize>), &Edge)| {
+            !is_told(edge) && off.is_none_or(|to| !self.is_alike(&path, to))
+        };
+        ways.into_iter().find(is_other).map(|((height, _), _)| height - self.heights_mev()[nodes[0]])
+    }
+
+    /// The other minima that are one state with one, see [`lowest_exit_mev`](Self::lowest_exit_mev).
+    pub fn one_with(&self, minimum: usize, within_mev: f64) -> impl Iterator<Item = &Minimum> {
+        let (state, own) = (self.states(within_mev), self.standing_for(minimum));
+        self.minima()
+            .iter()
+            .enumerate()
+            .filter(move |(k, _)| *k != own && state[*k] == state[own])
+            .map(|(_, other)| other)
     }
 
     /// The state that each minimum belongs to.

@@ -45,6 +45,11 @@ impl Symmetry {
         Symmetry { exact: group.clone(), near: None }
     }
 
+    /// Whether shifts alone take state a to b.
+    pub fn shifts(&self, a: &[f64], b: &[f64]) -> bool {
+        is_shifted(&self.exact, &self.exact.classes()[0], a, b)
+    }
+
     /// The same where states slide along a turn.
     pub fn along(&self, turn: Option<Turn>) -> Cow<'_, Symmetry> {
         let Some(Turn { axis, .. }) = turn else { return Cow::Borrowed(self) };
@@ -58,21 +63,38 @@ impl Symmetry {
 pub struct Kin<'a> {
     group: &'a Group,
     keep: [Vec<Operation>; 2],
+    loose: [bool; 2],
 }
 
 impl<'a> Kin<'a> {
-    /// Of the path between two minima.
-    pub fn of(symmetry: &'a Symmetry, ends: [&[f64]; 2]) -> Kin<'a> {
+    /// Of the path between two minima, each of which may be `loose`: all places to which shifts move it are one state, and what keeps that
+    /// need not keep one of them.
+    pub fn of(symmetry: &'a Symmetry, ends: [&[f64]; 2], loose: [bool; 2]) -> Kin<'a> {
         let group = symmetry.near.as_ref().unwrap_or(&symmetry.exact);
         let all = if group.order() > MOST { Vec::new() } else { group.classes_within(&group.orders()).collect() };
-        let keep = ends.map(|end| all.iter().filter(|by| group.takes(by, end, end, APART)).cloned().collect());
-        Kin { group, keep }
+        let keep = [0, 1].map(|k| {
+            let end = ends[k];
+            match loose[k] {
+                true => group.classes().iter().filter(|by| is_shifted(group, by, end, end)).cloned().collect(),
+                false => all.iter().filter(|by| group.takes(by, end, end, APART)).cloned().collect(),
+            }
+        });
+        Kin { group, keep, loose }
     }
 
     /// Whether those that keep the first end (0) or the last (1) make this saddle of one of the path's.
     pub fn holds(&self, end: usize, saddles: &[&[f64]], m: &[f64]) -> bool {
-        self.keep[end].iter().any(|by| saddles.iter().any(|saddle| self.group.takes(by, saddle, m, APART)))
+        let makes = |by: &Operation, saddle: &[f64]| match self.loose[end] {
+            true => is_shifted(self.group, by, saddle, m),
+            false => self.group.takes(by, saddle, m, APART),
+        };
+        self.keep[end].iter().any(|by| saddles.iter().any(|saddle| makes(by, saddle)))
     }
+}
+
+/// Whether an operation, and then shifts, take state a to b.
+fn is_shifted(group: &Group, by: &Operation, a: &[f64], b: &[f64]) -> bool {
+    slid(group, &vec![1; group.shifts().len()], &by.apply(a), b, APART)
 }
 
 /// A saddle, or another state, that is all but alike.
@@ -258,5 +280,39 @@ impl<'a> Near<'a> {
         let above_mev = there.above_mev(&self.state.point) - falls_mev;
         let sibling = Sibling { above_mev, off_mev: falls_mev.abs(), places: 1 };
         is_one.then(|| (there.moved(&self.h, &operation.apply_field(&step)), sibling))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::energy::{Anisotropy, Exchange};
+    use crate::geometry::Direction;
+    use crate::lattice::Chain;
+    use crate::spins::Spins;
+
+    #[test]
+    fn where_a_state_slides_what_shifts_make_of_its_saddle_leads_to_it_too() {
+        const SITES: usize = 12;
+        let ring = Chain::ring(SITES).resolve().unwrap();
+        let easy = Anisotropy::uniform(SITES, 1.0, Direction::Z);
+        let h = Hamiltonian::new(&ring, vec![Box::new(Exchange::uniform(&ring, &[1.0])), Box::new(easy)]).unwrap();
+        // a spin on its side, or half-way to that, among spins up
+        let at = |site: usize, x: f64| {
+            let spins: Vec<[f64; 3]> =
+                (0..SITES).map(|i| if i == site { [x, 0.0, 1.0 - x] } else { [0.0, 0.0, 1.0] }).collect();
+            Spins::from_vectors(&spins).unwrap().as_slice().to_vec()
+        };
+        let (up, side, saddle) = (at(0, 0.0), at(3, 1.0), at(3, 0.5));
+        let symmetry = Symmetry::of(&h, &up, &[1.0; SITES]);
+        let told = |loose: bool, end: usize, site: usize| {
+            Kin::of(&symmetry, [&side, &up], [loose, false]).holds(end, &[&saddle], &at(site, 0.5))
+        };
+        // those that keep the state up are all shifts
+        assert!([3, 7].into_iter().all(|site| told(false, 1, site)));
+        assert!(told(false, 0, 3) && !told(false, 0, 7));
+        assert!(told(true, 0, 3) && told(true, 0, 7));
+        // the state on its side is no saddle
+        assert!(!Kin::of(&symmetry, [&side, &up], [true, false]).holds(0, &[&saddle], &side));
     }
 }
