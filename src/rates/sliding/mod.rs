@@ -117,7 +117,8 @@ impl<'a> Slide<'a> {
         let (along, across): (Vec<usize>, Vec<usize>) = roomy.partition(|d| ways::shift_along(group, *d).is_some());
         // an open row ends by what its walls rest at
         let across = across.into_iter().filter(|d| !h.lattice().is_row() || h.lattice().grid.periodic[*d]);
-        let wanders = across.filter_map(|d| wanders(&h, &held, d)).min_by(|a, b| a[0].total_cmp(&b[0]));
+        let beside: Vec<Vec<f64>> = along.iter().filter_map(|d| moved_along(&h, &held, *d)).collect();
+        let wanders = across.filter_map(|d| wanders(&h, &held, d, &beside)).min_by(|a, b| a[0].total_cmp(&b[0]));
         let ways = ways::all(h, &held, group, &along, most_mev);
         Slide { h, held, ways, wanders, known: BTreeMap::new() }
     }
@@ -326,11 +327,17 @@ fn volume<'m>(moves: impl Iterator<Item = &'m Vec<f64>>) -> f64 {
     values.iter().map(|l| l.max(0.0).sqrt()).product()
 }
 
+/// What a shift along a direction of the lattice does to the spins, tangent coordinates.
+fn moved_along(h: &Hamiltonian, held: &Held, direction: usize) -> Option<Vec<f64>> {
+    held.tangent(&ways::derivative(h.lattice(), &held.state.m, direction))
+}
+
 /// Above which k_BT (meV) the state slides far along a direction that no shift of the energy goes along, and by how many cells there:
 /// what holds it is no row of places, and may be anything. A valley in which no spin fluctuates much is a well, however little of a
-/// translation it is.
-fn wanders(h: &Hamiltonian, held: &Held, direction: usize) -> Option<[f64; 2]> {
-    let v = held.tangent(&ways::derivative(h.lattice(), &held.state.m, direction))?;
+/// translation it is. `beside`: what shifts do that the energy has. Along these the state may slide so freely that rounding would make the
+/// softest move of them.
+fn wanders(h: &Hamiltonian, held: &Held, direction: usize, beside: &[Vec<f64>]) -> Option<[f64; 2]> {
+    let v = moved_along(h, held, direction)?;
     let cells = ROOM * h.lattice().grid.size[direction] as f64;
     let from = |valley: &Valley| {
         let by = slab::dot(&v, &valley.along);
@@ -340,7 +347,8 @@ fn wanders(h: &Hamiltonian, held: &Held, direction: usize) -> Option<[f64; 2]> {
         let far = (cells * by * cells * by).max(LARGE / spin);
         is_translation.then_some([valley.stiffness_mev * far, (far / (by * by)).sqrt()])
     };
-    let valleys = held.valleys(&orthonormal(vec![v.clone()], 0.0));
+    let all = std::iter::once(&v).chain(beside).cloned();
+    let valleys = held.valleys(&orthonormal(all.collect(), LEAST));
     valleys.iter().filter_map(from).min_by(|a, b| a[0].total_cmp(&b[0]))
 }
 
@@ -355,4 +363,61 @@ fn pinning_by_way(ways: &[Vec<f64>], valleys: &[Valley], tops_mev: &[f64]) -> Ve
     let share = all.max(0.0) / own.iter().product::<f64>().max(f64::MIN_POSITIVE);
     let scale = libm::pow(share, 1.0 / ways.len().max(1) as f64);
     own.into_iter().zip(tops_mev).map(|(e, top_mev)| Pinning::new(scale * e, 1.0, scale * top_mev)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::unstable_mode;
+    use super::*;
+    use crate::config::load_text;
+    use crate::spins::Spins;
+    use crate::stationary::{FEW, Limits, STEP, STEPS, climb};
+
+    /// Cells of a strip that repeats along its length.
+    const CELLS: [usize; 2] = [10, 40];
+
+    /// A wall that two columns without anisotropy hold, with two lines half the strip apart about a place along it, between which it turns
+    /// the other way.
+    fn wall(place: f64) -> Spins {
+        let spin = |i: usize| {
+            let (x, y) = ((i % CELLS[0]) as f64, (i / CELLS[0]) as f64);
+            let apart = (y - place).rem_euclid(CELLS[1] as f64);
+            let depth = (apart.min(CELLS[1] as f64 - apart) - 0.25 * CELLS[1] as f64) / 4.0;
+            let (up, across) = (libm::tanh((4.5 - x) / 2.0), 1.0 / libm::cosh((4.5 - x) / 2.0));
+            [across / libm::cosh(depth), across * libm::tanh(depth), up]
+        };
+        Spins::from_vectors(&(0..CELLS[0] * CELLS[1]).map(spin).collect::<Vec<_>>()).unwrap()
+    }
+
+    #[test]
+    fn what_slides_freely_along_a_strip_wanders_across_it_from_the_same_temperature_on_at_all_places() {
+        let config = r#"{"material": {"name": "strip", "moment": "2 mu_B", "energy": [{"exchange": {"J": ["5 meV"]}},
+                {"anisotropy": {"K": "0.6 meV", "axis": [0, 0, 1]}}, {"anisotropy": {"K": "-0.15 meV", "axis": [1, 0, 0]}},
+                {"anisotropy": {"K": "-0.6 meV", "axis": [0, 0, 1], "sites": {"box": {"from": [3.9, -1], "to": [5.1, 41]}}}}]},
+            "lattice": {"square": {"cells": [10, 40], "periodic": [false, true]}},
+            "initial": {"uniform": {"direction": [0, 0, 1]}}, "final": {"uniform": {"direction": [0, 0, -1]}}}"#;
+        let problem = load_text("strip.json".as_ref(), config.into()).unwrap().problem().unwrap();
+        let h = Evaluator::from(&problem.hamiltonian);
+        let wanders = |place: f64| {
+            let start = wall(place);
+            let group = Group::of(&h, start.as_slice(), &[]);
+            let limits = Limits {
+                steps: STEPS,
+                without_mode: FEW,
+                radius: STEP,
+                ceiling_mev: f64::INFINITY,
+                known: &|_, _| false,
+            };
+            let saddle = climb(h, start.as_slice(), &limits).saddle.unwrap();
+            let unstable = unstable_mode(&saddle.state, &saddle.mode, &saddle.state.zeros);
+            Slide::of(h, &saddle.state, unstable.as_ref(), &group, 20.0)
+                .wanders
+                .expect("nothing but its columns holds it")[0]
+        };
+        let own = wanders(10.0);
+        for place in [10.31, 17.77] {
+            let other = wanders(place);
+            assert!((other / own - 1.0).abs() < 1e-3, "{place}: {other} {own}");
+        }
+    }
 }
