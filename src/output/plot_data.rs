@@ -2,7 +2,6 @@
 
 use super::csv::column_name;
 use super::rates_summary::{PassageEntry, TransitionEntry, transitions};
-use super::spin_maps::SitePlaces;
 use super::staggered::SiteKinds;
 use super::{EnergyPath, RunReport};
 use crate::drive::HistoryRow;
@@ -27,8 +26,8 @@ pub struct PlotData<'a> {
     pub kinds: SiteKinds,
     /// Where the sites are, if that is known.
     pub places: Option<Places>,
-    /// Places of the sites of a lattice that is no row.
-    pub sites: Option<SitePlaces>,
+    /// The lattice, where that is no row: maps draw its sites at their places.
+    pub lattice: Option<&'a Lattice>,
     /// One row a band iteration.
     pub history: Vec<HistoryRow>,
     /// Mean times from both ends to the other, where rates were asked for.
@@ -89,7 +88,7 @@ impl<'a> PlotData<'a> {
             path: Some(&outcome.path),
             kinds: SiteKinds::of(run.lattice),
             places: Places::of(run.lattice),
-            sites: SitePlaces::of(run.lattice),
+            lattice: Some(run.lattice).filter(|lattice| !lattice.is_row()),
             history: outcome.history.clone(),
             lifetimes: transitions.iter().map(Lifetimes::of).collect(),
         }

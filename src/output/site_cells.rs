@@ -23,16 +23,17 @@ impl SiteCell {
             let f = lattice.atoms[atom].at;
             lattice.to([0, 1, 2].map(|d| f[d] + cell[d] as f64))
         };
-        let cells = || (-2..=2).flat_map(|a| (-2..=2).flat_map(move |b| (-2..=2).map(move |c| [a, b, c])));
-        let others = || cells().flat_map(|cell| (0..lattice.atoms.len()).map(move |atom| at(atom, cell)));
-        let around = |own: Vector| others().map(|p| [0, 1, 2].map(|d| p[d] - own[d])).collect::<Vec<_>>();
-        (0..lattice.atoms.len()).map(|atom| SiteCell::between(&around(at(atom, [0; 3])))).collect()
+        let cells = (-2..=2).flat_map(|a| (-2..=2).flat_map(move |b| (-2..=2).map(move |c| [a, b, c])));
+        let others: Vec<Vector> =
+            cells.flat_map(|cell| (0..lattice.atoms.len()).map(move |atom| at(atom, cell))).collect();
+        let around = |own: Vector| others.iter().map(move |p| [0, 1, 2].map(|d| p[d] - own[d]));
+        (0..lattice.atoms.len()).map(|atom| SiteCell::between(around(at(atom, [0; 3])))).collect()
     }
 
     /// Bounded by what is in the same plane. A row alone has cells as high as they are wide.
-    fn between(around: &[Vector]) -> SiteCell {
-        let flat = around.iter().filter(|d| d[2].abs() < 1e-6).map(|d| [d[0], d[1]]);
-        let mut steps: Vec<[f64; 2]> = flat.filter(|d| libm::hypot(d[0], d[1]) > 1e-6).collect();
+    fn between(around: impl Iterator<Item = Vector>) -> SiteCell {
+        let flat = around.filter(|d| d[2].abs() < 1e-6).map(|d| [d[0], d[1]]);
+        let mut steps = bounding(flat.filter(|d| libm::hypot(d[0], d[1]) > 1e-6).collect());
         if steps.is_empty() {
             steps = vec![[1.0, 0.0], [-1.0, 0.0]];
         }
@@ -59,6 +60,57 @@ fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
 
 fn is_inside(steps: &[[f64; 2]], place: [f64; 2]) -> bool {
     steps.iter().all(|d| 2.0 * dot(place, *d) <= dot(*d, *d) * (1.0 + 1e-9))
+}
+
+/// Those steps, in their order, to which the line halfway touches the cell: few, however many there are.
+fn bounding(steps: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    let furthest = steps.iter().map(|d| dot(*d, *d).sqrt()).fold(0.0, f64::max);
+    let cell = steps.iter().fold(Polygon::square(1e3 * furthest), |cell, d| cell.cut(*d));
+    steps.into_iter().filter(|d| cell.reaches(*d, 1.0 - TOUCHES)).collect()
+}
+
+/// So near its line halfway, as a part of its length, a step still touches a cell.
+const TOUCHES: f64 = 1e-6;
+
+/// What is left of a cell by the lines halfway to some places.
+struct Polygon {
+    /// In their order round.
+    corners: Vec<[f64; 2]>,
+    /// Twice the distance of the furthest corner, squared: a place beyond cuts nothing off.
+    reach: f64,
+}
+
+impl Polygon {
+    fn of(corners: Vec<[f64; 2]>) -> Polygon {
+        let reach = corners.iter().map(|p| 4.0 * dot(*p, *p)).fold(0.0, f64::max);
+        Polygon { corners, reach }
+    }
+
+    fn square(half: f64) -> Polygon {
+        Polygon::of(vec![[half, half], [-half, half], [-half, -half], [half, -half]])
+    }
+
+    /// Whether it reaches so much of the way to the line halfway to a place.
+    fn reaches(&self, d: [f64; 2], part: f64) -> bool {
+        let square = dot(d, d);
+        square * part * part <= self.reach && self.corners.iter().any(|p| 2.0 * dot(*p, d) > part * square)
+    }
+
+    /// Without what is nearer to a place than to the site.
+    fn cut(self, d: [f64; 2]) -> Polygon {
+        if !self.reaches(d, 1.0) {
+            return self;
+        }
+        let beyond = |p: [f64; 2]| 2.0 * dot(p, d) - dot(d, d);
+        let next = self.corners.iter().cycle().skip(1);
+        let edges = self.corners.iter().zip(next).map(|(p, q)| (*p, *q, beyond(*p), beyond(*q)));
+        let kept = edges.flat_map(|(p, q, from, to)| {
+            let crossing = || [0, 1].map(|c| (p[c] * to - q[c] * from) / (to - from));
+            let crosses = (from > 0.0) != (to > 0.0);
+            [(from <= 0.0).then_some(p), crosses.then(crossing)]
+        });
+        Polygon::of(kept.flatten().collect())
+    }
 }
 
 /// Where lines halfway to two places cross, and none is nearer.
@@ -108,7 +160,26 @@ mod tests {
 
     #[test]
     fn a_row_alone_has_squares_and_so_has_a_site_alone() {
-        assert_box(&SiteCell::between(&[[2.0, 0.0, 0.0], [-2.0, 0.0, 0.0], [0.0, 0.0, 1.0]]), [1.0, 1.0], 1.0);
-        assert_box(&SiteCell::between(&[]), [0.5, 0.5], 1.0);
+        assert_box(
+            &SiteCell::between([[2.0, 0.0, 0.0], [-2.0, 0.0, 0.0], [0.0, 0.0, 1.0]].into_iter()),
+            [1.0, 1.0],
+            1.0,
+        );
+        assert_box(&SiteCell::between(std::iter::empty()), [0.5, 0.5], 1.0);
+    }
+
+    #[test]
+    fn hundreds_of_sites_of_one_cell_are_those_of_a_lattice_at_no_more_cost() {
+        let n = 20;
+        let part = |k: usize| (k as f64 + 0.5) / n as f64;
+        let atoms: Vec<String> =
+            (0..n * n).map(|i| format!(r#"{{"at": [{}, {}, 0]}}"#, part(i % n), part(i / n))).collect();
+        let vectors = format!("[[{n}, 0, 0], [0, {n}, 0], [0, 0, 1]]");
+        let start = std::time::Instant::now();
+        let found = cells(&format!(r#"{{"crystal": {{"vectors": {vectors}, "basis": [{}]}}}}"#, atoms.join(", ")));
+        assert_eq!(found.len(), n * n);
+        found.iter().step_by(57).for_each(|cell| assert_box(cell, [0.5, 0.5], 1.0));
+        // with all pairs of all sites around it each cell took a second
+        assert!(start.elapsed().as_secs() < 20);
     }
 }

@@ -19,27 +19,22 @@ use crate::lattice::Lattice;
 use crate::words::rounded;
 
 /// Where the sites are.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SitePlaces {
+struct SitePlaces {
     /// Positions, one a site.
-    pub at: Vec<Vector>,
+    at: Vec<Vector>,
     /// Which of the cells each site has.
-    pub atoms: Vec<usize>,
+    atoms: Vec<usize>,
     /// What the sites colour, one an atom of the lattice's cell.
-    pub cells: Vec<SiteCell>,
-    /// The unit of lengths.
-    pub unit: &'static str,
+    cells: Vec<SiteCell>,
 }
 
 impl SitePlaces {
-    /// Of a lattice that is no row.
-    pub fn of(lattice: &Lattice) -> Option<SitePlaces> {
-        (!lattice.is_row()).then(|| SitePlaces {
+    fn of(lattice: &Lattice) -> SitePlaces {
+        SitePlaces {
             at: (0..lattice.sites).map(|i| lattice.position(i)).collect(),
             atoms: (0..lattice.sites).map(|i| lattice.cell(i).0).collect(),
             cells: SiteCell::of(lattice),
-            unit: lattice.unit(),
-        })
+        }
     }
 }
 
@@ -60,16 +55,17 @@ const PIXELS: f64 = 260.0;
 const HIGHEST: f64 = 1.6;
 
 /// The figure. An error where the spins are not known.
-pub fn draw_spin_maps(data: &PlotData, places: &SitePlaces, look: &Look) -> Result<Canvas> {
+pub fn draw_spin_maps(data: &PlotData, lattice: &Lattice, look: &Look) -> Result<Canvas> {
     let path = data.path.ok_or_else(|| Error::Numerical("spins: the spins are not known".into()))?;
-    let layer = Layer::of(places, &data.kinds.vacant);
+    let places = SitePlaces::of(lattice);
+    let layer = Layer::of(&places, &data.kinds.vacant);
     let maps = maps(&data.energy.images, path.images());
     let title = |(image, role): &(usize, &str)| Text::new(format!("{role} (image {image})"), SMALL_PT);
     let widest = maps.iter().try_fold(0.0, |w: f64, map| Ok::<_, Error>(w.max(title(map).width()?)))?;
     let plan = Plan::of(Canvas::styled(look, 10.0).width(), layer.size, maps.len(), widest);
     let left = MARGIN + plan.left(layer.size);
     let end = left + plan.scale * round_part(layer.size[0]);
-    let below = below(&layer, places.unit, look.drawn_width_mm() * MM - MARGIN - end)?;
+    let below = below(&layer, lattice.unit(), look.drawn_width_mm() * MM - MARGIN - end)?;
     let mut canvas = Canvas::styled(look, (plan.height + LINE * (below.len() - 1) as f64) / MM);
     for (k, map) in maps.iter().enumerate() {
         let (rect, image) = (plan.map(k, layer.size), &map.0);
@@ -278,14 +274,14 @@ mod tests {
     use crate::spins::Spins;
 
     /// Two by three sites, 2 nm apart, the first vacant.
-    fn film() -> SitePlaces {
+    fn film() -> Lattice {
         let lattice = r#"{"square": {"cells": [2, 3], "spacing": "2 nm"}}"#;
-        SitePlaces::of(&serde_json::from_str::<LatticeSpec>(lattice).unwrap().resolve().unwrap()).unwrap()
+        serde_json::from_str::<LatticeSpec>(lattice).unwrap().resolve().unwrap()
     }
 
     #[test]
     fn each_site_colours_its_cell_and_a_vacant_one_nothing() {
-        let places = film();
+        let places = SitePlaces::of(&film());
         let layer = Layer::of(&places, &[true]);
         assert_eq!((layer.sites.len(), layer.low, layer.size), (5, [-1.0, -1.0], [4.0, 6.0]));
         let pixels = |i: usize| layer.pixels(i, [4, 6]).collect::<Vec<_>>();
@@ -300,7 +296,7 @@ mod tests {
     fn of_several_layers_the_middle_one_is_shown() {
         let lattice = r#"{"cubic": {"cells": [2, 2, 3]}}"#;
         let lattice = serde_json::from_str::<LatticeSpec>(lattice).unwrap().resolve().unwrap();
-        let places = SitePlaces::of(&lattice).unwrap();
+        let places = SitePlaces::of(&lattice);
         let middle = Layer::of(&places, &[]);
         assert_eq!((middle.z, middle.words("a")), (Some(1.0), Some("the layer at z = 1 a".into())));
     }
@@ -369,7 +365,7 @@ mod tests {
         let data = PlotData { energy, path: Some(&path), ..Default::default() };
         for width in [60.0, 70.0, 85.0] {
             let look = Look::new(Style::Paper, Some(width)).unwrap();
-            draw_spin_maps(&data, &SitePlaces::of(&lattice).unwrap(), &look).unwrap().assert_legible();
+            draw_spin_maps(&data, &lattice, &look).unwrap().assert_legible();
         }
     }
 }

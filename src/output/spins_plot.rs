@@ -36,8 +36,8 @@ impl Plot for SpinsPlot {
     }
 
     fn draw(&self, data: &PlotData, look: &Look) -> Result<Canvas> {
-        match &data.sites {
-            Some(places) => draw_spin_maps(data, places, look),
+        match data.lattice {
+            Some(lattice) => draw_spin_maps(data, lattice, look),
             None => draw_spins(data, look),
         }
     }

@@ -8,7 +8,6 @@ use super::disk::{self, MARK};
 use super::folder::stored_result;
 use super::plot_data::above_first;
 use super::read::{bytes, read_spins, shown, text};
-use super::spin_maps::SitePlaces;
 use super::staggered::SiteKinds;
 use super::summary::{Saddle, Summary};
 use super::{EnergyPath, Lifetimes, Places, PlotData};
@@ -34,8 +33,8 @@ pub struct StoredRun {
     pub kinds: SiteKinds,
     /// Where the sites are, as the config says.
     pub places: Option<Places>,
-    /// Places of the sites of a lattice that is no row.
-    pub sites: Option<SitePlaces>,
+    /// The lattice as the config says, where that is no row.
+    pub lattice: Option<Lattice>,
     summary: Summary,
     images: Vec<(f64, f64)>,
     terms_mev: Vec<(String, Vec<f64>)>,
@@ -83,7 +82,7 @@ impl StoredRun {
             notes,
             kinds: SiteKinds::default(),
             places: None,
-            sites: None,
+            lattice: None,
             summary,
             images: points,
             terms_mev,
@@ -101,7 +100,7 @@ impl StoredRun {
             let files = SPINS.join(", ");
             self.notes.push(format!("there is no file of spins ({files}): spins and magnetisation cannot be drawn"));
         }
-        (self.places, self.sites) = (Places::of(lattice), SitePlaces::of(lattice));
+        (self.places, self.lattice) = (Places::of(lattice), Some(lattice.clone()).filter(|lattice| !lattice.is_row()));
         self.kinds = SiteKinds::of(lattice);
         Ok(self)
     }
@@ -129,7 +128,7 @@ impl StoredRun {
             path: self.path.as_ref(),
             kinds: self.kinds.clone(),
             places: self.places,
-            sites: self.sites.clone(),
+            lattice: self.lattice.as_ref(),
             history: self.history.clone(),
             lifetimes: self.summary.transition_rates.iter().flatten().map(Lifetimes::of).collect(),
         }
