@@ -278,3 +278,15 @@ fn operations_of_a_film_say_how_they_turn_it() {
         "{said:?}"
     );
 }
+
+#[test]
+fn a_cluster_of_one_cell_has_the_group_of_the_same_sites_as_a_lattice() {
+    let terms = with(r#"{"anisotropy": {"K": "-0.1 meV", "axis": [1, 1, 0]}}"#);
+    let part = |k: usize| (k as f64 + 0.5) / 5.0;
+    let atoms: Vec<String> = (0..25).map(|i| format!(r#"{{"at": [{}, {}, 0.5]}}"#, part(i % 5), part(i / 5))).collect();
+    let vectors = r#""vectors": [[5, 0, 0], [0, 5, 0], [0, 0, 1]]"#;
+    let cluster = format!(r#"{{"crystal": {{{vectors}, "basis": [{}], "cells": [1, 1, 1]}}}}"#, atoms.join(", "));
+    let square = on(r#"{"square": {"cells": [5, 5]}}"#, &terms);
+    assert_eq!(names(&on(&cluster, &terms)), names(&square));
+    assert_eq!(group(&square).order(), 64);
+}

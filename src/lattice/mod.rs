@@ -20,9 +20,11 @@ mod kind;
 #[cfg(test)]
 mod ladder;
 mod measure;
+mod motion;
 mod order;
 mod picture;
 mod places;
+mod points;
 mod rows;
 mod selection;
 mod shape;
@@ -58,6 +60,7 @@ pub use honeycomb::Honeycomb;
 pub use kagome::Kagome;
 pub use measure::Periods;
 pub use mesh::Mesh;
+pub use motion::Motion;
 pub use picture::{DATA, Picture};
 pub use selection::Selection;
 pub use shape::{Corners, Disc, Ellipse, Ring, Shape};
@@ -66,7 +69,6 @@ pub use sites::{Frozen, Periodic, SiteMoment, SiteSection};
 pub use slots::Slots;
 pub use spec::{LatticeKind, LatticeSpec};
 pub use square::Square;
-pub use symmetry::Motion;
 pub use triangles::Triangles;
 pub use triangular::Triangular;
 

@@ -6,7 +6,8 @@
 //! ```
 //! M is a matrix of whole numbers, here of at most 2: the vectors of a cell are not to be much longer than they need be.
 
-use super::{Lattice, Shift};
+use super::motion::{STAY, Whole, in_order};
+use super::{Lattice, Motion, Shift};
 use crate::geometry::matrix::{UNIT, determinant, product, times, transposed};
 use crate::geometry::{Matrix, Vector, vector};
 
@@ -15,100 +16,13 @@ const SAME: f64 = 1e-6;
 /// The largest whole number in M.
 const MOST: isize = 2;
 
-/// Whole numbers, row by row.
-type Whole = [[isize; 3]; 3];
-const STAY: Whole = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
-
-/// The sites of a lattice in other places of it.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Motion {
+/// What takes atom s of cell c to atom σ(s) of cell M c + t_s.
+#[derive(Clone)]
+struct OfCells {
     /// M.
     turn: Whole,
     /// σ(s) and t_s of every atom of a cell.
     to: Vec<(usize, Shift)>,
-}
-
-impl Motion {
-    /// So many cells on.
-    pub fn shift(lattice: &Lattice, by: Shift) -> Motion {
-        Motion { turn: STAY, to: (0..lattice.atoms.len()).map(|atom| (atom, by)).collect() }.normal(lattice)
-    }
-
-    /// Every site where it is.
-    pub fn none(lattice: &Lattice) -> Motion {
-        Motion::shift(lattice, [0; 3])
-    }
-
-    /// Whether every site stays.
-    pub fn is_none(&self) -> bool {
-        self.shifts_by() == Some([0; 3])
-    }
-
-    /// How many cells on all sites go, where they are shifted only.
-    pub fn shifts_by(&self) -> Option<Shift> {
-        let (_, by) = self.to[0];
-        let alike = self.to.iter().enumerate().all(|(atom, to)| *to == (atom, by));
-        (self.turn == STAY && alike).then_some(by)
-    }
-
-    /// The atom and the cell that site i goes to; no cell where it leaves the box.
-    #[inline]
-    pub fn place(&self, lattice: &Lattice, i: usize) -> (usize, Option<[usize; 3]>) {
-        let (atom, cell) = lattice.cell(i);
-        let (to, by) = self.to[atom];
-        let cell = cell.map(|n| n as isize);
-        let along = |d: usize| {
-            let row = self.turn[d];
-            lattice.grid.step(0, by[d] + row[0] * cell[0] + row[1] * cell[1] + row[2] * cell[2], d)
-        };
-        let [x, y, z] = [along(0), along(1), along(2)];
-        (to, x.and_then(|x| Some([x, y?, z?])))
-    }
-
-    /// Where it takes site i, if there is a site.
-    #[inline]
-    pub fn of(&self, lattice: &Lattice, i: usize) -> Option<usize> {
-        let (atom, cell) = self.place(lattice, i);
-        lattice.site(atom, cell?)
-    }
-
-    /// What takes i to self(first(i)).
-    pub fn after(&self, first: &Motion, lattice: &Lattice) -> Motion {
-        let turn = [0, 1, 2].map(|r| [0, 1, 2].map(|c| (0..3).map(|k| self.turn[r][k] * first.turn[k][c]).sum()));
-        let both = |&(between, by): &(usize, Shift)| {
-            let (to, further) = self.to[between];
-            let image = |r: usize| further[r] + (0..3).map(|k| self.turn[r][k] * by[k]).sum::<isize>();
-            (to, [image(0), image(1), image(2)])
-        };
-        Motion { turn, to: first.to.iter().map(both).collect() }.normal(lattice)
-    }
-
-    /// A shift, so many times.
-    pub fn times(&self, count: usize, lattice: &Lattice) -> Motion {
-        let to = self.to.iter().map(|(atom, by)| (*atom, by.map(|n| n * count as isize))).collect();
-        Motion { turn: self.turn, to }.normal(lattice)
-    }
-
-    /// The same, with no more cells on along a periodic direction than there are.
-    fn normal(mut self, lattice: &Lattice) -> Motion {
-        for d in (0..3).filter(|d| lattice.grid.periodic[*d]) {
-            self.to.iter_mut().for_each(|(_, by)| by[d] = by[d].rem_euclid(lattice.grid.size[d] as isize));
-        }
-        self
-    }
-
-    /// By how many sites a row is shifted, or shifted after it was mirrored end for end.
-    pub fn beside_mirror(&self, lattice: &Lattice) -> usize {
-        let by = self.to[0].1[0] + isize::from(self.turn[0][0] < 0);
-        by.rem_euclid(lattice.grid.size[0] as isize) as usize
-    }
-
-    /// Q.
-    pub fn turn(&self, lattice: &Lattice) -> Matrix {
-        let columns = transposed(&lattice.frame());
-        let turn = self.turn.map(|row| row.map(|n| n as f64));
-        product(&product(&columns, &turn), &inverse(&columns))
-    }
 }
 
 /// A⁻¹.
@@ -118,30 +32,68 @@ fn inverse(a: &Matrix) -> Matrix {
     [vector::cross(y, z), vector::cross(z, x), vector::cross(x, y)].map(|v| vector::scale(1.0 / volume, v))
 }
 
+/// The normal of the plane of the longest of all and of what is most beside it; none where all are along one line.
+fn normal(ways: &[Vector]) -> Option<Vector> {
+    let longest = |vectors: &mut dyn Iterator<Item = Vector>| {
+        vectors.max_by(|a, b| vector::norm(*a).total_cmp(&vector::norm(*b))).filter(|v| vector::norm(*v) > SAME)
+    };
+    let along = longest(&mut ways.iter().copied()).and_then(vector::unit)?;
+    longest(&mut ways.iter().map(|w| vector::cross(along, *w))).and_then(vector::unit)
+}
+
 impl Lattice {
     /// The motions that are more than shifts of whole cells, but for such shifts: those that the places of the atoms allow, put so
-    /// that along open directions the box of all sites is the same.
+    /// that along open directions the box of all sites is the same, and those that clusters and wires allow, in whichever cells.
     pub fn motions(&self) -> Vec<Motion> {
+        let mut found = vec![Motion::none(self)];
+        found.extend(self.motions_of_cells());
+        let more: Vec<Motion> = self.point_motions().into_iter().filter(|motion| !found.contains(motion)).collect();
+        if !more.is_empty() {
+            found.extend(more);
+            found[1..].sort_by_key(|motion| in_order(motion.turn()));
+        }
+        found.split_off(1)
+    }
+
+    fn motions_of_cells(&self) -> Vec<Motion> {
         if self.is_row() {
             // a ring of two is its own mirror image, shifted
             let mirror =
-                Motion { turn: [[-1, 0, 0], [0, 1, 0], [0, 0, 1]], to: vec![(0, [self.sites as isize - 1, 0, 0])] };
-            return if self.sites < 2 + usize::from(self.grid.periodic[0]) { Vec::new() } else { vec![mirror] };
+                OfCells { turn: [[-1, 0, 0], [0, 1, 0], [0, 0, 1]], to: vec![(0, [self.sites as isize - 1, 0, 0])] };
+            let is_one = self.sites >= 2 + usize::from(self.grid.periodic[0]);
+            return is_one.then(|| self.motion(&mirror)).flatten().into_iter().collect();
         }
         let mut found = vec![Motion::none(self)];
         for turn in self.turns() {
             for first in 0..self.atoms.len() {
-                let Some(motion) = self.with_turn(turn, first).and_then(|motion| self.boxed(motion)) else { continue };
-                let extends = |d: &usize| self.grid.extends(*d);
-                let moves_alike = |other: &&Motion| {
-                    other.to == motion.to && (0..3).filter(extends).all(|d| other.turn[d] == motion.turn[d])
-                };
-                if found.iter().find(moves_alike).is_none() {
+                let boxed = self.with_turn(turn, first).map(|motion| self.boxed(motion));
+                let Some(motion) = boxed.and_then(|motion| self.motion(&motion)) else { continue };
+                if !found.contains(&motion) {
                     found.push(motion);
                 }
             }
         }
         found.split_off(1)
+    }
+
+    /// If every site goes to a place of one.
+    fn motion(&self, of_cells: &OfCells) -> Option<Motion> {
+        let to = |p: usize| {
+            let (atom, cell) = self.numbered_place(p);
+            let (to, by) = of_cells.to[atom];
+            let image =
+                [0, 1, 2].map(|d| by[d] + (0..3).map(|k| of_cells.turn[d][k] * cell[k] as isize).sum::<isize>());
+            let open = [0, 1, 2].map(|d| if self.grid.periodic[d] { 0 } else { image[d] });
+            Some((self.place_number(to, self.grid.shifted([0; 3], open)?), image))
+        };
+        Motion::of_places(self, self.matrix(&of_cells.turn), of_cells.turn, to)
+    }
+
+    /// Q.
+    fn matrix(&self, turn: &Whole) -> Matrix {
+        let columns = transposed(&self.frame());
+        let turn = turn.map(|row| row.map(|n| n as f64));
+        product(&product(&columns, &turn), &inverse(&columns))
     }
 
     /// The steps along directions that extend, and unit vectors at right angles to all others along those that do not.
@@ -161,10 +113,26 @@ impl Lattice {
         [0, 1, 2].map(|d| if extends[d] { vector::scale(self.steps[d].0, frame[d]) } else { frame[d] })
     }
 
-    /// The mirror image along a direction that does not extend.
-    pub fn mirrored(&self, direction: usize) -> Matrix {
-        let n = self.frame()[direction];
-        [0, 1, 2].map(|r| vector::sub(UNIT[r], vector::scale(2.0 * n[r], n)))
+    /// The mirror image that leaves all sites of a film or a flat cluster where they are; of any other lattice that along the first
+    /// direction that does not extend, if there is one.
+    pub fn flat_mirror(&self) -> Option<Matrix> {
+        let frame = self.frame();
+        let first = (0..3).find(|d| !self.grid.extends(*d)).map(|d| frame[d]);
+        let ways = self.ways();
+        let crosses = |n: Vector| ways.iter().all(|w| vector::dot(*w, n).abs() < SAME);
+        let n = match first.filter(|n| crosses(*n)) {
+            Some(n) => n,
+            None => normal(&ways).filter(|n| crosses(*n)).or(first)?,
+        };
+        Some([0, 1, 2].map(|r| vector::sub(UNIT[r], vector::scale(2.0 * n[r], n))))
+    }
+
+    /// From the first site to all others, and round along each periodic direction.
+    fn ways(&self) -> Vec<Vector> {
+        let round = (0..3).filter(|d| self.grid.periodic[*d]).map(|d| self.steps[d]);
+        let round = round.map(|(length, along)| vector::scale(length, along.vector()));
+        let first = self.position(0);
+        round.chain((1..self.sites).map(|i| vector::sub(self.position(i), first))).collect()
     }
 
     /// The M that keep all distances, and no torus or open border is torn by.
@@ -212,7 +180,7 @@ impl Lattice {
     }
 
     /// The motion that turns so and takes the first atom of a cell to such an atom, if every atom goes to one.
-    fn with_turn(&self, turn: Whole, first: usize) -> Option<Motion> {
+    fn with_turn(&self, turn: Whole, first: usize) -> Option<OfCells> {
         let columns = transposed(&self.frame());
         let into = inverse(&columns);
         let places: Vec<Vector> = self.atoms.iter().map(|atom| times(&into, self.to(atom.at))).collect();
@@ -227,11 +195,11 @@ impl Lattice {
                 meets.then(|| (to, cells.map(|n| n as isize)))
             })
         };
-        Some(Motion { turn, to: places.iter().map(goes).collect::<Option<_>>()? })
+        Some(OfCells { turn, to: places.iter().map(goes).collect::<Option<_>>()? })
     }
 
     /// The motion after a shift that puts the box of all sites where it was along open directions.
-    fn boxed(&self, mut motion: Motion) -> Option<Motion> {
+    fn boxed(&self, mut motion: OfCells) -> OfCells {
         let open = (0..3).filter(|d| !self.grid.periodic[*d]);
         for d in open {
             let (mut lowest, mut image) = (isize::MAX, isize::MAX);
@@ -243,9 +211,7 @@ impl Lattice {
             }
             motion.to.iter_mut().for_each(|(_, by)| by[d] += lowest - image);
         }
-        let all_open = self.grid.periodic == [false; 3];
-        let stays = !all_open || (0..self.sites).all(|i| motion.of(self, i).is_some());
-        stays.then(|| motion.normal(self))
+        motion
     }
 }
 
@@ -297,6 +263,44 @@ mod tests {
             (r#"{"hcp": {"cells": [3, 3, 2], "periodic": true}}"#, 24),
         ] {
             assert_eq!(count(text), expected, "{text}");
+        }
+    }
+
+    /// A crystal of such cells with these atoms.
+    fn crystal(vectors: &str, atoms: &[[f64; 3]], more: &str) -> String {
+        let basis: Vec<String> = atoms.iter().map(|at| format!(r#"{{"at": {at:?}}}"#)).collect();
+        format!(r#"{{"crystal": {{"vectors": {vectors}, "basis": [{}], {more}}}}}"#, basis.join(", "))
+    }
+
+    #[test]
+    fn a_cluster_has_the_motions_of_its_sites_whichever_cells_they_are_counted_in() {
+        let part = |k: usize, n: usize| (k % n) as f64 / n as f64 + 0.1;
+        let cube = |n: usize, high: usize| -> Vec<[f64; 3]> {
+            (0..n * n * high).map(|k| [part(k, n), part(k / n, n), part(k / n / n, high)]).collect()
+        };
+        let row: Vec<[f64; 3]> = (0..4).map(|k| [part(k, 4), 0.0, 0.0]).collect();
+        let round = |n: usize, rise: f64| -> Vec<[f64; 3]> {
+            let angle = |k: usize| (360.0 * k as f64 / n as f64).to_radians();
+            (0..n).map(|k| [0.2 * angle(k).cos(), 0.2 * angle(k).sin(), rise * k as f64]).collect()
+        };
+        let (cell, long) = ("[[4, 0, 0], [0, 4, 0], [0, 0, 1]]", "[[4, 0, 0], [0, 1, 0], [0, 0, 1]]");
+        let wide = "[[9, 0, 0], [2, 9, 0], [0, 0, 9]]";
+        let wire = r#""cells": [1, 1, 5], "periodic": [false, false, true]"#;
+        let one = r#""cells": [1, 1, 1]"#;
+        for (text, expected) in [
+            (crystal(cell, &cube(4, 1), one), 8),
+            (crystal(long, &row, r#""cells": [1, 4, 1]"#), 8),
+            (crystal("[[4, 0, 0], [0, 4, 0], [0, 0, 4]]", &cube(4, 4), one), 48),
+            (crystal("[[4, 0, 0], [0, 4, 0], [0, 0, 1]]", &cube(4, 1), r#""cells": [1, 1, 4]"#), 48),
+            // off the axes of the cell
+            (crystal(wide, &[[0.1, 0.1, 0.1], [0.2, 0.1, 0.1], [0.1, 0.1, 0.2], [0.5, 0.1, 0.5]], one), 2),
+            (crystal("[[9, 0, 0], [0, 9, 0], [0, 0, 9]]", &round(7, 0.0), one), 14),
+            // along a wire the period stays
+            (crystal("[[9, 0, 0], [0, 9, 0], [0, 0, 9]]", &round(3, 0.0), wire), 12),
+            (crystal("[[9, 0, 0], [0, 9, 0], [0, 0, 9]]", &round(5, 0.2), wire), 10),
+            (crystal("[[4, 0, 0], [0, 4, 0], [0, 0, 1]]", &cube(4, 1), wire), 16),
+        ] {
+            assert_eq!(count(&text), expected, "{text}");
         }
     }
 }

@@ -101,7 +101,7 @@ impl fmt::Display for Operation {
 
 fn of_sites(motion: &Motion, lattice: &Lattice) -> String {
     // spins go the other way than the sites that they are taken from
-    let turn = transposed(&motion.turn(lattice));
+    let turn = transposed(motion.turn());
     let turned = match (apart(&turn, &UNIT) < SAME, lattice.is_row()) {
         (true, _) => None,
         (_, true) => Some("mirrored chain".to_string()),

@@ -44,6 +44,8 @@ pub(super) struct Search<'a> {
     held: Arc<[bool]>,
     axes: Vec<Vector>,
     marks: Marks,
+    /// The mirror image of a film along its normal.
+    flat: Option<Matrix>,
     /// Rotations and reflections of spins worth trying, 1 the first; once those that alone are operations are known, one of each
     /// class of those that differ by them.
     turns: Vec<Matrix>,
@@ -65,6 +67,7 @@ impl<'a> Search<'a> {
             held,
             axes: h.symmetry_axes_at(state),
             marks: Marks::none(h.sites()),
+            flat: h.lattice().flat_mirror(),
             turns: Vec::new(),
             sample: Default::default(),
             witness: Default::default(),
@@ -160,7 +163,7 @@ impl<'a> Search<'a> {
     fn placed(&self, motion: &Motion, free: [usize; 3]) -> Vec<Motion> {
         let (lattice, rarest) = (self.lattice(), self.marks.rarest());
         let grid = &lattice.grid;
-        let (atom, Some(from)) = motion.place(lattice, rarest[0]) else { return Vec::new() };
+        let (atom, from) = motion.place(lattice, rarest[0]);
         let mut list: Vec<Motion> = Vec::new();
         for (_, to) in rarest.iter().map(|i| lattice.cell(*i)).filter(|(own, _)| *own == atom) {
             let apart = [0, 1, 2].map(|d| (to[d] + grid.size[d] - from[d]) % grid.size[d]);
@@ -192,14 +195,12 @@ impl<'a> Search<'a> {
     /// The matrices that turn spins as the motion turns the lattice, or its film together with its normal, each with its
     /// opposite; none in a row, whose own are all among those of the frames.
     fn turned_alike(&self, motion: &Motion) -> Vec<Matrix> {
-        let lattice = self.lattice();
         // a site takes the spin from where the motion leads: the spins go the other way
-        let turn = transposed(&motion.turn(lattice));
-        if lattice.is_row() || apart(&turn, &UNIT) < SAME {
+        let turn = transposed(motion.turn());
+        if self.lattice().is_row() || apart(&turn, &UNIT) < SAME {
             return Vec::new();
         }
-        let flat = (0..3).find(|d| !lattice.grid.extends(*d));
-        let other = flat.map(|d| product(&turn, &lattice.mirrored(d)));
+        let other = self.flat.map(|mirror| product(&turn, &mirror));
         std::iter::once(turn).chain(other).flat_map(|r| [r, opposite(&r)]).collect()
     }
 
