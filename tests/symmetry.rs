@@ -290,3 +290,28 @@ fn a_cluster_of_one_cell_has_the_group_of_the_same_sites_as_a_lattice() {
     assert_eq!(names(&on(&cluster, &terms)), names(&square));
     assert_eq!(group(&square).order(), 64);
 }
+
+/// A honeycomb whose bonds couple m·x, m·y and m·z of a frame of spins, by the direction of the bond, and a little what is across.
+fn kitaev(frame: [[f64; 3]; 3]) -> Hamiltonian {
+    let entry = |k: usize, r: usize, c: usize| {
+        let [own, one, other] = [k, (k + 1) % 3, (k + 2) % 3].map(|k| frame[k]);
+        own[r] * own[c] + 0.3 * (one[r] * other[c] + other[r] * one[c])
+    };
+    let bond = |(k, cell): (usize, [isize; 3])| {
+        let row = |r: usize| [0, 1, 2].map(|c| format!("{} meV", entry(k, r, c)));
+        let tensor = [0, 1, 2].map(row);
+        format!(r#"{{"from": 0, "to": 1, "cell": {cell:?}, "J": "2 meV", "tensor": {tensor:?}}}"#)
+    };
+    let bonds = [[0, 0, 0], [-1, 0, 0], [0, -1, 0]].into_iter().enumerate().map(bond);
+    let pairs = format!(r#"[{{"pairs": {{"bonds": [{}]}}}}]"#, bonds.collect::<Vec<_>>().join(", "));
+    on(r#"{"honeycomb": {"cells": [3, 3], "periodic": true}}"#, &pairs)
+}
+
+#[test]
+fn exchange_matrices_have_their_operations_in_any_frame_of_spins() {
+    let unit = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let [a, b] = [0.7_f64, 0.4].map(|angle| (angle.cos(), angle.sin()));
+    let turned = [[a.0, a.1 * b.0, a.1 * b.1], [-a.1, a.0 * b.0, a.0 * b.1], [0.0, -b.1, b.0]];
+    let order = group(&kitaev(unit)).order();
+    assert_eq!((order, group(&kitaev(turned)).order()), (216, 216));
+}

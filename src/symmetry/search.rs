@@ -4,6 +4,7 @@ use super::frames::{Frame, Permutation, SAME, along, are_alike, frames};
 use super::marks::Marks;
 use super::operation::Operation;
 use super::shift::Shift;
+use super::tensors::Tensors;
 use crate::energy::Hamiltonian;
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::matrix::{UNIT, apart, opposite, product, times, transposed};
@@ -32,6 +33,8 @@ impl Alike {
     pub const NEARLY: Alike = Alike { agree: WEAK, noise: 2.0 * WEAK };
 }
 
+/// Entries of matrices that tensors and frames both tell differ by less, also where the energy is only nearly symmetric.
+const ALIKE: f64 = 0.2;
 /// How many operations that move sites are tried at most.
 const TRIALS: usize = 512;
 /// How many axes are kept of those that the terms and the frozen spins single out.
@@ -46,6 +49,7 @@ pub(super) struct Search<'a> {
     marks: Marks,
     /// The mirror image of a film along its normal.
     flat: Option<Matrix>,
+    tensors: Option<Tensors>,
     /// Rotations and reflections of spins worth trying, 1 the first; once those that alone are operations are known, one of each
     /// class of those that differ by them.
     turns: Vec<Matrix>,
@@ -68,6 +72,7 @@ impl<'a> Search<'a> {
             axes: h.symmetry_axes_at(state),
             marks: Marks::none(h.sites()),
             flat: h.lattice().flat_mirror(),
+            tensors: None,
             turns: Vec::new(),
             sample: Default::default(),
             witness: Default::default(),
@@ -78,6 +83,7 @@ impl<'a> Search<'a> {
         if !alike.is_empty() {
             search.marks.tell(|i| alike[i].to_bits());
         }
+        search.tensors = Tensors::of(h, &search.held);
         search.turns = search.candidates();
         let [m, other] = [1, 2].map(|seed| search.held_as_they_are(Spins::random(h.sites(), 0x5a3e + seed)));
         let force = search.force(&m);
@@ -101,7 +107,8 @@ impl<'a> Search<'a> {
     /// The operations that move no site, the identity the first.
     pub fn turns_of_spins(&mut self) -> Vec<Operation> {
         let none = Motion::none(self.lattice());
-        let all = self.turns.iter().map(|r| self.operation(&none, *r));
+        let turns: Vec<Matrix> = self.turns.iter().copied().chain(self.told(&none, &self.turns)).collect();
+        let all = turns.iter().map(|r| self.operation(&none, *r));
         let found: Vec<Operation> =
             all.enumerate().filter(|(k, o)| *k == 0 || self.is_symmetry(o)).map(|(_, o)| o).collect();
         let mut classes: Vec<Matrix> = Vec::new();
@@ -185,7 +192,8 @@ impl<'a> Search<'a> {
             return None;
         }
         let (first, others) = self.turns.split_at(self.turns.len().min(1));
-        let turns: Vec<Matrix> = [first, &self.turned_alike(motion), others].concat();
+        let mut turns: Vec<Matrix> = [first, &self.turned_alike(motion), others].concat();
+        turns.extend(self.told(motion, &turns));
         let tried = self.trials.min(turns.len());
         let found = turns[..tried].iter().map(|r| self.operation(motion, *r)).position(|o| self.is_symmetry(&o));
         self.trials -= found.map_or(tried, |k| k + 1);
@@ -202,6 +210,14 @@ impl<'a> Search<'a> {
         }
         let other = self.flat.map(|mirror| product(&turn, &mirror));
         std::iter::once(turn).chain(other).flat_map(|r| [r, opposite(&r)]).collect()
+    }
+
+    /// The matrices that the tensors of bonds tell, those aside that are known.
+    fn told(&self, motion: &Motion, known: &[Matrix]) -> Vec<Matrix> {
+        let Some(tensors) = &self.tensors else { return Vec::new() };
+        let mut turns = tensors.turns(self.h, &self.held, |i| motion.of(self.lattice(), i));
+        turns.retain(|r| !known.iter().any(|q| apart(q, r) < ALIKE));
+        turns
     }
 
     /// f(m')_i = R f(m)_p(i) on a random state, E(m') = E(m) on another.
