@@ -53,9 +53,11 @@ pub use passage::{TEN_YEARS_S, blocking_temperature, first_passage, passages};
 pub use rate::{Crossing, LEAST_BARRIER, Prefactor, Regime, Row, SaddleRate, Way, refused, saddle_rates};
 pub use refusal::{Refusal, UnknownModes};
 pub use settings::{RateSettings, Theory, checked_damping, checked_g_factor, checked_temperature};
-pub use siblings::{APART, Family, Kin, Sibling, Siblings, Symmetry};
+pub use siblings::{Family, Kin, Sibling, Siblings, Symmetry};
 pub use sliding::{Pinning, Turn};
-pub use symmetry::{Equivalents, KEPT, KEPT_OR_EXCHANGED, OneState, equivalent_saddles, leads_back_by, may_slide_to};
+pub use symmetry::{
+    APART, Equivalents, KEPT, KEPT_OR_EXCHANGED, OneState, equivalent_saddles, leads_back_by, may_slide_to,
+};
 pub use transition::{Kindred, NetworkTime, Orbits, TransitionRate, TransitionRow, transitions};
 pub use unstable::{Unstable, unstable_mode};
 pub use validity::{LOW_BARRIER, ORDER, Validity, digits};

@@ -9,7 +9,7 @@
 
 use super::determinant::PinnedHessian;
 use super::sliding::Turn;
-use super::symmetry::{KEPT_OR_EXCHANGED, free_shifts, largest_steps, places, slid};
+use super::symmetry::{APART, KEPT_OR_EXCHANGED, free_shifts, largest_steps, places, slid};
 use super::unstable::Unstable;
 use crate::energy::{Evaluator, Hamiltonian};
 use crate::linalg::slab;
@@ -18,8 +18,6 @@ use crate::stationary::{Point, State};
 use crate::symmetry::{Group, Operation};
 use std::borrow::Cow;
 
-/// Spins of a state differ from those of another by more somewhere (rad); what differs by less is the same, changed by what is weak.
-pub const APART: f64 = 0.3;
 /// Most operations that are tried.
 const MOST: usize = 4096;
 

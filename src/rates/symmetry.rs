@@ -3,7 +3,6 @@
 //! An operation of the group counts where it keeps both minima, or makes each the other, and moves the saddle, rotations about a symmetry
 //! axis (and shifts of states that slide) apart: those are in the volume of zero modes.
 
-use super::siblings::APART;
 use crate::field::Components;
 use crate::geometry::vector;
 use crate::lattice::Lattice;
@@ -11,6 +10,9 @@ use crate::linalg::slab;
 use crate::path::largest_angle;
 use crate::sphere::{SAME, write_logs};
 use crate::symmetry::{Group, Operation};
+
+/// Spins of a state differ from those of another by more somewhere (rad); what differs by less is the same, changed by what is weak.
+pub const APART: f64 = 0.3;
 
 /// What of a square lies along a way that leads there.
 const ALONG: f64 = 0.75;
