@@ -437,7 +437,8 @@ pub(crate) enum Looking {
     None,
     /// Until 8 searches in a row brought no news
     Quick,
-    /// Until 24 searches in a row brought no news, and 16 more for each saddle found, up to 100, and to 100 more for each lower route
+    /// Until 24 searches in a row brought no news for each direction of the lattice, and 16 more for each saddle found, up to 100, and to
+    /// 100 more for each lower route
     Normal,
     /// Until 400 searches in a row brought no news, or as many as normal waits for
     Thorough,
