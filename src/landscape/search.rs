@@ -145,6 +145,13 @@ pub struct Settings<'a> {
     pub context: GuessContext<'a>,
 }
 
+impl Settings<'_> {
+    /// What a search may evaluate, of which so many, the last ones, brought no news, and which made the route lower so many times.
+    fn allowed(&self, quiet: usize, lowered: usize) -> Count {
+        if quiet < FEW || lowered > 0 { self.most_with_news } else { self.most }
+    }
+}
+
 /// What a search came to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Searched {
@@ -192,8 +199,8 @@ pub fn search(
         }
         let wanted = aim.quiet(settings.effort, [found, lowered], land);
         let worked = h.evaluated().since(before);
-        let most = if done.quiet < FEW || lowered > 0 { settings.most_with_news } else { settings.most };
-        let spent = worked.part_of(most).max(land.kinds() as f64 / settings.most_kinds as f64);
+        let spent =
+            worked.part_of(settings.allowed(done.quiet, lowered)).max(land.kinds() as f64 / settings.most_kinds as f64);
         // what comes to its own stop has not missed the work that it has used up
         done.spent = spent >= 1.0 && done.quiet < wanted;
         tell(&Standing { done, wanted, spent, known: [land.minima().len(), land.edges().len()] });
@@ -279,4 +286,32 @@ fn climb(land: &Landscape, start: &[f64], below: f64, sides: Sides) -> Result<Op
         return Ok(None);
     }
     Pass::of(h, saddle, sides).map(Some)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Direction;
+    use crate::lattice::Chain;
+    use crate::state::StateContext;
+
+    #[test]
+    fn a_search_waits_longer_the_more_ways_there_are_and_the_more_it_found() {
+        let normal = |counts: [usize; 2], directions: usize| Effort::Normal.quiet(counts, directions);
+        assert_eq!([1, 2, 3].map(|directions| normal([0, 0], directions)), [24, 48, 72]);
+        assert_eq!([normal([2, 0], 2), normal([9, 0], 2), normal([9, 1], 2)], [80, 100, 192]);
+        assert_eq!(Effort::Thorough.quiet([0, 0], 3), 400);
+        assert_eq!([Effort::Quick, Effort::Normal, Effort::Thorough].map(Effort::works), [1, 1, 10]);
+    }
+
+    #[test]
+    fn a_search_may_do_more_as_long_as_there_is_news_and_once_the_route_is_lower() {
+        let lattice = Chain::open(2).resolve().unwrap();
+        let [most, most_with_news] = [1, 8].map(|n| Count { evaluations: n, hessians: n });
+        let context = GuessContext { states: StateContext::new(&lattice, 1.0), default_axis: Direction::X };
+        let (effort, shares, most_kinds, c) = (Effort::Normal, 1, KINDS, 1.0);
+        let settings = Settings { effort, shares, most, most_with_news, together: most, most_kinds, c, context };
+        assert_eq!(settings.allowed(FEW, 0), most);
+        assert_eq!([settings.allowed(FEW - 1, 0), settings.allowed(FEW, 1)], [most_with_news; 2]);
+    }
 }

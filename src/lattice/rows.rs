@@ -6,12 +6,6 @@ use super::Lattice;
 const SAME: f64 = 1e-6;
 
 impl Lattice {
-    /// In how many directions sites are beside each other: 1 in a row, 2 in a film, and 1 at least.
-    pub fn directions(&self) -> usize {
-        let places = self.places_in_cell();
-        (0..3).filter(|d| self.grid.size[*d] * places[*d] > 1).count().max(1)
-    }
-
     /// How many places for atoms there are along each vector of a cell: as many as different ones are taken, or, where atoms leave
     /// most of these free, as many as atoms spread evenly would take.
     pub fn places_in_cell(&self) -> [usize; 3] {
@@ -32,6 +26,11 @@ impl Lattice {
     pub fn extents(&self) -> [bool; 3] {
         let places = self.places_in_cell();
         [0, 1, 2].map(|d| self.grid.extends(d) || places[d] > 1)
+    }
+
+    /// In how many directions it extends: 1 in a row, 2 in a film, and 1 at least.
+    pub fn directions(&self) -> usize {
+        self.extents().into_iter().filter(|extends| *extends).count().max(1)
     }
 
     /// Where site i is, in steps along each direction.
@@ -62,8 +61,10 @@ mod tests {
             (lattice(r#"{"honeycomb": {"cells": [4, 3]}}"#), [1, 1, 1], [true, true, false]),
             (basis(&grid), [3, 2, 1], [true, true, false]),
             (basis(&spread), [3, 3, 1], [true, true, false]),
+            (lattice(r#"{"cubic": {"cells": [2, 3, 2]}}"#), [1, 1, 1], [true; 3]),
         ] {
             assert_eq!((lattice.places_in_cell(), lattice.extents()), (places, extents));
+            assert_eq!(lattice.directions(), extents.into_iter().filter(|extends| *extends).count());
         }
     }
 }
