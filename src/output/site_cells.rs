@@ -176,7 +176,10 @@ mod tests {
             (0..n * n).map(|i| format!(r#"{{"at": [{}, {}, 0]}}"#, part(i % n), part(i / n))).collect();
         let vectors = format!("[[{n}, 0, 0], [0, {n}, 0], [0, 0, 1]]");
         let start = std::time::Instant::now();
-        let found = cells(&format!(r#"{{"crystal": {{"vectors": {vectors}, "basis": [{}]}}}}"#, atoms.join(", ")));
+        let found = cells(&format!(
+            r#"{{"crystal": {{"vectors": {vectors}, "basis": [{}], "cells": [1, 1, 1]}}}}"#,
+            atoms.join(", ")
+        ));
         assert_eq!(found.len(), n * n);
         found.iter().step_by(57).for_each(|cell| assert_box(cell, [0.5, 0.5], 1.0));
         // with all pairs of all sites around it each cell took a second

@@ -24,17 +24,17 @@ pub(super) struct Alike {
     agree: f64,
     /// Squares of gradients differ by more than this part of the squared stiffness.
     noise: f64,
+    /// Matrices are one that differ by less: tensors that agree but nearly turn a little otherwise than a frame does.
+    turned: f64,
 }
 
 impl Alike {
     /// But for rounding.
-    pub const EXACTLY: Alike = Alike { agree: 1e-12, noise: 1e-11 };
+    pub const EXACTLY: Alike = Alike { agree: 1e-12, noise: 1e-11, turned: 1e-6 };
     /// But for what is weak.
-    pub const NEARLY: Alike = Alike { agree: WEAK, noise: 2.0 * WEAK };
+    pub const NEARLY: Alike = Alike { agree: WEAK, noise: 2.0 * WEAK, turned: 0.2 };
 }
 
-/// Entries of matrices that tensors and frames both tell differ by less, also where the energy is only nearly symmetric.
-const ALIKE: f64 = 0.2;
 /// How many operations that move sites are tried at most.
 const TRIALS: usize = 512;
 /// How many axes are kept of those that the terms and the frozen spins single out.
@@ -107,7 +107,7 @@ impl<'a> Search<'a> {
     /// The operations that move no site, the identity the first.
     pub fn turns_of_spins(&mut self) -> Vec<Operation> {
         let none = Motion::none(self.lattice());
-        let turns: Vec<Matrix> = self.turns.iter().copied().chain(self.told(&none, &self.turns)).collect();
+        let turns = [self.turns.as_slice(), &self.unlike(&self.told(&none), &self.turns)].concat();
         let all = turns.iter().map(|r| self.operation(&none, *r));
         let found: Vec<Operation> =
             all.enumerate().filter(|(k, o)| *k == 0 || self.is_symmetry(o)).map(|(_, o)| o).collect();
@@ -193,7 +193,10 @@ impl<'a> Search<'a> {
         }
         let (first, others) = self.turns.split_at(self.turns.len().min(1));
         let mut turns: Vec<Matrix> = [first, &self.turned_alike(motion), others].concat();
-        turns.extend(self.told(motion, &turns));
+        let told = self.told(motion);
+        turns.extend(self.unlike(&told, &turns));
+        // where tensors tell, others are operations by chance alone, and would use up the trials
+        turns.sort_by_key(|r| !told.iter().any(|q| apart(q, r) < self.within.turned));
         let tried = self.trials.min(turns.len());
         let found = turns[..tried].iter().map(|r| self.operation(motion, *r)).position(|o| self.is_symmetry(&o));
         self.trials -= found.map_or(tried, |k| k + 1);
@@ -212,12 +215,16 @@ impl<'a> Search<'a> {
         std::iter::once(turn).chain(other).flat_map(|r| [r, opposite(&r)]).collect()
     }
 
-    /// The matrices that the tensors of bonds tell, those aside that are known.
-    fn told(&self, motion: &Motion, known: &[Matrix]) -> Vec<Matrix> {
-        let Some(tensors) = &self.tensors else { return Vec::new() };
-        let mut turns = tensors.turns(self.h, &self.held, |i| motion.of(self.lattice(), i));
-        turns.retain(|r| !known.iter().any(|q| apart(q, r) < ALIKE));
-        turns
+    /// The matrices that the tensors of bonds tell.
+    fn told(&self, motion: &Motion) -> Vec<Matrix> {
+        let turns = |tensors: &Tensors| tensors.turns(self.h, &self.held, |i| motion.of(self.lattice(), i));
+        self.tensors.as_ref().map(turns).unwrap_or_default()
+    }
+
+    /// Those that are not known.
+    fn unlike(&self, told: &[Matrix], known: &[Matrix]) -> Vec<Matrix> {
+        let is_known = |r: &&Matrix| known.iter().any(|q| apart(q, r) < self.within.turned);
+        told.iter().filter(|r| !is_known(r)).copied().collect()
     }
 
     /// f(m')_i = R f(m)_p(i) on a random state, E(m') = E(m) on another.
