@@ -1,5 +1,6 @@
 //! Where every value of a JSON text stands; and what is wrong with a text that is no JSON, in words.
 
+use crate::error::Error;
 use crate::words::quoted;
 use std::collections::HashMap;
 
@@ -402,4 +403,15 @@ fn is_number(word: &str) -> bool {
         && (whole == "0" || !whole.starts_with('0'))
         && fraction.is_none_or(digits)
         && exponent.is_none_or(digits)
+}
+
+/// Where everything stands in the text, or what is wrong with it.
+pub(super) fn tree(file: &str, text: &str) -> Result<Node, Error> {
+    scan(text).map_err(|fault| at(file, text, fault.at, &fault.steps, fault.message))
+}
+
+/// An error at a byte of a text.
+pub(super) fn at(file: &str, text: &str, at: usize, steps: &[Step], message: String) -> Error {
+    let (line, column) = position(text, at);
+    Error::Config { file: file.into(), line, column, place: written(steps), message }
 }

@@ -1,7 +1,6 @@
 //! `--set KEY.PATH=JSON`: values of a config changed on the command line.
 
-use super::json::{Holds, Node, Step, position, scan, steps};
-use super::text::tree;
+use super::json::{Holds, Node, Step, position, scan, steps, tree};
 use crate::error::{Error, Result};
 use crate::words::{nearest, quoted};
 

@@ -4,7 +4,7 @@
 //! serde_json, and by the type that is wanted. What that type refuses is put in plain words, with the line and column
 //! of the value itself.
 
-use super::json::{self, Node, Step, position, scan, written};
+use super::json::{self, Node, Step, at, position, scan, tree, written};
 use super::refusals::{self, Refusal, inline, missing, unknown};
 use crate::error::{Error, Result};
 use crate::words::quoted;
@@ -146,17 +146,6 @@ pub fn decode(file: &str, bytes: Vec<u8>) -> Result<String> {
 /// The value of a JSON text, or all that is wrong with it; `file` is the name that messages begin with.
 pub fn parse<T: DeserializeOwned>(file: &str, text: &str) -> Result<T> {
     Text::new(file, text.into()).parse()
-}
-
-/// Where everything stands in the text, or what is wrong with it.
-pub(super) fn tree(file: &str, text: &str) -> Result<Node> {
-    scan(text).map_err(|fault| at(file, text, fault.at, &fault.steps, fault.message))
-}
-
-/// An error at a byte of a text.
-pub(super) fn at(file: &str, text: &str, at: usize, steps: &[Step], message: String) -> Error {
-    let (line, column) = position(text, at);
-    Error::Config { file: file.into(), line, column, place: written(steps), message }
 }
 
 /// What was refused, in plain words.

@@ -19,10 +19,11 @@ mod names;
 mod range;
 
 use super::json::{Holds, Step, steps};
+use super::json::{at, tree};
 use super::load::{Loaded, load_text, not_a};
 use super::schema;
 use super::source::read;
-use super::text::{Text, apply_set, at, tree};
+use super::text::{Text, apply_set};
 use super::{Comment, Name};
 use crate::drive::Problem;
 use crate::error::{Error, Result};
