@@ -20,11 +20,11 @@ fn sources(place: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// The modules of the crate that a file names in its code, its tests and comments left out.
-fn imports(text: &str) -> Vec<&str> {
+/// What a file names in its code behind a word, its tests and comments left out.
+fn names<'a>(text: &'a str, behind: &str) -> Vec<&'a str> {
     let code = text.split("#[cfg(test)]").next().unwrap_or_default();
     let lines = code.lines().filter(|line| !line.trim_start().starts_with("//"));
-    let names = lines.flat_map(|line| line.split("crate::").skip(1));
+    let names = lines.flat_map(|line| line.split(behind).skip(1));
     names.map(|rest| rest.split(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap_or_default()).collect()
 }
 
@@ -44,7 +44,7 @@ fn the_front_page_names_every_module_and_none_imports_one_above_it() {
         sources(&if place.is_dir() { place } else { place.with_extension("rs") }, &mut files);
         assert!(!files.is_empty(), "{module} is not there");
         for file in files {
-            for other in imports(&fs::read_to_string(&file).unwrap()) {
+            for other in names(&fs::read_to_string(&file).unwrap(), "crate::") {
                 let Some(below) = row_of.get(other) else { continue };
                 let lower = below > row || (below == row && *row == last);
                 assert!(other == *module || lower, "{}: {module} imports {other}", file.display());
@@ -53,19 +53,13 @@ fn the_front_page_names_every_module_and_none_imports_one_above_it() {
     }
 }
 
-/// The neighbours in its folder whose names a file takes, its tests and comments left out.
-fn neighbours<'a>(text: &'a str, all: &BTreeMap<String, String>) -> Vec<&'a str> {
-    let code = text.split("#[cfg(test)]").next().unwrap_or_default();
-    let lines = code.lines().filter(|line| !line.trim_start().starts_with("//"));
-    let names = lines.flat_map(|line| line.split("super::").skip(1));
-    let first = names.map(|rest| rest.split(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap_or_default());
-    first.filter(|name| all.contains_key(*name)).collect()
-}
-
 /// Files that import each other in a circle, if any do: what is left once those that import none of the others are taken away.
 fn circle(mut all: BTreeMap<String, String>) -> Vec<String> {
     loop {
-        let ends = all.iter().find(|(name, text)| neighbours(text, &all).iter().all(|other| other == name));
+        let is_end = |name: &str, text: &str| {
+            names(text, "super::").into_iter().all(|other| other == name || !all.contains_key(other))
+        };
+        let ends = all.iter().find(|(name, text)| is_end(name, text));
         let Some(end) = ends.map(|(name, _)| name.clone()) else { return all.into_keys().collect() };
         all.remove(&end);
     }

@@ -37,17 +37,15 @@ pub(super) fn take(arguments: &Arguments, of: ShareOf) -> Result<u8> {
     let head = head(&loaded, of.shares, &arguments.config, set);
     let shares = Shares::join(&directory, &head, Some(of.part.first..=of.part.last), progress.speaker())?;
     asked.problem.control.record(Box::new(shares));
-    let searched = match take_part(&asked, &mut progress) {
-        Ok(searched) => searched,
-        Err(error) => match (&error, signals.caught()) {
-            (Error::Stopped, Some((code, word))) => {
-                let stage = progress.stage_now().to_string();
-                drop(progress);
-                messages.line(format_args!("{word} while {stage}; the same command goes on from there"));
-                return Ok(code);
-            }
-            _ => return Err(error.into()),
-        },
+    let searched = match (take_part(&asked, &mut progress), signals.caught()) {
+        (Ok(searched), _) => searched,
+        (Err(Error::Stopped), Some((code, word))) => {
+            let stage = progress.stage_now().to_string();
+            drop(progress);
+            messages.line(format_args!("{word} while {stage}; the same command goes on from there"));
+            return Ok(code);
+        }
+        (Err(error), _) => return Err(error.into()),
     };
     drop(progress);
     Shares::end(&directory)?;

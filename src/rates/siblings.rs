@@ -9,7 +9,7 @@
 
 use super::determinant::PinnedHessian;
 use super::sliding::Turn;
-use super::symmetry::{APART, KEPT_OR_EXCHANGED, free_shifts, largest_steps, places, slid};
+use super::symmetry::{APART, KEPT_OR_EXCHANGED, free_shifts, largest_steps, places, shifted, slid};
 use super::unstable::Unstable;
 use crate::energy::{Evaluator, Hamiltonian};
 use crate::linalg::slab;
@@ -92,7 +92,7 @@ impl<'a> Kin<'a> {
 
 /// Whether an operation, and then shifts, take state a to b.
 fn is_shifted(group: &Group, by: &Operation, a: &[f64], b: &[f64]) -> bool {
-    slid(group, &vec![1; group.shifts().len()], &by.apply(a), b, APART)
+    shifted(group, &by.apply(a), b, APART)
 }
 
 /// A saddle, or another state, that is all but alike.

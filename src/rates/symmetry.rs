@@ -167,9 +167,13 @@ pub(super) fn slid(group: &Group, steps: &[usize], a: &[f64], b: &[f64], off: f6
 /// Whether shifts bring state a so near to b that a may slide there: no farther than half-way to the places next to b, each spin to less
 /// than [`APART`] beside that.
 pub fn may_slide_to(group: &Group, a: &[f64], b: &[f64]) -> bool {
-    let shifts = group.shifts();
-    let hops: f64 = shifts.iter().map(|shift| largest_angle(&shift.operation.apply(b), b)).sum();
-    slid(group, &vec![1; shifts.len()], a, b, APART + 0.5 * hops)
+    let hops: f64 = group.shifts().iter().map(|shift| largest_angle(&shift.operation.apply(b), b)).sum();
+    shifted(group, a, b, APART + 0.5 * hops)
+}
+
+/// Whether shifts, any of them, bring state a to b, each spin to less than `off` (rad).
+pub(super) fn shifted(group: &Group, a: &[f64], b: &[f64], off: f64) -> bool {
+    slid(group, &vec![1; group.shifts().len()], a, b, off)
 }
 
 /// Likewise, and what is left between b and the shifted a lies along orthonormal fields (3N) at b, if there are any: a state that slides along
