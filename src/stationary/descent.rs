@@ -273,4 +273,25 @@ mod tests {
         let steps = STEPS - walk.left;
         assert!((FEW..8 * FEW).contains(&steps), "{steps} steps");
     }
+
+    #[test]
+    fn a_level_valley_that_closes_is_followed_once() {
+        let lattice = Chain::open(2).resolve().unwrap();
+        // the first spin is free in a plane about no axis of the second, so that no symmetry tells that the valley is level
+        let along = |k: [f64; 2], axis: Direction| {
+            let term = Anisotropy { k: k.to_vec(), ..Anisotropy::uniform(2, 1.0, axis) };
+            Box::new(term) as Box<dyn EnergyTerm>
+        };
+        let h = Hamiltonian::new(&lattice, vec![along([-1.0, 0.0], Direction::Z), along([0.0, 1.0], Direction::X)])
+            .unwrap();
+        let h = Evaluator::from(&h);
+        let m = Spins::from_vectors(&[[1.0, 0.0, 0.0]; 2]).unwrap();
+        let state = State::of(h, Point::at(h, m.as_slice().to_vec()));
+        let to = Downhill { c: h.stiffness_mev(), level_mev: 0.0, beside: &[], most: STEPS };
+        let mut walk = Walk::from(h, &state, &[0.0, 0.0, 1.0, 0.0, 0.0, 0.0], to);
+        assert!(walk.march(STATIONARY * h.stiffness_mev()));
+        let steps = STEPS - walk.left;
+        assert!((20..60).contains(&steps), "{steps} steps");
+        assert!(largest_angle(&walk.here.m, m.as_slice()) < STEP);
+    }
 }

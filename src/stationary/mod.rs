@@ -9,6 +9,7 @@
 //! mode is split off there (`valley`; Lyapunov–Schmidt): Newton's method across it, steps along it.
 
 mod border;
+mod circuit;
 mod descent;
 mod flow;
 mod iterated;

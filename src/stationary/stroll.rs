@@ -2,6 +2,7 @@
 //! than any digit that is told, but a well at every site, and a descent that ended in the first would need a saddle for each to go on.
 //! It goes on over them as long as the energy stays level: to where it falls, or to a minimum that it was to reach.
 
+use super::circuit::Circuit;
 use super::point::Point;
 use super::state::State;
 use super::tolerances::{LARGER, LAST_DIGITS, STEP};
@@ -59,7 +60,7 @@ impl Walk<'_> {
     /// Along the valley while it rises by no more than what is level above the lowest place so far.
     fn stay_level(&mut self) -> End {
         let (start, steep) = (self.here.clone(), STEEP * self.h.stiffness_mev());
-        let (mut step, mut deepest_mev, mut is_away) = (LAST_DIGITS, 0.0_f64, false);
+        let (mut step, mut deepest_mev, mut circuit) = (LAST_DIGITS, 0.0_f64, Circuit::from(&start.m));
         for _ in 0..STEPS {
             if self.h.is_stopped() {
                 break;
@@ -85,11 +86,9 @@ impl Walk<'_> {
             if slope > steep {
                 return End::Falls;
             }
-            let far = largest_angle(&start.m, &self.here.m);
-            if is_away && far < STEP {
+            if circuit.closes(&self.here.m) {
                 return End::Nowhere;
             }
-            is_away |= far > LARGER * STEP;
             step = (GROWTH * step).min(STEP);
         }
         End::Nowhere

@@ -1,5 +1,6 @@
 //! Along a valley's floor, where the gradient is rounding error and no guide: steps along it, and Newton's method across.
 
+use super::circuit::Circuit;
 use super::pinned::Pinned;
 use super::tolerances::{LARGER, LAST_DIGITS, MANY, ROUGHLY, STEP};
 use super::walk::{NOISE, Room, Walk};
@@ -24,12 +25,13 @@ const FLAT: f64 = LARGER * NOISE;
 const ROUGH: f64 = 1e-3;
 
 impl Walk<'_> {
-    /// Along the valley to where its slope (meV/rad) is `enough`; whether it went any way.
+    /// Along the valley to where its slope (meV/rad) is `enough`, or all around one that closes; whether it went any way.
     pub(super) fn march(&mut self, enough: f64) -> bool {
         let noise = NOISE * self.h.stiffness_mev();
         let flat = FLAT * self.h.stiffness_mev();
         let mut step = LAST_DIGITS;
         let mut moved = false;
+        let mut circuit = Circuit::from(&self.here.m);
         self.last = None;
         for _ in 0..MANY {
             self.predict(step);
@@ -52,7 +54,7 @@ impl Walk<'_> {
             swap(&mut self.here, &mut self.next);
             self.trail.pass(&self.here.m);
             moved = true;
-            if slope > enough || slope < -flat {
+            if slope > enough || slope < -flat || circuit.closes(&self.here.m) {
                 break;
             }
             step = (GROWTH * step).min(STEP);
