@@ -41,6 +41,7 @@ impl<'a> Run<'a, '_> {
     /// A path in full, led over a route below a height (meV above the initial state) if there is one.
     pub(super) fn settle(&mut self, mut c: FirstPath<'a>, below_mev: f64) -> Result<Settled<'a>> {
         c.band.wake();
+        self.land.begin_joins();
         let proves = self.problem.certify && self.problem.seeks_saddles();
         if proves && !self.problem.hamiltonian.lattice().is_row() {
             // away from its tops a band of a film relaxes slowly, and the descents from its saddles are the path
@@ -82,6 +83,7 @@ impl<'a> Run<'a, '_> {
     /// is worth that is not told itself.
     pub(super) fn put_in(&mut self, mut c: FirstPath<'a>, below_mev: f64) -> Result<()> {
         c.band.wake();
+        self.land.begin_joins();
         let (_, proof) = self.examined(&c, below_mev)?;
         if !proof.doubts.is_empty() {
             self.relax_resolved(&mut c, TIGHTLY)?;

@@ -2,6 +2,7 @@
 //! peaks are refined to saddles, whose passes go into the graph; until a route leads from end to end.
 
 use super::flat::flat_way;
+use super::nearing::Nearing;
 use super::pass::{Pass, Sides};
 use super::search::QUIET;
 use super::ways::{WAYS, way};
@@ -11,7 +12,6 @@ use crate::band::Band;
 use crate::error::Result;
 use crate::path::guess::GuessContext;
 use crate::path::{COARSE, Path, distance};
-use crate::sphere::SAME;
 use crate::spins::Spins;
 use crate::stationary::FEW;
 
@@ -51,12 +51,14 @@ impl Connector<'_> {
             return Ok(None);
         }
         land.unfold();
-        let (mut tried, mut nearest, mut quiet) = (0, f64::INFINITY, 0);
+        let known = land.pairs.nearing.filter(|nearing| nearing.is_of(ends, self.below_mev));
+        let mut nearing = known.unwrap_or_else(|| Nearing::of(ends, self.below_mev));
         while !is_done(land) {
             let left = self.evaluations.saturating_sub(land.evaluator().evaluated().evaluations);
             let next = if left > 0 { land.next_pair(ends, self.below_mev, WAYS / 2) } else { None };
-            let Some((pair, far)) = next.filter(|_| quiet < QUIET) else { return Ok(Some(Doubt::NoRoute(tried))) };
-            (nearest, quiet) = if far < (1.0 - SAME) * nearest { (far, 0) } else { (nearest, quiet + 1) };
+            let next = next.filter(|(_, far)| nearing.goes_on(*far, QUIET));
+            land.pairs.nearing = Some(nearing);
+            let Some((pair, _)) = next else { return Ok(Some(Doubt::NoRoute(nearing.tried))) };
             let k = land.try_once_more(pair);
             let along = self.part_between(land, pair);
             let way = match (along, k) {
@@ -66,7 +68,6 @@ impl Connector<'_> {
             if let Some(way) = way {
                 self.follow(land, pair, way)?;
             }
-            tried += 1;
         }
         Ok(None)
     }

@@ -29,6 +29,7 @@ mod exits;
 mod flat;
 mod graph;
 mod minimum;
+mod nearing;
 mod pairs;
 mod pass;
 mod peaks;

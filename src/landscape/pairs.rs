@@ -4,6 +4,7 @@
 //! joins yet is the pair. (As J. M. Carr, S. A. Trygubenko, D. J. Wales, J. Chem. Phys. 122, 234903 (2005),
 //! doi:10.1063/1.1931587.)
 
+use super::nearing::Nearing;
 use super::{Landscape, turned, turns};
 use crate::field::Components;
 use crate::linalg::slab;
@@ -23,6 +24,8 @@ pub(super) struct Pairs {
     apart: Vec<Vec<f64>>,
     /// How often each was tried, it or an image of it by symmetry.
     tried: BTreeMap<Alike, usize>,
+    /// How the joins of one path get on.
+    pub nearing: Option<Nearing>,
 }
 
 impl Pairs {
@@ -68,6 +71,11 @@ impl Landscape<'_> {
             _ => slab::dot(a.as_slice(), turned(b, &turns(self.evaluator(), b, a)).as_slice()),
         };
         2.0 * (a.sites() as f64 - together).max(0.0)
+    }
+
+    /// The joins of another path begin: what those of the last one came to does not count.
+    pub fn begin_joins(&mut self) {
+        self.pairs.nearing = None;
     }
 
     /// How often a pair was tried; one time more from now on.
