@@ -28,19 +28,44 @@ pub(super) struct Pairs {
     pub nearing: Option<Nearing>,
 }
 
+/// What is known of the pairs of one minimum with those before it.
+pub(super) struct Row<'p, 'l> {
+    land: &'p Landscape<'l>,
+    k: usize,
+    apart: &'p mut [f64],
+    tried: &'p BTreeMap<Alike, usize>,
+}
+
+impl Row<'_, '_> {
+    /// The square of the distance from the one before.
+    pub fn squared(&mut self, before: usize) -> f64 {
+        let squared = &mut self.apart[before];
+        if squared.is_nan() {
+            *squared = self.land.squared_distance([before, self.k]);
+        }
+        *squared
+    }
+
+    /// How often a pair was tried.
+    pub fn tries(&self, pair: &Alike) -> usize {
+        self.tried.get(pair).copied().unwrap_or(0)
+    }
+}
+
 impl Pairs {
-    /// The square of the distance of two minima.
-    pub fn squared(&mut self, land: &Landscape, pair: [usize; 2]) -> f64 {
-        let [before, k] = [pair[0].min(pair[1]), pair[0].max(pair[1])];
+    /// The pairs of a minimum with those before it.
+    pub fn row<'p, 'l>(&'p mut self, land: &'p Landscape<'l>, k: usize) -> Row<'p, 'l> {
         if self.apart.len() <= k {
             self.apart.resize(k + 1, Vec::new());
         }
-        let row = &mut self.apart[k];
-        row.resize(k, f64::NAN);
-        if row[before].is_nan() {
-            row[before] = land.squared_distance(pair);
-        }
-        row[before]
+        let apart = &mut self.apart[k];
+        apart.resize(k, f64::NAN);
+        Row { land, k, apart, tried: &self.tried }
+    }
+
+    /// The square of the distance of two minima.
+    pub fn squared(&mut self, land: &Landscape, pair: [usize; 2]) -> f64 {
+        self.row(land, pair[0].max(pair[1])).squared(pair[0].min(pair[1]))
     }
 
     /// How often a pair was tried.
