@@ -13,6 +13,7 @@ mod circuit;
 mod descent;
 mod flow;
 mod iterated;
+mod kept;
 mod pinned;
 mod point;
 mod polish;
