@@ -111,7 +111,8 @@ impl<'a> Run<'a, '_> {
             }
             let h = c.band.evaluator();
             c.found = match self.zoom(c)? {
-                Some(top) => Some(Saddle::recorded(h, top)?),
+                // a band that was not relaxed may be, sooner than a search comes back to its valley
+                Some(top) => Some(Saddle::recorded(h, top, relaxes)?),
                 None => None,
             };
             let Some(found) = c.found.as_ref() else { break };

@@ -23,9 +23,9 @@ impl Saddle {
         Saddle { top: Arc::new(top), refined: Arc::new(refined) }
     }
 
-    /// Refines a top.
-    pub fn at(h: Evaluator, top: Peak) -> Saddle {
-        let refined = refine(h, &top.m, &top.tau, top.floor_mev);
+    /// Refines a top, by a search that may or may not stray (see [`refine`]).
+    pub fn at(h: Evaluator, top: Peak, may_stray: bool) -> Saddle {
+        let refined = refine(h, &top.m, &top.tau, top.floor_mev, may_stray);
         Saddle::new(top, refined)
     }
 
@@ -59,9 +59,10 @@ impl Saddle {
     }
 
     /// The same, as far as it is not on record.
-    pub fn recorded(h: Evaluator, top: Peak) -> Result<Saddle> {
+    pub fn recorded(h: Evaluator, top: Peak, may_stray: bool) -> Result<Saddle> {
         let [m, tau] = [&top.m, &top.tau].map(Vec::clone);
-        recorded(h, "saddle", &[&m, &tau], || Ok(Saddle::at(h, top)))
+        let strays = [f64::from(may_stray)];
+        recorded(h, "saddle", &[&m, &tau, &strays], || Ok(Saddle::at(h, top, may_stray)))
     }
 
     /// Stationary to machine precision, and near the start's height.

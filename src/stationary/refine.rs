@@ -8,6 +8,7 @@ use super::polish::polish;
 use super::search::{GaveUp, STEPS, Saddle, Search};
 use super::spectrum::Spectrum;
 use super::state::State;
+use super::step::Step;
 use super::tolerances::{ALIKE, FAR, STEP};
 use crate::energy::Evaluator;
 use crate::field::project;
@@ -35,11 +36,14 @@ impl Refined {
 
 /// The saddle of index one, or of one mode flat to rounding and none that falls, that following the lowest mode from `m` reaches, if it
 /// reaches one nearby without falling below `floor_mev` (meV above the Hamiltonian's reference). Else the stationary state that `m`
-/// all but is, of whatever index, or `m` as it is. `tau` (3N): the path's direction.
-pub fn refine(h: Evaluator, m: &[f64], tau: &[f64], floor_mev: f64) -> Refined {
+/// all but is, of whatever index, or `m` as it is. `tau` (3N): the path's direction. Where it `may_stray` a step may be cut to the trust
+/// radius with more than one direction falling: of 142 tops of unrelaxed bands of films from which one was, two fifths led to a saddle, by
+/// as many steps as a band takes to relax.
+pub fn refine(h: Evaluator, m: &[f64], tau: &[f64], floor_mev: f64, may_stray: bool) -> Refined {
     let mut search = Search::from(h, m, STEP);
     let left = |here: &Point| largest_angle(m, &here.m) > FAR || here.energy_mev < floor_mev;
-    let found = search.saddle(STEPS, true, |here, _| left(here).then_some(GaveUp::Stuck));
+    let strays = |step: &Step| !may_stray && step.negative > 1 && step.rotation >= STEP;
+    let found = search.saddle(STEPS, true, |here, step| (left(here) || strays(step)).then_some(GaveUp::Stuck));
     match found {
         Ok(Saddle { state, mode: valley, spectrum, .. }) => Refined { state, valley, spectrum: Some(spectrum) },
         Err(_) => beside(h, m, tau),
