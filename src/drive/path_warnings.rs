@@ -2,10 +2,10 @@
 
 use super::Verdict;
 use super::heights::{height, prominent_maxima};
-use super::outcome::SaddlePoint;
+use super::outcome::{SaddlePoint, SearchReport};
 use crate::band::Band;
 use crate::landscape::{Doubt, Minimum, Pass};
-use crate::stationary::{LOWER, Spectrum};
+use crate::stationary::{FEW, LOWER, Spectrum};
 
 /// A path, with what it should have and what was proven of it.
 pub struct OfPath<'a> {
@@ -27,6 +27,17 @@ impl OfPath<'_> {
         let lower = lower_maxima(band.energies_mev(), LOWER * height(band), &images);
         more.into_iter().chain(doubtful).chain(flat_warnings(self.ends, self.links)).chain(lower).collect()
     }
+}
+
+/// Says that a search for lower passes ended by its work alone, one of its last few searches having found something.
+pub fn search_cut_short(search: &SearchReport) -> Option<String> {
+    (search.spent && search.quiet < FEW).then(|| {
+        format!(
+            "the search for lower passes still found saddles when its work was spent ({} searches, {} minima): there may well be a lower \
+             barrier; \"search\": \"thorough\" or a guess of your own may find it",
+            search.searches, search.minima
+        )
+    })
 }
 
 /// Modes under the noise floor are said, not guessed: of many saddles at once.
@@ -80,6 +91,13 @@ fn more_images(asked: usize, has: usize, saddles: usize) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_search_is_cut_short_where_its_work_is_spent_while_it_still_finds_saddles() {
+        let search = |spent: bool, quiet: usize| SearchReport { spent, quiet, ..SearchReport::default() };
+        let told = [(true, 1), (true, FEW), (false, 1)].map(|(spent, quiet)| search_cut_short(&search(spent, quiet)));
+        assert_eq!(told.map(|warning| warning.is_some()), [true, false, false]);
+    }
 
     #[test]
     fn maxima_of_a_path_that_are_no_saddles_are_told_with_the_highest() {

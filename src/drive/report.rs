@@ -3,7 +3,7 @@
 use super::judge::{Judgement, Seen};
 use super::network::NetworkTimes;
 use super::outcome::*;
-use super::path_warnings::OfPath;
+use super::path_warnings::{OfPath, search_cut_short};
 use super::points::{end_of, highest_climb, image_state, minima_between, places_of, saddles, tell_eigenvalues};
 use super::rate_warnings;
 use super::rates::{self, Known};
@@ -95,8 +95,8 @@ pub fn outcome(
     let of_path = OfPath { band, asked_for: run.problem.images.asked_for(), ends: &ends, links: &links };
     let of_rates = rates.iter().flat_map(|rates| rate_warnings::warnings(rates, &search, barrier, highest_climb));
     let of_network = rates.iter().zip(&rated.network).flat_map(|(rates, network)| network.warnings(rates));
-    let warnings =
-        run.told(of_path.warnings(&saddles, &doubts, &verdict).into_iter().chain(of_rates).chain(of_network));
+    let of_path = of_path.warnings(&saddles, &doubts, &verdict).into_iter().chain(search_cut_short(&search));
+    let warnings = run.told(of_path.chain(of_rates).chain(of_network));
     let (certified, iterations) = (doubts.is_empty() && barrier.is_some(), band.evaluations());
     Outcome {
         certified,
