@@ -5,6 +5,7 @@ mod firsts;
 mod melt;
 mod modes;
 mod near;
+mod one_by_one;
 mod push;
 
 use super::Landscape;
@@ -33,7 +34,7 @@ pub(super) fn vanguard(all: bool) -> Vec<Box<dyn Rival>> {
     let alike: Box<dyn Rival> = Box::<alike::Alike>::default();
     match all {
         true => vec![Box::<modes::Modes>::default(), alike],
-        false => vec![Box::<firsts::Firsts>::default(), alike],
+        false => vec![Box::<one_by_one::OneByOne>::default(), Box::<firsts::Firsts>::default(), alike],
     }
 }
 
