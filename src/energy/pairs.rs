@@ -42,7 +42,7 @@ pub struct PairsSpec {
     pub convention: Option<Convention>,
 }
 
-/// A bond.
+/// `{"from": 0, "to": 0, "cell": [1, 0, 0], "J": "10 meV"}`: a bond; so many cells on is the other atom.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[allow(non_snake_case)]
@@ -51,7 +51,7 @@ pub struct PairSpec {
     pub from: usize,
     /// The other atom.
     pub to: usize,
-    /// How many cells on that is.
+    /// How many cells on that is: the other atom stands in the same one if absent.
     #[serde(default)]
     pub cell: Shift,
     /// Exchange J, with sign and counting as the convention says.
@@ -200,6 +200,10 @@ impl PairSpec {
             }
         }
         let (hop, row) = (self.hop(), lattice.is_row());
+        if hop == hop.back() {
+            let message = "this bond joins an atom with itself: say with \"cell\" how many cells on the other one is";
+            return Err(Error::invalid("cell", message));
+        }
         if (row && hop.shift[1..] != [0, 0]) || !lattice.grid.holds(hop.shift) {
             return Err(Error::invalid("cell", "no two cells of the lattice are so far apart"));
         }

@@ -23,6 +23,9 @@ use std::f64::consts::FRAC_PI_2;
 /// Domains farther apart than this (rad) are opposite.
 const OPPOSITE: f64 = 3.0;
 
+/// Domains nearer to each other than this (rad) are one.
+const ALIKE: f64 = 1e-6;
+
 /// The least sine between the domains' line and a direction across it.
 const ACROSS: f64 = 1e-6;
 
@@ -35,7 +38,7 @@ const NO_TRACE: f64 = 0.01;
 pub struct DomainWall {
     /// In sites, 39.5 lies between sites 39 and 40: how far the wall is from the origin along its normal.
     pub center: Extent,
-    /// δ in sites; that of the material if absent. 0 is an abrupt wall.
+    /// Width δ of the wall in sites; that of the material if absent. 0 is an abrupt wall.
     #[serde(default)]
     pub width: Option<Extent>,
     /// From left to right, across the wall; +x if absent, in a chain along the chain.
@@ -69,10 +72,22 @@ impl DomainWall {
         [left, right].map(|(given, default)| given.unwrap_or(default).vector())
     }
 
+    /// The error that both domains are one.
+    fn no_wall(&self) -> Error {
+        let key = if self.right.is_some() { "right" } else { "left" };
+        let message = "the domains left and right of the wall point the same way, so that nothing turns between them: for a wall of \
+                       360 degrees write {\"soliton\": {\"center\": …, \"domain\": […]}}, for one direction everywhere \
+                       {\"uniform\": {\"direction\": […]}}";
+        Error::invalid(key, message)
+    }
+
     /// The two halves of the turn from left to right.
     fn turn(&self, context: &StateContext) -> Result<[Arc; 2]> {
         let [left, right] = self.domains();
         let short = Arc::new(left, right, Direction::X);
+        if short.angle() < ALIKE {
+            return Err(self.no_wall());
+        }
         let through = self.through.map(Direction::vector);
         let middle = if short.angle() < OPPOSITE {
             let behind = through.is_some_and(|t| vector::dot(t, short.middle()) < 0.0);
@@ -87,7 +102,7 @@ impl DomainWall {
             vector::unit_or(across, line)
         };
         let halves = [Arc::new(left, middle, Direction::X), Arc::new(middle, right, Direction::X)];
-        // a wall all the way round, between equal domains, has no plane
+        // a wall nearly all the way round has no plane
         if halves[0].angle() >= OPPOSITE { Err(along_a_domain("wall")) } else { Ok(halves) }
     }
 }
