@@ -28,16 +28,21 @@ pub fn torque_mev(h: Evaluator, spins: &Spins) -> f64 {
 /// What a user should know of how an end relaxed.
 pub fn judge_end(h: Evaluator, r: &Relaxed, which: &str) -> Vec<String> {
     let mut warnings = Vec::new();
-    let degrees = r.largest_rotation_rad.to_degrees();
+    let far = (r.largest_rotation_rad > MOVED_FAR_RAD).then(|| {
+        let degrees = r.largest_rotation_rad.to_degrees();
+        format!(
+            "far from where it was put: a spin turned by {degrees:.0} degrees, so it may be another state than meant"
+        )
+    });
     let falls = |way: &&WayDown| way.fallen_mev > ALIKE * h.stiffness_mev();
     if let Some(WayDown { site, direction: [x, y, z], fallen_mev }) = r.left.as_ref().filter(falls) {
         warnings.push(format!(
             "the {which} state came to rest where it is no minimum: the energy falls by {fallen_mev:.3e} meV on the way that \
-             turns site {site} most, towards ({x:.2}, {y:.2}, {z:.2}); it was relaxed further that way"
+             turns site {site} most, towards ({x:.2}, {y:.2}, {z:.2}); it was relaxed further that way{}",
+            far.map_or(String::new(), |far| format!(", {far}"))
         ));
-    }
-    if r.largest_rotation_rad > MOVED_FAR_RAD {
-        warnings.push(format!("the {which} state relaxed far from where it was put: a spin turned by {degrees:.0} degrees, so it may be another state than meant"));
+    } else if let Some(far) = far {
+        warnings.push(format!("the {which} state relaxed {far}"));
     }
     if !r.converged {
         warnings

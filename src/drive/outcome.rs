@@ -123,8 +123,9 @@ pub struct SaddlePoint {
     pub lowest_eigenvalues_mev: Vec<f64>,
 }
 
-/// An end of which a spin turned by more than this while it relaxed may be another state than meant (rad).
-pub const MOVED_FAR_RAD: f64 = FAR;
+/// An end of which a spin turned by more than this while it relaxed may be another state than meant (rad): by a quarter turn, as from a
+/// hard axis into the easy plane, but for rounding.
+pub const MOVED_FAR_RAD: f64 = FAR - 1e-6;
 
 /// An end of the path.
 #[derive(Clone, Debug)]
