@@ -20,6 +20,7 @@ mod signals;
 mod start;
 mod sweep;
 mod threads;
+mod usage;
 mod write;
 
 pub use check::report_of;
@@ -51,11 +52,7 @@ pub fn main(program: &[OsString], arguments: impl IntoIterator<Item = OsString>)
     let name = OsString::from("spinneb");
     let command = match Cli::try_parse_from([name].into_iter().chain(arguments)) {
         Ok(line) => line.command,
-        Err(words) => {
-            // help is no error; there is nowhere to say that it cannot be printed
-            let _ = words.print();
-            return u8::try_from(words.exit_code()).unwrap_or(USAGE);
-        }
+        Err(words) => return usage::say(words),
     };
     let done = match command {
         Command::Run(arguments) => run::run(&arguments),
@@ -482,8 +479,11 @@ pub(crate) fn report(error: &anyhow::Error) -> u8 {
         _ => &[],
     };
     several.iter().for_each(|error| note(&format!("error: {error}")));
-    if several.is_empty() {
-        note(&format!("error: {error}"));
+    match error.downcast_ref::<io::Error>().filter(|e| e.raw_os_error().is_some()) {
+        // that of a file would name it
+        Some(error) => note(&format!("error: the standard output cannot be written: {error}")),
+        None if several.is_empty() => note(&format!("error: {error}")),
+        None => {}
     }
     match error.downcast_ref::<Error>() {
         Some(Error::Several(_) | Error::Config { .. } | Error::Invalid { .. }) => USAGE,

@@ -64,11 +64,23 @@ pub(super) fn known_file(path: &Path) -> Option<PathBuf> {
 pub(super) fn read(path: &Path) -> Result<Text> {
     let bytes = match is_stdin(path) {
         true => whole(io::stdin()),
-        false => bytes(path),
+        false => bytes(path).map_err(|error| hinted(error, path)),
     };
     let bytes = bytes.map_err(|source| Error::Io { path: shown(path).into(), source })?;
     let file = shown(path).display().to_string();
     decode(&file, bytes).map(|text| Text::new(file, text))
+}
+
+/// Where a config may come from that is no file.
+fn hinted(error: io::Error, path: &Path) -> io::Error {
+    let is_stream = |kind: fs::FileType| !kind.is_file() && !kind.is_dir();
+    match fs::metadata(path) {
+        Ok(found) if is_stream(found.file_type()) => {
+            let words = format!("{error}; to read the standard input, give {} in its place", STDIN[0]);
+            io::Error::new(error.kind(), words)
+        }
+        _ => error,
+    }
 }
 
 pub(super) fn bytes(path: &Path) -> io::Result<Vec<u8>> {

@@ -217,9 +217,10 @@ pub(crate) fn create(dir: &Path) -> Result<()> {
         let words = "is a link that leads nowhere, and results need a directory; give another with --out";
         return Err(io_error(dir, io::Error::new(ErrorKind::NotADirectory, words)));
     }
-    if dir.exists() && !dir.is_dir() {
+    // the part of the way that is there
+    if let Some(file) = dir.ancestors().find(|part| part.exists()).filter(|part| !part.is_dir()) {
         let words = "is a file, and results need a directory; give another with --out";
-        return Err(io_error(dir, io::Error::new(ErrorKind::NotADirectory, words)));
+        return Err(io_error(file, io::Error::new(ErrorKind::NotADirectory, words)));
     }
     fs::create_dir_all(dir).map_err(|e| {
         let words = format!("the directory cannot be made: {}", reason(&e));
