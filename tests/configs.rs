@@ -289,6 +289,37 @@ fn what_a_check_warns_of_a_run_warns_of_too_in_the_terminal_in_json_and_in_the_s
 }
 
 #[test]
+fn single_cells_that_an_exchange_between_layers_joins_are_no_coarse_continuum() {
+    let folder = tempfile::tempdir().unwrap();
+    let config = |cells: &str, inside: &str| {
+        format!(
+            r#"{{
+            "material": {{"name": "m", "Ms": "1000 kA/m", "energy": [{{"anisotropy": {{"K": "0.3 MJ/m^3", "axis": [0, 0, 1]}}}}]}},
+            "lattice": {{"grid": {{"cells": {cells}, "cell": ["5 nm", "5 nm", "1 nm"]}}}},
+            "energy": [{inside}],
+            "initial": {{"uniform": {{"direction": [0, 0, 1]}}}}, "final": {{"uniform": {{"direction": [0, 0, -1]}}}}
+        }}"#
+        )
+    };
+    let (layers, stiff) = (r#"{"exchange": {"J_area": "-2 mJ/m^2"}}"#, r#"{"exchange": {"A": "4 pJ/m"}}"#);
+    for (cells, inside, warned) in [
+        ("[1, 1, 2]", layers, None),
+        ("[1, 1, 1]", stiff, None),
+        // one cell across, and nothing too coarse along the others
+        ("[1, 1, 9]", stiff, None),
+        ("[9, 1, 1]", stiff, Some("cells of 5 nm are longer than half")),
+    ] {
+        fs::write(folder.path().join("c.json"), config(cells, inside)).unwrap();
+        let done = spinneb(folder.path(), &["check", "c.json"]);
+        let said = String::from_utf8(done.stdout).unwrap();
+        assert!(done.status.success(), "{said}");
+        let found = said.lines().find_map(|line| line.trim().strip_prefix("warning")).map(str::trim);
+        assert_eq!(found.is_some(), warned.is_some(), "{cells}: {said}");
+        assert!(warned.is_none_or(|words| said.contains(words)), "{said}");
+    }
+}
+
+#[test]
 fn templates_check_without_a_warning() {
     let folder = tempfile::tempdir().unwrap();
     for template in ["chain", "lifetime", "nanowire", "film", "crystal"] {

@@ -12,6 +12,7 @@ use crate::energy::magnetostatics::MU_0_MU_B_SQUARED;
 use crate::energy::{EnergyTerm, Hamiltonian, TermSpec, site_anisotropies};
 use crate::field::{Components, ComponentsMut};
 use crate::geometry::{Vector, vector};
+use crate::lattice::Lattice;
 
 /// A wall of less than this many sites feels every one of them.
 const NARROW: f64 = 3.0;
@@ -59,9 +60,11 @@ impl Physics {
 }
 
 /// What is too coarse, in words: cells of a continuum against the exchange length and the width of a wall. A chain of atoms is as
-/// discrete as it is: a narrow wall there is physics.
+/// discrete as it is: a narrow wall there is physics. So are single cells, and layers that nothing but an exchange between them joins.
 pub fn warnings(loaded: &Loaded, h: &Hamiltonian, scales: &Scales) -> Vec<String> {
-    let Some(cell_nm) = loaded.lattice.spacing_nm.filter(|_| is_continuum(loaded)) else { return Vec::new() };
+    let Some([cell_nm, cells]) = longest_cell(&loaded.lattice).filter(|_| is_continuum(loaded)) else {
+        return Vec::new();
+    };
     let mut warnings = Vec::new();
     if let Some(length) = exchange_length_nm(loaded, scales)
         && cell_nm > 0.5 * length
@@ -71,7 +74,8 @@ pub fn warnings(loaded: &Loaded, h: &Hamiltonian, scales: &Scales) -> Vec<String
              the barrier changes"
         ));
     }
-    if let Some(width) = wall_width_sites(scales, floor_mev(h)).filter(|w| *w < NARROW) {
+    let width = wall_width_sites(scales, floor_mev(h)).map(|sites| sites / cells);
+    if let Some(width) = width.filter(|w| *w < NARROW) {
         warnings.push(format!(
             "a wall is only {width:.2} cells wide, so it sticks to the cells: a continuum needs at least {NARROW}, with a \
              smaller spacing"
@@ -80,15 +84,22 @@ pub fn warnings(loaded: &Loaded, h: &Hamiltonian, scales: &Scales) -> Vec<String
     warnings
 }
 
-/// Whether the numbers are those of a continuum: densities, which cells make numbers.
+/// The longest cell in the directions in which there are several: in nm, and in lattice constants.
+fn longest_cell(lattice: &Lattice) -> Option<[f64; 2]> {
+    let spacing = lattice.spacing_nm?;
+    let steps = (0..3).filter(|d| lattice.grid.extends(*d)).map(|d| lattice.steps[d].0);
+    steps.max_by(f64::total_cmp).map(|step| [step, step / spacing])
+}
+
+/// Whether the numbers are those of a continuum: densities, which cells make numbers, and an exchange inside it.
 fn is_continuum(loaded: &Loaded) -> bool {
-    let density = |term: &TermSpec| match term {
-        TermSpec::Exchange(exchange) => exchange.A.is_some(),
-        _ => false,
-    };
+    let density = |term: &TermSpec| matches!(term, TermSpec::Exchange(exchange) if exchange.A.is_some());
+    let between_layers = |term: &TermSpec| matches!(term, TermSpec::Exchange(exchange) if exchange.J_area.is_some());
+    let inside = |term: &TermSpec| matches!(term, TermSpec::Exchange(_) | TermSpec::Pairs(_)) && !between_layers(term);
     let materials = || loaded.parts.iter().map(|part| &part.material);
-    let terms = materials().flat_map(|material| &material.energy).chain(&loaded.config.energy);
-    materials().any(|material| material.Ms.is_some()) || terms.into_iter().any(density)
+    let terms = || materials().flat_map(|material| &material.energy).chain(&loaded.config.energy);
+    let layers = terms().any(between_layers) && !terms().any(inside);
+    !layers && (materials().any(|material| material.Ms.is_some()) || terms().any(density))
 }
 
 /// Width of a wall, where there is an easy axis and exchange above rounding.
