@@ -389,7 +389,13 @@ impl Wanted {
         if divided && COUNTED.contains(&name) {
             return format!("leave out \"/{name}\" in {}: what is counted has no unit", quoted(text));
         }
-        let start = format!("unknown unit {} in {}", quoted(name), quoted(text));
+        let start = match is_huge(name) {
+            true => {
+                let [name, text] = [name, text].map(quoted);
+                format!("{name} in {text} is refused, since so large a unit is all but surely a slip")
+            }
+            false => format!("unknown unit {} in {}", quoted(name), quoted(text)),
+        };
         match self.guess(name) {
             Some(guess) => format!("{start}: did you mean \"{guess}\"? ({})", self.units),
             None => format!("{start}: {} is wanted here: {}", self.name, self.units),
@@ -429,6 +435,14 @@ fn ascii(name: &str) -> String {
             c => c,
         })
         .collect()
+}
+
+/// Whether it is a unit with a prefix by which it is too large for all that is asked for: M, where m is meant.
+fn is_huge(name: &str) -> bool {
+    let name = ascii(name);
+    let symbol = name.strip_prefix(['M', 'G', 'T']);
+    let is_word = WORDS.iter().any(|(word, _)| word.eq_ignore_ascii_case(&name));
+    symbol.is_some_and(|rest| !is_word && SYMBOLS.iter().any(|s| !s.prefixes.is_empty() && s.names.contains(&rest)))
 }
 
 fn find(name: &str) -> Option<Unit> {

@@ -111,6 +111,7 @@ fn bad_quantities_are_refused_with_what_would_do() {
         "10 mev" => r#"unknown unit "mev" in "10 mev": did you mean "meV"? (J, eV, Ry or erg, with SI prefixes)"#,
         "10 MEV" => r#"unknown unit "MEV" in "10 MEV": did you mean "meV"? (J, eV, Ry or erg, with SI prefixes)"#,
         "10 Mev" => r#"unknown unit "Mev" in "10 Mev": did you mean "meV"? (J, eV, Ry or erg, with SI prefixes)"#,
+        "10 MeV" => r#""MeV" in "10 MeV" is refused, since so large a unit is all but surely a slip: did you mean "meV"? (J, eV, Ry or erg, with SI prefixes)"#,
         "10 kRY" => r#"unknown unit "kRY" in "10 kRY": did you mean "kRy"? (J, eV, Ry or erg, with SI prefixes)"#,
         "10 ergs" => r#"unknown unit "ergs" in "10 ergs": did you mean "erg"? (J, eV, Ry or erg, with SI prefixes)"#,
         "10 joule" => r#"unknown unit "joule" in "10 joule": did you mean "J"? (J, eV, Ry or erg, with SI prefixes)"#,
