@@ -72,6 +72,11 @@ fn edits(a: &[char], b: &[char]) -> usize {
     last[b.len()]
 }
 
+/// So many of a thing: "1 evaluation", "2 evaluations".
+pub fn counted(count: usize, one: &str, several: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { several })
+}
+
 /// A user's text in quotes, control characters escaped and what is too long cut, fit for one line of a message.
 pub fn quoted(text: &str) -> String {
     let mut chars = text.chars();

@@ -10,6 +10,7 @@ use crate::files::disk;
 use crate::output::{RelaxReport, formats_of_paths, relaxed_file_names};
 use crate::path::is_within;
 use crate::sphere::SAME;
+use crate::words::counted;
 use anyhow::Result;
 use clap::Args;
 use std::fs;
@@ -184,7 +185,10 @@ fn print_state(out: &mut impl Write, found: &RelaxReport, which: &str, state: &R
     let kind = match (state.is_proven(), s.flat) {
         (true, 0) => "a minimum".into(),
         (true, _) => format!("a minimum, flat to {:.1e} meV", s.floor_mev),
-        (false, _) if s.negative > 0 => format!("no minimum: {} directions lead down (Morse index)", s.negative),
+        (false, _) if s.negative > 0 => {
+            let down = counted(s.negative, "direction leads", "directions lead");
+            format!("no minimum: {down} down (Morse index)")
+        }
         _ => "not proven to be a minimum: a torque remains".into(),
     };
     writeln!(out, "  {which}: {kind}")?;
@@ -198,8 +202,10 @@ fn print_state(out: &mut impl Write, found: &RelaxReport, which: &str, state: &R
     row(
         "as given",
         format!(
-            "{:.9} meV, torque {:.1e} meV; then a spin turned by up to {turned:.3} degrees in {} steps",
-            state.given_mev, state.given_torque_mev, relaxed.steps
+            "{:.9} meV, torque {:.1e} meV; then a spin turned by up to {turned:.3} degrees in {}",
+            state.given_mev,
+            state.given_torque_mev,
+            counted(relaxed.steps, "step", "steps")
         ),
     )?;
     let zero = if s.zero > 0 { " (rotations about symmetry axes)" } else { "" };

@@ -12,6 +12,7 @@ use crate::config::{Loaded, VERSION, discard_leftovers, load_landscape};
 use crate::drive::survey::{survey, take_part};
 use crate::error::Error;
 use crate::record::{Identity, ShareHead, Shares};
+use crate::words::counted;
 use anyhow::Result;
 use serde_json::{Value, json};
 use std::fs;
@@ -61,9 +62,9 @@ pub(super) fn take(arguments: &Arguments, of: ShareOf) -> Result<u8> {
         })
         .to_string(),
         false => format!(
-            "{name}: all {} shares are at their end after {} searches; `spinneb collect {}` makes the results of them",
+            "{name}: all {} shares are at their end after {}; `spinneb collect {}` makes the results of them",
             of.shares,
-            searched.searches,
+            counted(searched.searches, "search", "searches"),
             directory.display()
         ),
     };

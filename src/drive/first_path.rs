@@ -8,6 +8,7 @@ use crate::landscape::Saddle;
 use crate::path::guess::{Drift, GuessSpec, Inside};
 use crate::stationary::LOWER;
 use crate::units::Angle;
+use crate::words::counted;
 
 /// A first path on its way.
 pub struct FirstPath<'a> {
@@ -73,6 +74,7 @@ pub fn rejection(c: &FirstPath, best: &FirstPath, best_mev: f64, scale: f64) -> 
     let barrier_mev = Some(c.followed_mev.unwrap_or(c.barrier_mev(scale)));
     let negative_modes = found.map(|f| f.refined.index());
     let lower = c.followed_mev.map_or(0.0, |mev| best_mev - mev);
+    let evaluations = || counted(c.band.evaluations(), "evaluation", "evaluations");
     let reason = match found {
         Some(f) if f.refined.index() > 1 => "its top is a saddle of higher index".to_string(),
         Some(_) if lower > LOWER * best_mev => {
@@ -83,12 +85,9 @@ pub fn rejection(c: &FirstPath, best: &FirstPath, best_mev: f64, scale: f64) -> 
         }
         Some(_) => format!("its saddle is not below that of \"{}\"", best.name),
         None if c.peak_mev() < best_mev => {
-            format!(
-                "after {} evaluations its images lie lower, but no saddle is known at its top",
-                c.band.evaluations()
-            )
+            format!("after {} its images lie lower, but no saddle is known at its top", evaluations())
         }
-        None => format!("its top lies above the path \"{}\" after {} evaluations", best.name, c.band.evaluations()),
+        None => format!("its top lies above the path \"{}\" after {}", best.name, evaluations()),
     };
     RejectedPath { guess: c.name.clone(), barrier_mev, negative_modes, reason }
 }

@@ -6,6 +6,7 @@ use super::outcome::{SaddlePoint, SearchReport};
 use crate::band::Band;
 use crate::landscape::{Doubt, Minimum, Pass};
 use crate::stationary::{FEW, LOWER, Spectrum};
+use crate::words::counted;
 
 /// A path, with what it should have and what was proven of it.
 pub struct OfPath<'a> {
@@ -71,12 +72,20 @@ fn lower_maxima(e: &[f64], prominence: f64, saddles: &[usize]) -> Option<String>
     let is_other = |k: &usize| saddles.iter().all(|image| image.abs_diff(*k) > 1 && !on_a_level(*k, *image));
     let others = prominent_maxima(e, prominence).into_iter().filter(is_other);
     let (count, highest) = others.fold((0, f64::NEG_INFINITY), |(n, high), k| (n + 1, f64::max(high, e[k] - e[0])));
-    (count > 0 && !saddles.is_empty()).then(|| {
+    let barrier = saddles.iter().map(|image| e[*image] - e[0]).max_by(f64::total_cmp)?;
+    (count > 0).then(|| {
+        let (maxima, [highest, barrier]) = (counted(count, "more maximum", "more maxima"), [highest, barrier].map(six));
+        let level = if highest == barrier { "as high as the barrier" } else { "below the barrier" };
         format!(
-            "the path has {count} more maxima than the saddles that are told, the highest {highest:.6} meV above the initial \
-             state: below the barrier, and not refined"
+            "the path has {maxima} than the saddles that are told, the highest {highest} meV above the initial state: \
+             {level}, and not refined"
         )
     })
+}
+
+/// An energy as the barrier is told.
+fn six(mev: f64) -> String {
+    format!("{mev:.6}")
 }
 
 /// That a path has more images than were asked for.
@@ -110,7 +119,14 @@ mod tests {
             "{told}"
         );
         // images beside a saddle's are its own
-        assert_eq!(lower_maxima(&e, 1.0, &[2]).map(|told| told.contains("has 1 more")), Some(true));
+        assert_eq!(lower_maxima(&e, 1.0, &[2]).map(|told| told.contains("has 1 more maximum than")), Some(true));
+        // which differ by less than is shown are alike
+        let twins = [0.0, 2.0, 4.0, 1.0, 3.999_999_9, 0.0];
+        let told = lower_maxima(&twins, 1e-3, &[2]).unwrap();
+        assert!(
+            told.ends_with("4.000000 meV above the initial state: as high as the barrier, and not refined"),
+            "{told}"
+        );
         assert_eq!(lower_maxima(&e, 1e-3, &[1, 4, 8]), None);
         assert_eq!(lower_maxima(&e, 1e-3, &[]), None);
         // nor is what is level with it one more

@@ -11,7 +11,7 @@ use crate::rates::RateSettings;
 use crate::record::Fingerprint;
 use crate::spins::Spins;
 use crate::state::{Senses, StateContext};
-use crate::words::number;
+use crate::words::{counted, number};
 
 /// Two states of a lattice, and how to look for the path between them.
 ///
@@ -194,7 +194,10 @@ pub fn checked_evaluations(n: usize) -> std::result::Result<usize, String> {
 pub(super) fn of_so_many_sites(sites: usize, place: &str, spins: &Spins) -> Result<()> {
     match spins.sites() {
         n if n == sites => Ok(()),
-        n => Err(Error::invalid(place, format!("found {n} spins, but the lattice has {sites} sites"))),
+        n => {
+            let [found, sites] = [counted(n, "spin", "spins"), counted(sites, "site", "sites")];
+            Err(Error::invalid(place, format!("found {found}, but the lattice has {sites}")))
+        }
     }
 }
 

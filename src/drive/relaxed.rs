@@ -6,6 +6,7 @@ use crate::error::Result;
 use crate::landscape::Minimum;
 use crate::spins::Spins;
 use crate::stationary::{RELAXED, Relaxed, relax_to_minimum};
+use crate::words::counted;
 
 /// A state before and after it was relaxed.
 #[derive(Clone, Debug)]
@@ -36,7 +37,8 @@ pub fn relaxed_state(h: Evaluator, spins: &Spins, modes: usize, which: &str) -> 
     let mut warnings = judge_end(h, &relaxed, which);
     let s = &minimum.spectrum;
     if s.negative > 0 {
-        warnings.push(format!("the {which} state is no minimum: {} directions lead down from it", s.negative));
+        let down = counted(s.negative, "direction leads", "directions lead");
+        warnings.push(format!("the {which} state is no minimum: {down} down from it"));
     }
     if s.flat > 0 {
         let modes = if s.flat == 1 { "mode is".into() } else { format!("{} modes are", s.flat) };

@@ -1,5 +1,6 @@
 //! Why a relaxation stopped.
 
+use crate::words::counted;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -58,11 +59,13 @@ impl fmt::Display for Stop {
             }
             Stop::MaxEvaluations { evaluations, rotation, tolerance } => write!(
                 f,
-                "not converged: stopped after {evaluations} evaluations of the band, all that was allowed; a spin is still predicted to turn by {rotation:.1e} rad (tolerance {tolerance:.1e} rad)"
+                "not converged: stopped after {} of the band, all that was allowed; a spin is still predicted to turn by {rotation:.1e} rad (tolerance {tolerance:.1e} rad)",
+                counted(*evaluations, "evaluation", "evaluations")
             ),
             Stop::Stalled { evaluations, rotation, tolerance } => write!(
                 f,
-                "not converged: no progress in {evaluations} band evaluations; a spin is still predicted to turn by {rotation:.1e} rad (tolerance {tolerance:.1e} rad)"
+                "not converged: no progress in {}; a spin is still predicted to turn by {rotation:.1e} rad (tolerance {tolerance:.1e} rad)",
+                counted(*evaluations, "band evaluation", "band evaluations")
             ),
             Stop::NotFinite => f.write_str("not converged: the forces are no longer finite numbers"),
         }

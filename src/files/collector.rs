@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::geometry::Vector;
 use crate::geometry::vector::{dot, unit};
-use crate::words::number;
+use crate::words::{counted, number};
 use std::fmt::Display;
 
 /// |m|² this near to 1 is 1 but for rounding: the vector is kept to the last bit, so that reading what was read changes nothing.
@@ -142,7 +142,8 @@ impl<'a> Collector<'a> {
         }
         if let Some(k) = self.images.iter().position(|image| image.len() != sites) {
             let found = self.images[k].len();
-            return Err(self.wrong(format!("image {k} has {found} sites, but image 0 has {sites}")));
+            let found = counted(found, "site", "sites");
+            return Err(self.wrong(format!("image {k} has {found}, but image 0 has {sites}")));
         }
         let warnings = self.warning().into_iter().collect();
         Ok(Images { warnings, images: self.images, mesh: self.mesh, places: self.places })

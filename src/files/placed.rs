@@ -7,6 +7,7 @@ use super::Images;
 use crate::error::{Error, Result};
 use crate::geometry::{Vector, vector};
 use crate::lattice::Lattice;
+use crate::words::counted;
 
 /// A node farther than this from its site (lattice constants) is of another site.
 const APART: f64 = 0.01;
@@ -25,7 +26,11 @@ impl Images {
                 return wrong(format!("has {x} × {y} × {z} nodes, but the {kind} has {p} × {q} × {r} cells{each}"));
             }
         } else if image.len() != sites {
-            return wrong(format!("has {} spins, but the {kind} has {sites} sites", image.len()));
+            return wrong(format!(
+                "has {}, but the {kind} has {}",
+                counted(image.len(), "spin", "spins"),
+                counted(sites, "site", "sites")
+            ));
         } else if let Some(i) = self.misplaced(lattice) {
             return wrong(format!(
                 "has node {i} at {:?}, where the {kind} has no site {i}: its sites are others",

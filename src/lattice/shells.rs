@@ -109,7 +109,11 @@ impl Lattice {
             }
             (done, radius) = (radius, FURTHER * radius);
         }
-        let message = format!("there are only {found} shells of bonds between these two");
+        let message = match found {
+            0 => "there are no bonds between these two".into(),
+            1 => "there is only 1 shell of bonds between these two".into(),
+            _ => format!("there are only {found} shells of bonds between these two"),
+        };
         Err(Error::invalid("", message))
     }
 

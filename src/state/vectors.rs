@@ -4,6 +4,7 @@ use super::{StateBuilder, StateContext};
 use crate::error::{Error, Result};
 use crate::geometry::{Direction, Vector};
 use crate::registry::Described;
+use crate::words::counted;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
@@ -30,7 +31,11 @@ impl StateBuilder for Vectors {
         if self.spins.len() != context.lattice.sites {
             return Err(Error::invalid(
                 "",
-                format!("found {} vectors for {} sites", self.spins.len(), context.lattice.sites),
+                format!(
+                    "found {} for {}",
+                    counted(self.spins.len(), "vector", "vectors"),
+                    counted(context.lattice.sites, "site", "sites")
+                ),
             ));
         }
         Ok(self.spins.iter().map(|d| d.vector()).collect())

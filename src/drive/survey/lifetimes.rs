@@ -7,6 +7,7 @@ use crate::network::{Network, Parts};
 use crate::rates::{LEAST_BARRIER, ORDER, RateSettings, SaddleRate, Symmetry, Theory};
 use crate::stationary::ALIKE;
 use crate::units::K_B;
+use crate::words::counted;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// So many of the lowest minima are groups of their own, where none are named.
@@ -130,7 +131,10 @@ impl Lifetimes {
         let mut apart = |states: &[usize]| states.iter().filter(|k| parts.root(**k) != parts.root(states[0])).count();
         let count: usize = self.groups.iter().map(|(_, states)| apart(states)).sum();
         (count > 0).then(|| {
-            format!("no passes that were found join {count} minima with the lowest of their group, of whose times they are no part")
+            format!(
+                "no passes that were found join {} with the lowest of their group, of whose times they are no part",
+                counted(count, "minimum", "minima")
+            )
         })
     }
 

@@ -17,6 +17,7 @@ use super::head::Head;
 use crate::drive::survey::Survey;
 use crate::error::{Error, Result};
 use crate::lattice::Lattice;
+use crate::words::counted;
 use serde::Serialize;
 
 /// What of a survey goes into files.
@@ -93,12 +94,10 @@ impl LandscapeReport<'_> {
     /// What the search came to, in words.
     pub fn stop_reason(&self) -> String {
         let s = self.survey;
+        let searches = counted(s.searched.searches, "search", "searches");
         match s.is_finished() {
-            true => format!("the last {} of {} searches brought nothing new", s.searched.quiet, s.searched.searches),
-            false => format!(
-                "the work that it may do, or the states that it may find, were spent after {} searches",
-                s.searched.searches
-            ),
+            true => format!("the last {} of {} brought nothing new", s.searched.quiet, searches),
+            false => format!("the work that it may do, or the states that it may find, were spent after {searches}"),
         }
     }
 
