@@ -162,6 +162,9 @@ fn table(out: &mut impl Write, name: &str, transitions: &[TransitionRate]) -> io
         if let Some(reason) = &t.refused {
             writeln!(out, "{:width$} {way:>9} none: {reason}", "")?;
         }
+        if t.rows.iter().any(|row| row.passage.known_within.is_some_and(is_vague)) {
+            writeln!(out, "{:width$} {way:>9} within a factor above {VAGUE}: {VAGUE_WORDS}", "")?;
+        }
     }
     Ok(())
 }
@@ -180,6 +183,14 @@ fn power(ln: Option<f64>, digits: usize) -> String {
     }
 }
 
+/// What is known within more than this factor says little.
+const VAGUE: f64 = 100.0;
+const VAGUE_WORDS: &str = "not even its order of magnitude is known";
+
+fn is_vague(factor: f64) -> bool {
+    factor > VAGUE
+}
+
 /// A factor in a few digits.
 fn range(factor: f64) -> String {
     match factor {
@@ -190,6 +201,12 @@ fn range(factor: f64) -> String {
     }
 }
 
+/// The same beside a time, in words where it says little.
+fn within(factor: f64) -> String {
+    let vague = if is_vague(factor) { format!(": {VAGUE_WORDS}") } else { String::new() };
+    format!(" (within a {}{vague})", range(factor).replace("factor", "factor of"))
+}
+
 /// The mean times from the initial state at the coldest and the hottest temperature, in a line; nothing where there are none.
 pub fn lifetimes(outcome: &Outcome) -> Option<String> {
     let transition = outcome.rates.as_ref()?.transitions.iter().find(|t| t.way == Way::Forward)?;
@@ -198,9 +215,7 @@ pub fn lifetimes(outcome: &Outcome) -> Option<String> {
         let coldest = known().min_by(|a, b| a.temperature_k.total_cmp(&b.temperature_k))?;
         let hottest = known().max_by(|a, b| a.temperature_k.total_cmp(&b.temperature_k))?;
         let at = |r: &Row| {
-            let within = r
-                .known_within
-                .map_or(String::new(), |f| format!(" (within a {})", range(f).replace("factor", "factor of")));
+            let within = r.known_within.map_or(String::new(), within);
             format!("{} s at {} K{within}", power(r.ln_lifetime_s(), digits(r.known_within)), r.temperature_k)
         };
         let one = coldest.temperature_k == hottest.temperature_k;
@@ -230,6 +245,12 @@ fn without(transition: &TransitionRate) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_time_that_is_hardly_known_is_told_in_words() {
+        assert_eq!(within(2.0), " (within a factor of 2.0)");
+        assert_eq!(within(7e5), " (within a factor of 7e5: not even its order of magnitude is known)");
+    }
 
     #[test]
     fn numbers_of_any_size_are_shown() {

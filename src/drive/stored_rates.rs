@@ -15,8 +15,12 @@ impl Outcome {
     /// The same with the rates that the problem asks for, over its own saddles and between these minima, both ends among them; why
     /// there can be none, if so. Of its warnings those in `last` stay the last ones.
     pub fn with_rates(self, problem: &Problem, minima: &[Spins], last: &[String]) -> Result<Outcome, String> {
-        let Some(settings) = problem.rates.as_ref().filter(|_| self.certified && problem.relax_ends) else {
-            return Err("only those of a certified result between relaxed ends are taken from its files".into());
+        if !self.certified {
+            return Err("this result is not certified, and rates need saddles and minima that are proven".into());
+        }
+        let Some(settings) = problem.rates.as_ref().filter(|_| problem.relax_ends) else {
+            let why = "the ends of this result were kept as they were given, and rates need minima: let them relax";
+            return Err(why.into());
         };
         let rates = stored_rates(problem.evaluator(), &self.saddles, minima, settings)
             .map_err(|why| format!("the states in its files do not prove themselves: {why}"))?;
