@@ -17,6 +17,7 @@ use crate::field::Components;
 use crate::geometry::Vector;
 use crate::lattice::Lattice;
 use crate::words::rounded;
+use std::f64::consts::PI;
 
 /// Where the sites are.
 struct SitePlaces {
@@ -250,9 +251,7 @@ fn wheel(canvas: &mut Canvas, room: Rect) -> Result<()> {
             let place = |k: usize| 2.0 * (k as f64 + 0.5) / SIDE as f64 - 1.0;
             let (a, b) = (place(column), -place(row));
             let out = libm::hypot(a, b);
-            let z = 1.0 - 2.0 * out;
-            let across = (1.0 - z * z).max(0.0).sqrt() / out.max(1e-9);
-            let Colour(r, g, b) = if out > 1.0 { page } else { direction([across * a, across * b, z]) };
+            let Colour(r, g, b) = if out > 1.0 { page } else { direction(on_wheel([a, b])) };
             rgb.extend([r, g, b]);
         }
     }
@@ -262,6 +261,14 @@ fn wheel(canvas: &mut Canvas, room: Rect) -> Result<()> {
     let below = |line: f64| (x, y + radius + line * (LABEL_PT + 1.0));
     canvas.text(below(1.0), Text::new("centre m_{z} = 1,", SMALL_PT).align(Align::Centre))?;
     canvas.text(below(2.0), Text::new("rim m_{z} = −1", SMALL_PT).align(Align::Centre))
+}
+
+/// The direction at a place on the wheel, whose radius is 1: by the angle from z, for by m_z those along z would be a point that
+/// nobody sees.
+fn on_wheel([a, b]: [f64; 2]) -> Vector {
+    let out = libm::hypot(a, b);
+    let across = libm::sin(PI * out) / out.max(1e-9);
+    [across * a, across * b, libm::cos(PI * out)]
 }
 
 #[cfg(test)]
@@ -310,6 +317,18 @@ mod tests {
         assert!(up.iter().all(|c| *c > 200) && down.iter().all(|c| *c < 90), "{up:?} {down:?}");
         let spread = |c: [u8; 3]| c.iter().max().unwrap() - c.iter().min().unwrap();
         assert!(spread(x) > 80 && spread(y) > 80 && x[0] > x[2] && x != y, "{x:?} {y:?}");
+    }
+
+    #[test]
+    fn the_middle_of_the_wheel_has_the_colour_of_spins_along_the_axis() {
+        let apart = |[a, b]: [f64; 2], m: Vector| {
+            let (Colour(r, g, b), Colour(x, y, z)) = (direction(on_wheel([a, b])), direction(m));
+            [(r, x), (g, y), (b, z)].into_iter().map(|(one, other)| one.abs_diff(other)).max().unwrap()
+        };
+        for place in [[5e-3, 5e-3], [-5e-3, 5e-3], [5e-3, -5e-3]] {
+            assert!(apart(place, [0.0, 0.0, 1.0]) < 12, "{place:?}");
+        }
+        assert!(apart([0.0, 0.5], [0.0, 1.0, 0.0]) < 2 && apart([1.0, 0.0], [0.0, 0.0, -1.0]) < 2);
     }
 
     #[test]
