@@ -138,6 +138,7 @@ impl<T: JsonSchema> JsonSchema for Profile<T> {
                 {"type": "array", "items": one},
                 {
                     "type": "object",
+                    "description": "a ramp, from the value of the first site or bond to that of the last",
                     "properties": {"from": end("The value of the first site or bond."), "to": end("The value of the last."), "shape": shape},
                     "required": ["from", "to"],
                     "additionalProperties": false,

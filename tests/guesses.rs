@@ -19,8 +19,11 @@ fn try_state(text: &str, chain: &Lattice) -> Result<Spins, String> {
     spec.build(&StateContext::new(chain, 1.5)).map_err(|e| e.to_string())
 }
 
+/// In a chain with a region of the name that the example of regions has.
 fn state(text: &str, sites: usize) -> Spins {
-    try_state(text, &Chain::open(sites).resolve().unwrap()).expect(text)
+    let island = ("island".to_string(), Selection::List(vec![1, 2]));
+    let chain = Chain { regions: [island].into(), ..Chain::open(sites) };
+    try_state(text, &chain.resolve().unwrap()).expect(text)
 }
 
 fn try_path(text: &str, a: &Spins, b: &Spins, images: usize, chain: &Lattice) -> Result<Path, String> {
@@ -575,6 +578,7 @@ fn a_staggered_state_has_its_odd_sites_reversed_and_nothing_else() {
                     format!(r#"{{"vectors": {{"spins": {list}, "staggered": true}}}}"#),
                 )
             }
+            "regions" => (entry.example.to_string(), entry.example.replace("]}}", r#"], "staggered": true}}"#)),
             _ => (entry.example.to_string(), entry.example.replacen("}}", r#", "staggered": true}}"#, 1)),
         };
         let sites = if entry.name == "vectors" { 3 } else { 12 };

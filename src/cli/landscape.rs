@@ -58,7 +58,10 @@ pub struct Arguments {
     pub set: Vec<String>,
 
     /// How long minima and saddles are looked for, in place of the config's `landscape.effort`
-    #[arg(long, value_enum)]
+    ///
+    /// none: not at all; the others until so many searches in a row brought no news: quick 8, normal 40, thorough 400, or 1, 3 and 10 of
+    /// them for each pass that is known, where those are more.
+    #[arg(long, value_enum, hide_possible_values = true, value_name = "none|quick|normal|thorough")]
     pub effort: Option<Looking>,
 
     /// Replace results that are in the folder
@@ -81,7 +84,7 @@ pub struct Arguments {
     #[arg(long)]
     pub resume: bool,
 
-    /// How often a checkpoint is written; \"off\" writes none
+    /// How often a checkpoint is written; "off" writes none
     #[arg(long, value_name = "TIME", default_value_t, value_parser = interval)]
     pub checkpoint_every: Interval,
 }

@@ -30,9 +30,13 @@ const ORDER: [&str; 17] = [
     "$schema",
 ];
 
+/// Where values are told of that differ from site to site, and what each of them is.
+const VALUES: &str = "value";
+const OF_ITS_KEY: &str = "a number with a unit of the key that it is written for; here of `material.Ms`";
+
 /// Parts that stand in many places: what is written before their keys in the place of one of these.
 const SHARED: [(&str, &str); 5] = [
-    ("Profile", "value"),
+    ("Profile", VALUES),
     ("Selection", "sites"),
     ("Shape", "shape"),
     ("Extent", "length"),
@@ -99,6 +103,11 @@ impl<'s> Walk<'s> {
             let shown = part.example.as_ref().and_then(|example| example.get(name)).cloned();
             let example = shown.unwrap_or_else(|| example(self.schema, property, name));
             keys.push((key(self.schema, part.node, name, property), inline(&example)));
+        }
+        if part.path.split('.').next() == Some(VALUES) {
+            // the schema has them for each kind of quantity, and the first is told of
+            let own = keys.iter_mut().filter(|(key, _)| key.value.contains("with its unit"));
+            own.for_each(|(key, _)| key.value = OF_ITS_KEY.into());
         }
         let place = |key: &Key| ORDER.iter().position(|name| part.path.is_empty() && *name == key.name);
         keys.sort_by_key(|(key, _)| (place(key), !key.required));

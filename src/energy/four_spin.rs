@@ -30,7 +30,7 @@ pub struct FourSpinSpec {
     pub quads: Vec<QuadSpec>,
 }
 
-/// Four sites and their energy.
+/// `{"K": "0.1 meV", "cells": [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]}`: four sites and their energy.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[allow(non_snake_case)]

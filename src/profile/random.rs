@@ -57,7 +57,7 @@ pub enum Distribution {
     LogNormal,
 }
 
-/// As it is written.
+/// Values drawn from a distribution, for each site or bond, or for grains of them.
 #[derive(serde::Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, bound(deserialize = "T: Deserialize<'de>"))]
 struct Written<T> {

@@ -22,7 +22,7 @@ pub struct Regions {
 impl Described for Regions {
     const NAME: &'static str = "regions";
     const SUMMARY: &'static str = "a state for each of some regions of the lattice, and one for the rest";
-    const EXAMPLE: &'static str = r#"{"regions": {"default": {"uniform": {"direction": [0, 0, 1]}}}}"#;
+    const EXAMPLE: &'static str = r#"{"regions": {"default": {"uniform": {"direction": [0, 0, 1]}}, "island": {"uniform": {"direction": [0, 0, -1]}}}}"#;
 }
 
 impl JsonSchema for Regions {

@@ -43,10 +43,10 @@ pub struct Skyrmion {
     /// Where it is; in the middle if absent, on a film that is periodic both ways at the site nearest to that.
     #[serde(default)]
     pub center: Option<Place>,
-    /// R in spacings, where the spins are across core and background; that of the energy if absent.
+    /// Radius R in spacings, where the spins are across core and background; that of the energy if absent.
     #[serde(default)]
     pub radius: Option<Extent>,
-    /// w in spacings; that of the energy if absent. 0 is an abrupt wall.
+    /// Width w of its wall in spacings; that of the energy if absent. 0 is an abrupt wall.
     #[serde(default)]
     pub width: Option<Extent>,
     /// Direction of the core; −z if absent. The background is opposite.

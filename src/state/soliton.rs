@@ -37,7 +37,7 @@ const SMALL: f64 = 1e-2;
 pub struct Soliton {
     /// In sites, 39.5 lies between sites 39 and 40: how far the soliton is from the origin along its normal.
     pub center: Extent,
-    /// w in sites; that of the energy if absent. 0 is an abrupt turn.
+    /// Width w of the turn in sites; that of the energy if absent. 0 is an abrupt turn.
     #[serde(default)]
     pub width: Option<Extent>,
     /// From left to right, across the soliton; +x if absent, in a chain along the chain.
