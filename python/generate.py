@@ -85,9 +85,18 @@ def hint(schema: dict[str, Any], part: Any) -> str:
 def given(schema: dict[str, Any], part: Any, arg: str) -> str:
     """The expression for an argument as it is passed on."""
     if takes_direction(schema, part):
-        return f"as_direction({arg})"
+        words = re.findall(r'Literal\[(.*?)\]', hint(schema, part))
+        return f'as_direction({", ".join([arg, quoted(arg), *words])})'
+    if hint(schema, part) == "int":
+        least = resolved(schema, part).get("minimum")
+        return f"as_count({arg}, {quoted(arg)}" + (")" if least is None else f", {int(least)})")
     makers = {"Sequence[Values]": f"as_list({arg})", "Sequence[State]": f'as_states({arg}, "{arg}")'}
     return makers.get(hint(schema, part), arg)
+
+
+def quoted(arg: str) -> str:
+    """The name of an argument as messages tell it."""
+    return f'"{arg}"'
 
 
 def takes_direction(schema: dict[str, Any], part: Any) -> bool:
@@ -181,7 +190,7 @@ def module(schema: dict[str, Any], family: str, made: str, title: str) -> str:
     names = [argument(next(iter(choice["properties"]))) for choice in choices]
     body = "\n\n\n".join(functions)
     words = {"Literal", "Sequence", "Mapping", "Any", "ArrayLike", "Direction", "Extent", "Selection", "Shape", "State", "Values"}
-    used = sorted(word for word in words | {made, "AnyState", "as_cells", "as_direction", "as_list", "as_states"} if re.search(rf"\b{word}\b", body))
+    used = sorted(word for word in words | {made, "AnyState", "as_cells", "as_count", "as_direction", "as_list", "as_states"} if re.search(rf"\b{word}\b", body))
     own = [w for w in used if w not in ("Literal", "Sequence", "Mapping", "Any", "ArrayLike")]
     typing = [w for w in ("Any", "Literal") if w in used]
     abc = [w for w in ("Mapping", "Sequence") if w in used]

@@ -56,7 +56,7 @@ def test_errors_are_value_errors_with_the_path_of_the_key(chain):
 
 def test_several_errors_are_told_at_once(chain):
     with pytest.raises(sn.ConfigError) as error:
-        sn.barrier(chain, sn.uniform("z"), sn.uniform("-z"), bogus=1, neb={"tolerance": -1})
+        sn.barrier(chain, sn.uniform("z"), sn.uniform("-z"), search={"bogus": 1}, neb={"tolerance": -1})
     assert len(str(error.value).splitlines()) == 2
 
 
@@ -79,6 +79,61 @@ def test_what_is_no_state_or_term_is_refused_here(chain):
         sn.uniform()
     with pytest.raises(TypeError):
         sn.domain_wall(3, widht=2)
+
+
+def test_a_word_that_is_none_is_refused_at_once(chain):
+    for change in (lambda: chain.replaced(enrgy=[]), lambda: sn.System(sn.chain(3), enrgy=[])):
+        with pytest.raises(TypeError, match="^there is no key 'enrgy' in a config: did you mean 'energy'"):
+            change()
+    with pytest.raises(AttributeError, match="^a System has no 'mooment': did you mean 'moment'"):
+        chain.mooment = "1 mu_B"
+    chain.moment = "1 mu_B"
+    assert chain.config(sn.uniform("z"), sn.uniform("-z"))["material"]["moment"] == "1 mu_B"
+
+
+@pytest.mark.parametrize(
+    "call, kind, told",
+    [
+        (lambda: sn.chain(-1), ValueError, "sites: found -1, expected 1 or more"),
+        (lambda: sn.chain(10.0), TypeError, "sites: found 10.0, expected a whole number"),
+        (lambda: sn.square(3, 0), ValueError, "cells: found 0, expected 1 or more"),
+        (lambda: sn.square([3, 2.5]), TypeError, "cells: found 2.5, expected a whole number"),
+        (lambda: sn.uniform("up"), ValueError, "direction: found 'up', expected x, y and z of a direction"),
+        (lambda: sn.anisotropy(K="1 meV", axis="w"), ValueError, "axis: found 'w', expected"),
+        (lambda: sn.domain_wall(3, through="atuo"), ValueError, "through: found 'atuo'.*or 'auto'"),
+    ],
+)
+def test_arguments_of_builders_are_checked_where_they_are_given(call, kind, told):
+    with pytest.raises(kind, match=f"^{told}"):
+        call()
+    assert sn.domain_wall(3, through="auto")["domain_wall"]["through"] == "auto"
+    assert sn.chain(np.int64(3)) == sn.chain(3)
+
+
+def test_what_would_be_right_is_told_of_text_that_is_none(chain, reversal):
+    with pytest.raises(TypeError, match=r"such as uniform\(\[0, 0, 1\]\)"):
+        sn.barrier(chain, "up", sn.uniform("-z"))
+    with pytest.raises(TypeError, match="^found JSON text, expected a System, the name of a file or a dictionary"):
+        sn.run(chain.to_json(sn.uniform("z"), sn.uniform("-z")))
+    with pytest.raises(TypeError, match="^from_field takes a field of discretisedfield, found 3"):
+        sn.from_field(3)
+    one = sn.rates(reversal, 4, theory="langer")
+    assert one.lifetimes_s() == sn.rates(reversal, 4, theory=["langer"]).lifetimes_s()
+
+
+def test_an_uncertified_result_has_no_rates_and_says_why(chain):
+    kept = sn.barrier(chain, sn.uniform("z"), sn.uniform("-z"), images=7, neb={"max_evaluations": 20}, saddle={"certify": False})
+    with pytest.raises(sn.SpinnebError, match="this result is not certified, and rates need saddles and minima that are proven"):
+        sn.rates(kept, 4)
+
+
+def test_systems_are_equal_where_all_that_they_are_made_of_is(chain):
+    other = chain.replaced(initial=sn.uniform("z"), rates={"temperatures": ["4 K"]})
+    for system in (chain, other, chain.replaced(initial=np.array([[0.0, 0.0, 1.0]] * 20))):
+        assert pickle.loads(pickle.dumps(system)) == system == system.replaced()
+    assert chain != other and chain != 3
+    term = sn.Term(np.sum, np.sign, name="sum")
+    assert term == sn.Term(np.sum, np.sign, name="sum") != sn.Term(np.sum, np.cos, name="sum")
 
 
 def test_vectors_that_are_none_are_named(chain, reversal):

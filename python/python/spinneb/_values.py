@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import json
 import math
+import operator
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from ._errors import ConfigError
 
 __all__ = ["Direction", "Energy", "Extent", "Guess", "Lattice", "Optimiser", "Piece", "Selection", "Shape", "State", "Values"]
 
@@ -37,20 +40,42 @@ def in_nm(places: Array, spacing_nm: float | None) -> Array | None:
     return scaled
 
 
-def as_direction(value: Any) -> Any:
-    """[0, 0, 1] for "z", [-1, 0, 0] for "-x", in lists too; anything else as it is."""
+def as_direction(value: Any, what: str, *words: str) -> Any:
+    """[0, 0, 1] for "z", [-1, 0, 0] for "-x", in lists too; one of the other words that stand here, and what is no text, as it is."""
     if isinstance(value, (list, tuple)):
-        return [as_direction(inner) for inner in value]
-    if isinstance(value, str) and value.lstrip("+-") in _AXES and len(value) <= 2:
-        sign = -1 if value.startswith("-") else 1
-        return [sign * number for number in _AXES[value[-1]]]
-    return value
+        return [as_direction(inner, what) for inner in value]
+    if not isinstance(value, str) or value in words:
+        return value
+    if not is_axis(value):
+        others = "".join(f", or {word!r}" for word in words)
+        raise ValueError(f"{what}: found {value!r}, expected x, y and z of a direction, or the name of an axis, 'z' or '-x'{others}")
+    sign = -1 if value.startswith("-") else 1
+    return [sign * number for number in _AXES[value[-1]]]
+
+
+def is_axis(text: str) -> bool:
+    """Whether it is the name of an axis: "z", "-x"."""
+    return text.lstrip("+-") in _AXES and len(text) <= 2
 
 
 def as_cells(cells: tuple[int | Sequence[int], ...]) -> Any:
     """Numbers of cells that are given one by one, or together as one sequence."""
     first = cells[0] if len(cells) == 1 else cells
-    return [first] if isinstance(first, (int, np.integer)) else list(first)
+    given = [first] if np.ndim(first) == 0 else list(first)  # type: ignore[arg-type]
+    return [as_count(number, "cells", 1) for number in given]
+
+
+def as_count(value: Any, what: str, least: int | None = None) -> int | None:
+    """A whole number, not below the least one that may be."""
+    if value is None:
+        return None
+    try:
+        found = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{what}: found {value!r}, expected a whole number") from None
+    if least is not None and found < least:
+        raise ConfigError(f"{what}: found {found}, expected {least} or more")
+    return found
 
 
 def as_list(value: Any) -> Any:
@@ -170,7 +195,8 @@ def as_state(value: AnyState | None, what: str) -> Any:
     if value is None or isinstance(value, Mapping):
         return value
     if isinstance(value, str):
-        raise TypeError(f"{what}: found the text {value!r}, expected a state, such as uniform({value!r}), or vectors")
+        such = f"uniform({value!r})" if is_axis(value) else "uniform([0, 0, 1])"
+        raise TypeError(f"{what}: found the text {value!r}, expected a state, such as {such}, or vectors")
     return {"vectors": spins(value, what).tolist()}
 
 

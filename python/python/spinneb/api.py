@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import operator
 import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -15,9 +14,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core
-from ._errors import ConfigError
 from ._read import read
-from ._values import AnyState, Guess, Piece, as_guess, as_json, as_state
+from ._values import AnyState, Guess, Piece, as_count, as_guess, as_json, as_state
 from .results import Check, Landscape, Rates, Relaxed, Result, vacant_sites
 from .system import System
 
@@ -28,6 +26,7 @@ Config = Union[str, "os.PathLike[str]", Mapping[str, Any], System]
 #: True for a line that tells how far it is, or a function of what is known: stage, iteration, …
 Progress = Union[bool, Callable[[dict[str, Any]], object], None]
 Effort = Literal["none", "quick", "normal", "thorough"]
+Theory = Literal["htst", "langer"]
 #: in K, or quantities; one or several, or a range ``{"from": "2 K", "to": "4 K", "points": 3}``
 Temperatures = Union[float, str, Iterable[Union[float, str]], Mapping[str, Any]]
 
@@ -253,7 +252,7 @@ def rates(
     *,
     damping: float | None = None,
     g_factor: float | None = None,
-    theory: Sequence[Literal["htst", "langer"]] | None = None,
+    theory: Theory | Sequence[Theory] | None = None,
 ) -> Rates:
     """Rates and lifetimes over the saddles of a certified result.
 
@@ -268,7 +267,7 @@ def rates(
     g_factor
         g factor; if left out, that of the result's config, else 2.
     theory
-        ``"htst"`` (harmonic transition state theory) and ``"langer"``; if left out, those of the result's config, else both.
+        ``"htst"`` (harmonic transition state theory) or ``"langer"``, or a list of them; if left out, those of the result's config, else both.
     """
     if not isinstance(result, Result):
         raise TypeError(f"rates takes a Result, as run, barrier and load make it, found {result!r}")
@@ -276,7 +275,7 @@ def rates(
         "temperatures": _kelvin(temperatures),
         "damping": damping,
         "g_factor": g_factor,
-        "theory": theory,
+        "theory": [theory] if isinstance(theory, str) else theory,
     }
     json_text = as_json({key: value for key, value in asked.items() if value is not None})
     return Rates(Result(result._core.with_rates(json_text)))
@@ -299,6 +298,8 @@ def load(folder: str | os.PathLike[str]) -> Result | Landscape:
 def _config(config: Config, kind: str, set: Mapping[str, Any] | None) -> _core.Config:
     """A config, read."""
     sets = [f"{key}={as_json(value)}" for key, value in (set or {}).items()]
+    if isinstance(config, str) and config.lstrip().startswith("{"):
+        raise TypeError("found JSON text, expected a System, the name of a file or a dictionary, as json.loads makes of that text")
     if isinstance(config, (str, os.PathLike)):
         return _core.Config(os.fspath(config), None, "", sets, [], kind)
     if isinstance(config, System):
@@ -327,15 +328,8 @@ def _recording(place: str | None) -> Iterator[None]:
 
 def _count(number: int | None, what: str, least: int) -> int | None:
     """A whole number, at least so many; more than any machine has are as many as fit."""
-    if number is None:
-        return None
-    try:
-        found = operator.index(number)
-    except TypeError:
-        raise TypeError(f"{what}: found {number!r}, expected a whole number") from None
-    if found < least:
-        raise ConfigError(f"{what}: found {found}, expected {least} or more")
-    return min(found, 2**31 - 1)
+    found = as_count(number, what, least)
+    return None if found is None else min(found, 2**31 - 1)
 
 
 def _kelvin(temperatures: Temperatures) -> list[str] | dict[str, Any]:

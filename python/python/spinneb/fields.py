@@ -36,6 +36,8 @@ def from_field(field: discretisedfield.Field) -> tuple[Lattice, NDArray[np.float
     norm
         The largest length, which of a magnetisation is Ms in A/m.
     """
+    if not hasattr(field, "mesh") or not hasattr(field, "array"):
+        raise TypeError(f"from_field takes a field of discretisedfield, found {field!r}")
     mesh, values = field.mesh, np.asarray(field.array, dtype=np.float64)
     if values.ndim != 4 or values.shape[3] != 3:
         raise ValueError(f"found a field of shape {values.shape}, expected three components on a three-dimensional mesh")

@@ -37,7 +37,7 @@ def geodesic(
 
     In a config: ``{"geodesic": {"axis": [1, 0, 0]}}``
     """
-    return Guess("geodesic", {"axis": as_direction(axis)})
+    return Guess("geodesic", {"axis": as_direction(axis, "axis")})
 
 
 def sweep(
@@ -68,7 +68,7 @@ def sweep(
 
     In a config: ``{"sweep": {"from": "left", "width": 4}}``
     """
-    return Guess("sweep", {"from": as_direction(from_), "axis": as_direction(axis), "helicity": helicity, "rigid": rigid, "width": width})
+    return Guess("sweep", {"from": as_direction(from_, "from_", "left", "right", "center", "ends", "edges", "corners"), "axis": as_direction(axis, "axis"), "helicity": helicity, "rigid": rigid, "width": width})
 
 
 def shrink(
@@ -98,7 +98,7 @@ def shrink(
 
     In a config: ``{"shrink": {"center": [5.5, 0]}}``
     """
-    return Guess("shrink", {"axis": as_direction(axis), "center": center, "helicity": helicity, "rigid": rigid, "width": width})
+    return Guess("shrink", {"axis": as_direction(axis, "axis"), "center": center, "helicity": helicity, "rigid": rigid, "width": width})
 
 
 def drift(
@@ -117,7 +117,7 @@ def drift(
 
     In a config: ``{"drift": {"direction": [1, 0, 0]}}``
     """
-    return Guess("drift", {"direction": as_direction(direction), "onto": onto})
+    return Guess("drift", {"direction": as_direction(direction, "direction"), "onto": onto})
 
 
 def translation() -> Guess:
@@ -163,7 +163,7 @@ def droplet(
 
     In a config: ``{"droplet": {"center": [0, 0], "radius": 1}}``
     """
-    return Guess("droplet", {"axis": as_direction(axis), "center": center, "helicity": helicity, "of": of, "radius": radius, "rigid": rigid, "width": width})
+    return Guess("droplet", {"axis": as_direction(axis, "axis"), "center": center, "helicity": helicity, "of": of, "radius": radius, "rigid": rigid, "width": width})
 
 
 def rotation(
@@ -179,7 +179,7 @@ def rotation(
 
     In a config: ``{"rotation": {"axis": [0, 0, 1]}}``
     """
-    return Guess("rotation", {"axis": as_direction(axis)})
+    return Guess("rotation", {"axis": as_direction(axis, "axis")})
 
 
 def nlerp(
@@ -195,7 +195,7 @@ def nlerp(
 
     In a config: ``{"nlerp": {}}``
     """
-    return Guess("nlerp", {"axis": as_direction(axis)})
+    return Guess("nlerp", {"axis": as_direction(axis, "axis")})
 
 
 def waypoints(

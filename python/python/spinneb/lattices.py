@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ._values import Direction, Lattice, Selection, Shape, Values, as_cells, as_direction, as_list
+from ._values import Direction, Lattice, Selection, Shape, Values, as_cells, as_count, as_direction, as_list
 
 __all__ = [
     "chain",
@@ -66,7 +66,7 @@ def chain(
 
     In a config: ``{"chain": {"sites": 100, "spacing": "0.25 nm"}}``
     """
-    return Lattice("chain", {"sites": sites, "cross_section": as_list(cross_section), "direction": as_direction(direction), "frozen": frozen, "moments": moments, "periodic": periodic, "regions": regions, "sections": sections, "spacing": spacing, "vacant": vacant})
+    return Lattice("chain", {"sites": as_count(sites, "sites", 1), "cross_section": as_list(cross_section), "direction": as_direction(direction, "direction"), "frozen": frozen, "moments": moments, "periodic": periodic, "regions": regions, "sections": sections, "spacing": spacing, "vacant": vacant})
 
 
 def square(

@@ -5,7 +5,7 @@ Written by generate.py from the schema of a config; change that, not this.
 
 from __future__ import annotations
 
-from ._values import Optimiser
+from ._values import Optimiser, as_count
 
 __all__ = [
     "implicit",
@@ -52,4 +52,4 @@ def lbfgs(
 
     In a config: ``{"lbfgs": {"memory": 5}}``
     """
-    return Optimiser("lbfgs", {"memory": memory})
+    return Optimiser("lbfgs", {"memory": as_count(memory, "memory", 0)})

@@ -10,7 +10,7 @@ from typing import Literal
 
 from numpy.typing import ArrayLike
 
-from ._values import Direction, Extent, State, as_direction
+from ._values import Direction, Extent, State, as_count, as_direction
 
 __all__ = [
     "uniform",
@@ -42,7 +42,7 @@ def uniform(
 
     In a config: ``{"uniform": {"direction": [0, 0, 1]}}``
     """
-    return State("uniform", {"direction": as_direction(direction), "staggered": staggered})
+    return State("uniform", {"direction": as_direction(direction, "direction"), "staggered": staggered})
 
 
 def domain_wall(
@@ -73,11 +73,11 @@ def domain_wall(
         Where the wall passes; "auto" (or absent): the shorter way, and between opposite domains the cheapest
         for the energy.
     width
-        Δ in sites; that of the material if absent. 0 is an abrupt wall.
+        Width δ of the wall in sites; that of the material if absent. 0 is an abrupt wall.
 
     In a config: ``{"domain_wall": {"center": 5.5, "through": [0, 1, 0], "width": 2}}``
     """
-    return State("domain_wall", {"center": center, "left": as_direction(left), "normal": as_direction(normal), "right": as_direction(right), "staggered": staggered, "through": as_direction(through), "width": width})
+    return State("domain_wall", {"center": center, "left": as_direction(left, "left"), "normal": as_direction(normal, "normal"), "right": as_direction(right, "right"), "staggered": staggered, "through": as_direction(through, "through", "auto"), "width": width})
 
 
 def soliton(
@@ -104,11 +104,11 @@ def soliton(
     through
         Where the spins point a quarter of the way; "auto" (or absent): the cheapest for the energy.
     width
-        W in sites; that of the energy if absent. 0 is an abrupt turn.
+        Width w of the turn in sites; that of the energy if absent. 0 is an abrupt turn.
 
     In a config: ``{"soliton": {"center": 5.5, "domain": [0, 0, 1], "width": 1.5}}``
     """
-    return State("soliton", {"center": center, "domain": as_direction(domain), "normal": as_direction(normal), "staggered": staggered, "through": as_direction(through), "width": width})
+    return State("soliton", {"center": center, "domain": as_direction(domain, "domain"), "normal": as_direction(normal, "normal"), "staggered": staggered, "through": as_direction(through, "through", "auto"), "width": width})
 
 
 def skyrmion(
@@ -134,17 +134,17 @@ def skyrmion(
         Angle from the way outwards to the spins in the wall; "auto" (or absent): of 0, 180°, 90° and −90° the
         cheapest for the energy.
     radius
-        R in spacings, where the spins are across core and background; that of the energy if absent.
+        Radius R in spacings, where the spins are across core and background; that of the energy if absent.
     staggered
         Reverse odd sites, of a cell with several atoms every other one. Default: false.
     vorticity
         How often the spins turn on the way around; −1 is an antiskyrmion. Default: 1.
     width
-        W in spacings; that of the energy if absent. 0 is an abrupt wall.
+        Width w of its wall in spacings; that of the energy if absent. 0 is an abrupt wall.
 
     In a config: ``{"skyrmion": {"center": [5, 0], "helicity": "90 deg", "radius": 3, "width": 1.5}}``
     """
-    return State("skyrmion", {"center": center, "core": as_direction(core), "helicity": helicity, "radius": radius, "staggered": staggered, "vorticity": vorticity, "width": width})
+    return State("skyrmion", {"center": center, "core": as_direction(core, "core"), "helicity": helicity, "radius": radius, "staggered": staggered, "vorticity": as_count(vorticity, "vorticity"), "width": width})
 
 
 def vortex(
@@ -176,7 +176,7 @@ def vortex(
 
     In a config: ``{"vortex": {"center": [5.5, 0], "core": [0, 0, -1], "radius": 2}}``
     """
-    return State("vortex", {"center": center, "core": as_direction(core), "helicity": helicity, "radius": radius, "staggered": staggered, "vorticity": vorticity})
+    return State("vortex", {"center": center, "core": as_direction(core, "core"), "helicity": helicity, "radius": radius, "staggered": staggered, "vorticity": as_count(vorticity, "vorticity")})
 
 
 def spiral(
@@ -204,7 +204,7 @@ def spiral(
 
     In a config: ``{"spiral": {"axis": [0, 1, 0], "period": 20, "phase": "30 deg"}}``
     """
-    return State("spiral", {"axis": as_direction(axis), "period": period, "along": as_direction(along), "phase": phase, "staggered": staggered})
+    return State("spiral", {"axis": as_direction(axis, "axis"), "period": period, "along": as_direction(along, "along"), "phase": phase, "staggered": staggered})
 
 
 def random(
@@ -223,7 +223,7 @@ def random(
 
     In a config: ``{"random": {"seed": 1}}``
     """
-    return State("random", {"seed": seed, "staggered": staggered})
+    return State("random", {"seed": as_count(seed, "seed", 0), "staggered": staggered})
 
 
 def vectors(
@@ -255,7 +255,7 @@ def file(
 
     In a config: ``{"file": {"path": "relaxed.ovf", "segment": 0}}``
     """
-    return State("file", {"path": path, "segment": segment, "staggered": staggered})
+    return State("file", {"path": path, "segment": as_count(segment, "segment"), "staggered": staggered})
 
 
 def regions(
@@ -271,6 +271,6 @@ def regions(
     regions
         By name of the region.
 
-    In a config: ``{"regions": {"default": {"uniform": {"direction": [0, 0, 1]}}}}``
+    In a config: ``{"regions": {"default": {"uniform": {"direction": [0, 0, 1]}}, "island": {"uniform": {"direction": [0, 0, -1]}}}}``
     """
     return State("regions", {"default": default, **regions})

@@ -9,6 +9,7 @@ import numpy as np
 
 from . import _core
 from ._html import paragraph, table
+from ._keys import check_keys, hint
 from ._read import read
 from ._values import AnyState, Array, Lattice, Values, as_json, as_state, in_nm, plain
 from .states import uniform
@@ -66,6 +67,7 @@ class System:
         #: all terms, those of your own among them
         self.energy = terms
         _named(self.terms)
+        check_keys(options, _ARGUMENTS)
         self.material = material
         self.moment = moment
         self.Ms = Ms
@@ -73,6 +75,17 @@ class System:
         self.initial = initial
         self.final = final
         self.options = options
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        # a word that is none would be kept, and never be read
+        if name not in _ATTRIBUTES:
+            raise AttributeError(f"a System has no {name!r}" + hint(name, _ATTRIBUTES))
+        super().__setattr__(name, value)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, System):
+            return NotImplemented
+        return bool(plain(vars(self)) == plain(vars(other)))
 
     @property
     def terms(self) -> list[Term]:
@@ -125,17 +138,7 @@ class System:
 
     def replaced(self, **changes: Any) -> System:
         """The same system with other arguments: ``system.replaced(moment="2 mu_B")``."""
-        own: dict[str, Any] = {
-            "lattice": self.lattice,
-            "energy": self.energy,
-            "material": self.material,
-            "moment": self.moment,
-            "Ms": self.Ms,
-            "name": self.name,
-            "initial": self.initial,
-            "final": self.final,
-            **self.options,
-        }
+        own = {name: getattr(self, name) for name in _ARGUMENTS} | self.options
         return System(**{**own, **changes})
 
     def _repr_html_(self) -> str:
@@ -153,6 +156,11 @@ class System:
             if value is not None
         ]
         return f"System({', '.join(shown)}, energy={self.energy!r})"
+
+
+#: what a System takes beside other keys of a config, and what it keeps
+_ARGUMENTS = ("lattice", "energy", "material", "moment", "Ms", "name", "initial", "final")
+_ATTRIBUTES = (*_ARGUMENTS, "options")
 
 
 def _shown(state: AnyState | None) -> Any:

@@ -67,6 +67,15 @@ class Term:
         self.quadratic = quadratic
         self.hessian = hessian
 
+    def _parts(self) -> tuple[Any, ...]:
+        return self.name, self.energy, self.gradient, self.reach, self.quadratic, self.hessian
+
+    def __eq__(self, other: object) -> bool:
+        return self._parts() == other._parts() if isinstance(other, Term) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._parts())
+
     def __repr__(self) -> str:
         return f"Term({self.name!r})"
 

@@ -78,7 +78,7 @@ def anisotropy(
 
     In a config: ``{"anisotropy": {"K": "0.5 meV", "K2": "0.1 meV", "axis": [0, 0, 1]}}``
     """
-    return Energy("anisotropy", {"K": K, "axis": as_direction(axis), "K2": K2, "sites": sites})
+    return Energy("anisotropy", {"K": K, "axis": as_direction(axis, "axis"), "K2": K2, "sites": sites})
 
 
 def cubic_anisotropy(
@@ -100,7 +100,7 @@ def cubic_anisotropy(
 
     In a config: ``{"cubic_anisotropy": {"K": "0.2 meV", "axes": [[1, 1, 0], [-1, 1, 0]]}}``
     """
-    return Energy("cubic_anisotropy", {"K": K, "axes": as_direction(axes), "sites": sites})
+    return Energy("cubic_anisotropy", {"K": K, "axes": as_direction(axes, "axes"), "sites": sites})
 
 
 def dmi(
@@ -135,7 +135,7 @@ def dmi(
 
     In a config: ``{"dmi": {"D": "2 meV", "direction": [0, 1, 0]}}``
     """
-    return Energy("dmi", {"D": D, "between": between, "bonds": bonds, "direction": as_direction(direction), "kind": kind, "normal": as_direction(normal), "sites": sites})
+    return Energy("dmi", {"D": D, "between": between, "bonds": bonds, "direction": as_direction(direction, "direction"), "kind": kind, "normal": as_direction(normal, "normal"), "sites": sites})
 
 
 def pairs(
