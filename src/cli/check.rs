@@ -11,6 +11,7 @@ use crate::drive::{Images, Problem, Scales};
 use crate::lattice::Lattice;
 use crate::rates::RateSettings;
 use crate::units::Length;
+use crate::words::counted;
 use anyhow::Result;
 use std::io::{self, Write};
 use std::path::Path;
@@ -171,10 +172,10 @@ fn lattice(loaded: &Loaded) -> String {
         0 => String::new(),
         _ => ", some frozen".to_string(),
     };
-    let sites = lattice.sites;
+    let sites = counted(lattice.sites, "site", "sites");
     match (lattice.kind, lattice.is_ring()) {
-        ("chain", true) => format!("ring of {sites} sites{spacing}{frozen}"),
-        ("chain", false) => format!("open chain of {sites} sites{spacing}{frozen}"),
+        ("chain", true) => format!("ring of {sites}{spacing}{frozen}"),
+        ("chain", false) => format!("open chain of {sites}{spacing}{frozen}"),
         _ => lattice.words() + &frozen,
     }
 }
@@ -193,8 +194,10 @@ fn neighbours(lattice: &Lattice, shell: &Shell) -> String {
     let unit = if lattice.spacing_nm.is_some() { "nm" } else { "× a" };
     let a_site = shell.bonds as f64 / there as f64;
     format!(
-        "{}: {species}{:.4} {unit} apart, {} bonds ({a_site:.3} for each site){exchange}{dmi}",
-        shell.number, shell.distance, shell.bonds
+        "{}: {species}{:.4} {unit} apart, {} ({a_site:.3} for each site){exchange}{dmi}",
+        shell.number,
+        shell.distance,
+        counted(shell.bonds, "bond", "bonds")
     )
 }
 

@@ -2,11 +2,13 @@
 
 use super::{Chain, Lattice};
 use crate::registry::Described;
+use crate::words::counted;
 
 impl Lattice {
     /// What it is and how large: "square, 20 × 20 cells, open, 392 sites (8 left out), 9.5 × 9.5 × 0 nm from the first to the last".
     pub fn words(&self) -> String {
-        format!("{}, {}, {} sites{}", self.kind, self.words_of_cells(), self.sites, self.words_of_extent())
+        let sites = counted(self.sites, "site", "sites");
+        format!("{}, {}, {sites}{}", self.kind, self.words_of_cells(), self.words_of_extent())
     }
 
     /// What lengths without a unit count: "sites" of a chain, "cells" of a continuum, lattice constants "a".

@@ -8,6 +8,7 @@ use crate::geometry::Direction;
 use crate::output::canvas::{Colour, sequential};
 use crate::output::landscape::{LandscapeReport, Network, document};
 use crate::path::Path;
+use crate::words::counted;
 use serde::Serialize;
 use serde_json::Value;
 
@@ -100,7 +101,8 @@ fn data<'a>(report: &LandscapeReport<'a>) -> Result<Data<'a>> {
         .map_err(|e| crate::error::Error::Numerical(format!("report.html: {e}")))?;
     let row = lattice.is_row();
     let words = if row {
-        format!("{} of {} sites", if lattice.is_ring() { "ring" } else { "chain" }, lattice.sites)
+        let sites = counted(lattice.sites, "site", "sites");
+        format!("{} of {sites}", if lattice.is_ring() { "ring" } else { "chain" })
     } else {
         lattice.words()
     };
