@@ -36,13 +36,20 @@ impl Refined {
 
 /// The saddle of index one, or of one mode flat to rounding and none that falls, that following the lowest mode from `m` reaches, if it
 /// reaches one nearby without falling below `floor_mev` (meV above the Hamiltonian's reference). Else the stationary state that `m`
-/// all but is, of whatever index, or `m` as it is. `tau` (3N): the path's direction. Where it `may_stray` a step may be cut to the trust
-/// radius with more than one direction falling: of 142 tops of unrelaxed bands of films from which one was, two fifths led to a saddle, by
-/// as many steps as a band takes to relax.
-pub fn refine(h: Evaluator, m: &[f64], tau: &[f64], floor_mev: f64, may_stray: bool) -> Refined {
+/// all but is, of whatever index, or `m` as it is. `tau` (3N): the path's direction.
+pub fn refine(h: Evaluator, m: &[f64], tau: &[f64], floor_mev: f64) -> Refined {
+    refined(h, m, tau, floor_mev, |_| false)
+}
+
+/// The same, unless the search strays: a step is cut to the trust radius with more than one direction falling. Of 142 tops of unrelaxed
+/// bands of films that did so two fifths led to a saddle, by more steps than a band takes to relax.
+pub fn refine_unless_it_strays(h: Evaluator, m: &[f64], tau: &[f64], floor_mev: f64) -> Refined {
+    refined(h, m, tau, floor_mev, |step| step.negative > 1 && step.rotation >= STEP)
+}
+
+fn refined(h: Evaluator, m: &[f64], tau: &[f64], floor_mev: f64, strays: impl Fn(&Step) -> bool) -> Refined {
     let mut search = Search::from(h, m, STEP);
     let left = |here: &Point| largest_angle(m, &here.m) > FAR || here.energy_mev < floor_mev;
-    let strays = |step: &Step| !may_stray && step.negative > 1 && step.rotation >= STEP;
     let found = search.saddle(STEPS, true, |here, step| (left(here) || strays(step)).then_some(GaveUp::Stuck));
     match found {
         Ok(Saddle { state, mode: valley, spectrum, .. }) => Refined { state, valley, spectrum: Some(spectrum) },
