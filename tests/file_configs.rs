@@ -122,7 +122,7 @@ fn what_is_wrong_with_a_file_is_said_at_its_place_in_the_config_and_warnings_rea
     write(folder, "wall.json", &config);
     for (content, words) in [
         ("0 0 1\n0 0 0\n", "initial.file.path: m.csv: line 2: the vector is zero"),
-        ("0 0 1\n", "initial.file.path: m.csv has 1 spins, but the chain has 2 sites"),
+        ("0 0 1\n", "initial.file.path: m.csv has 1 spin, but the chain has 2 sites"),
     ] {
         fs::write(folder.join("m.csv"), content).unwrap();
         for command in ["check", "run"] {

@@ -21,7 +21,7 @@ fn try_state(text: &str, chain: &Lattice) -> Result<Spins, String> {
 
 /// In a chain with a region of the name that the example of regions has.
 fn state(text: &str, sites: usize) -> Spins {
-    let island = ("island".to_string(), Selection::List(vec![1, 2]));
+    let island = ("island".to_string(), Selection::List(vec![0]));
     let chain = Chain { regions: [island].into(), ..Chain::open(sites) };
     try_state(text, &chain.resolve().unwrap()).expect(text)
 }
@@ -428,10 +428,7 @@ fn a_path_by_waypoints_meets_them_and_is_equally_spaced() {
         5,
         &Chain::open(12).resolve().unwrap(),
     );
-    assert!(
-        error.clone().is_err_and(|e| e.starts_with("states[0].vectors: found 1 vectors for 12 sites")),
-        "{error:?}"
-    );
+    assert!(error.clone().is_err_and(|e| e.starts_with("states[0].vectors: found 1 vector for 12 sites")), "{error:?}");
 }
 
 #[test]
@@ -536,10 +533,10 @@ fn a_wall_or_spiral_that_cannot_be_is_refused_at_its_key() {
         (r#"{"domain_wall": {"center": 3, "through": [0, 0, -1]}}"#, "through: "),
         (
             r#"{"domain_wall": {"center": 3, "left": [0, 0, 1], "right": [0, 0, 1], "through": [0, 0, -1]}}"#,
-            "through: ",
+            "right: the domains left and right of the wall point the same way",
         ),
         (r#"{"spiral": {"axis": [0, 0, 1], "period": 0}}"#, "period: "),
-        (r#"{"vectors": [[0, 0, 1]]}"#, "found 1 vectors for 8 sites"),
+        (r#"{"vectors": [[0, 0, 1]]}"#, "found 1 vector for 8 sites"),
         (r#"{"vectors": [[0, 0, 0]]}"#, "[0.0, 0.0, 0.0] has no direction"),
         (
             r#"{"spiral": {"axis": [0, 0, 1], "period": 8, "phase": 1}}"#,
