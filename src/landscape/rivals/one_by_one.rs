@@ -13,8 +13,6 @@ use crate::stationary::{Point, STRIDE, Spectrum};
 use rand_chacha::ChaCha8Rng;
 use std::collections::VecDeque;
 
-/// So many of the states tell how high an order leads.
-const LOOKED_AT: usize = 32;
 /// After this part of the spins a row is not whole, as a rule: a wall has a kink, which is where it moves.
 const PART: f64 = 0.382;
 
@@ -49,15 +47,18 @@ fn lowest_order(cut: &Cut) -> Option<VecDeque<Vec<f64>>> {
         if best.is_none() && !is_held(h, &between([way[0], way[2], way[2]], &order, kink)) {
             return None;
         }
-        let every = order.len().div_ceil(LOOKED_AT);
-        let heights = (0..order.len()).step_by(every.max(1)).map(|k| cut.land.height_mev(&state(k)));
-        let top = heights.fold(f64::NEG_INFINITY, f64::max);
-        if top < best.as_ref().map_or(cut.top_mev, |(least, _)| *least) {
+        let limit = best.as_ref().map_or(cut.top_mev, |(least, _)| *least);
+        if let Some(top) = highest_below(limit, (0..order.len()).map(|k| cut.land.height_mev(&state(k)))) {
             best = Some((top, order));
         }
     }
     let (_, order) = best?;
     Some((0..order.len()).map(|k| between(way, &order, k)).collect())
+}
+
+/// The highest of them, if all are below a limit; none after the first that is not is asked for.
+fn highest_below(limit: f64, mut heights: impl Iterator<Item = f64>) -> Option<f64> {
+    heights.try_fold(f64::NEG_INFINITY, |top, height| (height < limit).then_some(top.max(height)))
 }
 
 /// Sites row by row from each side of the lattice.
