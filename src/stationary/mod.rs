@@ -13,7 +13,6 @@ mod circuit;
 mod descent;
 mod flow;
 mod iterated;
-mod kept;
 mod pinned;
 mod point;
 mod polish;

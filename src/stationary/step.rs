@@ -13,11 +13,12 @@
 //! doi:10.1063/1.467559.)
 
 use super::border::pin_all;
-use super::kept::Kept;
 use super::point::Point;
 use super::spectrum::floor_mev;
 use super::tolerances::{ALIKE, FEW, FIRST_SHIFT, LARGER, LAST_DIGITS, LAST_SHIFT, ROUGHLY};
 use crate::energy::Evaluator;
+use crate::field::project;
+use crate::hessian::TangentBasis;
 use crate::linalg::{Factors, Matrix, lowest_modes, modes_by_factors, remove, slab};
 use crate::sphere::rotation_of;
 use std::mem::take;
@@ -32,8 +33,7 @@ pub struct Region<'a> {
     largest: f64,
     pub(super) hessian: Matrix,
     room: Matrix,
-    /// Factors that serve for the next steps too.
-    kept: Option<Kept>,
+    kept: Option<Factored>,
     /// Whether a mode was all but flat at any point so far.
     met_flat: bool,
     /// The lowest modes when they were last needed (3N each).
@@ -41,6 +41,18 @@ pub struct Region<'a> {
     pub(super) x: Vec<f64>,
     /// The step (3N).
     pub v: Vec<f64>,
+}
+
+/// The factors of a step, where they are dear and the step is theirs alone; they serve for the next steps too as long as each is much
+/// shorter than the one before.
+#[derive(Debug)]
+struct Factored {
+    factors: Factors,
+    /// Where they are of.
+    basis: TangentBasis,
+    zeros: Vec<Vec<f64>>,
+    /// Largest rotation of a spin in the last step by them (rad).
+    rotation: f64,
 }
 
 /// What became of the part of a step along a mode that is all but flat.
@@ -104,15 +116,28 @@ impl<'a> Region<'a> {
         self.again(here).unwrap_or_else(|| self.plain(here))
     }
 
-    /// Newton's step by the factors of a step before, in `v`, where they still serve; its largest rotation of a spin (rad).
+    /// The step by the factors of the step before, in `v`, where they still serve; its largest rotation of a spin (rad).
     fn again(&mut self, here: &Point) -> Option<f64> {
-        self.kept.as_mut()?.step(self.h, here, &mut self.v)
+        let Factored { factors, basis, zeros, rotation: last } =
+            self.kept.as_mut().filter(|k| k.rotation < LAST_DIGITS)?;
+        here.write_field(&here.slope, &mut self.v);
+        basis.write_coordinates(&self.v, &mut self.x);
+        slab::scale(&mut self.x, -1.0);
+        factors.solve(&mut self.x, 1);
+        remove(&mut self.x, zeros);
+        basis.field(&self.x, &mut self.v);
+        project(&here.m, &mut self.v);
+        let rotation = rotation_of(&self.v);
+        let serves = LARGER * rotation < *last;
+        *last = rotation;
+        serves.then_some(rotation)
     }
 
     /// Keeps factors for the next steps, or their memory.
     fn keep(&mut self, here: &Point, factors: Factors, serve: bool) {
         if serve && self.h.has_dear_factors() {
-            self.kept = Some(Kept::of(factors, here));
+            let (basis, zeros) = (here.basis.clone(), here.zeros.clone());
+            self.kept = Some(Factored { factors, basis, zeros, rotation: f64::INFINITY });
         } else {
             self.room = factors.into_memory();
         }
@@ -131,13 +156,13 @@ impl<'a> Region<'a> {
     pub fn step(&mut self, here: &Point) -> Step {
         if let Some(rotation) = self.again(here) {
             here.basis.write_coordinates(&self.v, &mut self.x);
-            let whole = self.cut(rotation);
             // the Hessian at hand is that of another point, in its basis
             let mut image = vec![0.0; self.v.len()];
             self.h.hessian_product(&here.m, &here.gradient, &self.v, &mut image);
             let rise_mev = slab::dot(&here.slope, &self.x) + 0.5 * slab::dot(&self.v, &image);
-            let negative = self.kept.as_ref().map_or(0, Kept::negatives);
-            return self.stepped(here, negative, [whole && negative == 1, rotation > LAST_DIGITS], rotation, rise_mev);
+            let size_mev = self.size_mev(here);
+            let negative = self.kept.as_ref().map_or(0, |kept| kept.factors.negatives());
+            return Step { negative, rotation, is_newton: negative == 1, is_underway: false, rise_mev, size_mev };
         }
         here.write_hessian(self.h, 0.0, &mut self.hessian);
         let (negative, leads_on) =
@@ -145,31 +170,14 @@ impl<'a> Region<'a> {
         here.write_field(&self.x, &mut self.v);
         self.h.hold_frozen(&mut self.v);
         let rotation = self.turned();
-        let whole = self.cut(rotation);
-        let rise_mev = here.predicted_mev(&self.hessian, &self.x);
-        self.stepped(here, negative, [whole && negative == 1, leads_on || rotation > LAST_DIGITS], rotation, rise_mev)
-    }
-
-    /// Cuts a step that turns a spin so far (rad) to the trust radius; false if it did.
-    fn cut(&mut self, rotation: f64) -> bool {
         let whole = rotation <= self.radius;
         if !whole {
             slab::scale(&mut self.x, self.radius / rotation);
             slab::scale(&mut self.v, self.radius / rotation);
         }
-        whole
-    }
-
-    fn stepped(
-        &self,
-        here: &Point,
-        negative: usize,
-        [is_newton, is_underway]: [bool; 2],
-        rotation: f64,
-        rise_mev: f64,
-    ) -> Step {
-        let rotation = rotation.min(self.radius);
-        Step { negative, rotation, is_newton, is_underway, rise_mev, size_mev: self.size_mev(here) }
+        let (rise_mev, size_mev) = (here.predicted_mev(&self.hessian, &self.x), self.size_mev(here));
+        let (is_newton, is_underway) = (whole && negative == 1, leads_on || rotation > LAST_DIGITS);
+        Step { negative, rotation: rotation.min(self.radius), is_newton, is_underway, rise_mev, size_mev }
     }
 
     /// |g||s| (meV).
@@ -229,7 +237,7 @@ impl<'a> Region<'a> {
     /// Newton's step in `x`; the factors.
     fn newton(&mut self, here: &Point) -> Factors {
         if let Some(kept) = self.kept.take() {
-            self.room = kept.into_memory();
+            self.room = kept.factors.into_memory();
         }
         let mut matrix = take(&mut self.room);
         matrix.copy_from(&self.hessian);
