@@ -8,7 +8,6 @@ use super::polish::polish;
 use super::search::{GaveUp, STEPS, Saddle, Search};
 use super::spectrum::Spectrum;
 use super::state::State;
-use super::step::Step;
 use super::tolerances::{ALIKE, FAR, STEP};
 use crate::energy::Evaluator;
 use crate::field::project;
@@ -38,19 +37,9 @@ impl Refined {
 /// reaches one nearby without falling below `floor_mev` (meV above the Hamiltonian's reference). Else the stationary state that `m`
 /// all but is, of whatever index, or `m` as it is. `tau` (3N): the path's direction.
 pub fn refine(h: Evaluator, m: &[f64], tau: &[f64], floor_mev: f64) -> Refined {
-    refined(h, m, tau, floor_mev, |_| false)
-}
-
-/// The same, unless the search strays: a step is cut to the trust radius with more than one direction falling. Of 142 tops of unrelaxed
-/// bands of films that did so two fifths led to a saddle, by more steps than a band takes to relax.
-pub fn refine_unless_it_strays(h: Evaluator, m: &[f64], tau: &[f64], floor_mev: f64) -> Refined {
-    refined(h, m, tau, floor_mev, |step| step.negative > 1 && step.rotation >= STEP)
-}
-
-fn refined(h: Evaluator, m: &[f64], tau: &[f64], floor_mev: f64, strays: impl Fn(&Step) -> bool) -> Refined {
     let mut search = Search::from(h, m, STEP);
     let left = |here: &Point| largest_angle(m, &here.m) > FAR || here.energy_mev < floor_mev;
-    let found = search.saddle(STEPS, true, |here, step| (left(here) || strays(step)).then_some(GaveUp::Stuck));
+    let found = search.saddle(STEPS, true, |here, _| left(here).then_some(GaveUp::Stuck));
     match found {
         Ok(Saddle { state, mode: valley, spectrum, .. }) => Refined { state, valley, spectrum: Some(spectrum) },
         Err(_) => beside(h, m, tau),
