@@ -1,8 +1,7 @@
 //! Images that shapes are made of: read once, and put into the config in place of their names, so that it runs by itself and its hash
 //! is that of the pixels.
 
-use super::json::tree;
-use super::json::{Holds, Node, Step, written};
+use super::json::{Holds, Node, Step, tree, written};
 use super::text::Text;
 use crate::base64::base64;
 use crate::error::{Error, Result};

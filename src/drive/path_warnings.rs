@@ -4,8 +4,8 @@ use super::Verdict;
 use super::heights::{height, prominent_maxima};
 use super::outcome::{SaddlePoint, SearchReport};
 use crate::band::Band;
-use crate::landscape::{Doubt, Minimum, Pass};
-use crate::stationary::{FEW, LOWER, Spectrum};
+use crate::landscape::{Doubt, Effort, Minimum, Pass, brings_news};
+use crate::stationary::{LOWER, Spectrum};
 use crate::words::counted;
 
 /// A path, with what it should have and what was proven of it.
@@ -32,10 +32,11 @@ impl OfPath<'_> {
 
 /// Says that a search for lower passes ended by its work alone, one of its last few searches having found something.
 pub fn search_cut_short(search: &SearchReport) -> Option<String> {
-    (search.spent && search.quiet < FEW).then(|| {
+    (search.spent && brings_news(search.quiet)).then(|| {
+        let longer = if search.effort == Effort::Thorough { "" } else { "\"search\": {\"effort\": \"thorough\"} or " };
         format!(
             "the search for lower passes still found saddles when its work was spent ({} searches, {} minima): there may well be a lower \
-             barrier; \"search\": \"thorough\" or a guess of your own may find it",
+             barrier; {longer}a guess of your own may find it",
             search.searches, search.minima
         )
     })
@@ -100,6 +101,7 @@ fn more_images(asked: usize, has: usize, saddles: usize) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::stationary::FEW;
 
     #[test]
     fn a_search_is_cut_short_where_its_work_is_spent_while_it_still_finds_saddles() {

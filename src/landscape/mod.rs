@@ -55,6 +55,6 @@ pub use peaks::{Peak, direction, highest, peaks, promising};
 pub use places::{Places, Seen};
 pub use route::Route;
 pub use saddle::Saddle;
-pub use search::{Aim, Effort, KINDS, Searched, Settings, Standing, search};
+pub use search::{Aim, Effort, KINDS, Searched, Settings, Standing, brings_news, search};
 pub use stored::{are_counts, are_finite, fit};
 pub use zoom::zoomed;

@@ -48,7 +48,7 @@ impl Row<'_, '_> {
 
     /// How often a pair was tried.
     pub fn tries(&self, pair: &Alike) -> usize {
-        self.tried.get(pair).copied().unwrap_or(0)
+        times(self.tried, pair)
     }
 }
 
@@ -70,7 +70,7 @@ impl Pairs {
 
     /// How often a pair was tried.
     pub fn tries(&self, pair: &Alike) -> usize {
-        self.tried.get(pair).copied().unwrap_or(0)
+        times(&self.tried, pair)
     }
 
     /// The same; one time more from now on.
@@ -79,6 +79,10 @@ impl Pairs {
         *tried += 1;
         *tried - 1
     }
+}
+
+fn times(tried: &BTreeMap<Alike, usize>, pair: &Alike) -> usize {
+    tried.get(pair).copied().unwrap_or(0)
 }
 
 /// The square of a distance that counts a pair as further apart with every try.

@@ -148,8 +148,13 @@ pub struct Settings<'a> {
 impl Settings<'_> {
     /// What a search may evaluate, of which so many, the last ones, brought no news, and which made the route lower so many times.
     fn allowed(&self, quiet: usize, lowered: usize) -> Count {
-        if quiet < FEW || lowered > 0 { self.most_with_news } else { self.most }
+        if brings_news(quiet) || lowered > 0 { self.most_with_news } else { self.most }
     }
+}
+
+/// Whether one of the last few searches brought news, of which so many, the last ones, brought none.
+pub fn brings_news(quiet: usize) -> bool {
+    quiet < FEW
 }
 
 /// What a search came to.

@@ -1,7 +1,6 @@
 //! What is wrong with a point's config is said where the sweep's file has the key or the value that is to blame.
 
-use super::super::json::{Holds, Node, Step, steps};
-use super::super::json::{at, tree};
+use super::super::json::{Holds, Node, Step, at, steps, tree};
 use super::super::text::nearest;
 use super::Sweep;
 use crate::error::Error;

@@ -18,8 +18,7 @@ mod blame;
 mod names;
 mod range;
 
-use super::json::{Holds, Step, steps};
-use super::json::{at, tree};
+use super::json::{Holds, Step, at, steps, tree};
 use super::load::{Loaded, load_text, not_a};
 use super::schema;
 use super::source::read;

@@ -11,49 +11,57 @@ use crate::linalg::Matrix;
 use crate::path::guess::{Geodesic, Ways};
 use crate::stationary::{Point, STRIDE, Spectrum};
 use rand_chacha::ChaCha8Rng;
-use std::collections::VecDeque;
 
 /// After this part of the spins a row is not whole, as a rule: a wall has a kink, which is where it moves.
 const PART: f64 = 0.382;
 
-/// The starts that wait.
+/// Which of the starts is next.
 #[derive(Debug, Default)]
 pub struct OneByOne {
-    /// None until they are asked for.
-    next: Option<VecDeque<Vec<f64>>>,
+    /// None until one is asked for; then the order, if there is one.
+    order: Option<Option<Order>>,
+    next: usize,
+}
+
+/// Spins before, half-way and after (3N each), and in which order the sites go over.
+#[derive(Debug)]
+struct Order {
+    way: [Vec<f64>; 3],
+    sites: Vec<usize>,
 }
 
 impl Rival for OneByOne {
     fn start(&mut self, cut: &Cut, _: &mut ChaCha8Rng) -> Option<Vec<f64>> {
-        let next = self.next.get_or_insert_with(|| lowest_order(cut).unwrap_or_default());
-        next.pop_front()
+        let order = self.order.get_or_insert_with(|| lowest_order(cut)).as_ref()?;
+        let start = (self.next < order.sites.len()).then(|| between(&order.way, &order.sites, self.next));
+        self.next += 1;
+        start
     }
 }
 
-/// The starts in the order that leads over the lowest of them, if it leads below T.
-fn lowest_order(cut: &Cut) -> Option<VecDeque<Vec<f64>>> {
+/// The order that leads over the lowest states, if it leads below T.
+fn lowest_order(cut: &Cut) -> Option<Order> {
     let h = cut.land.evaluator();
     let [a, b] = cut.ends?.map(|k| &cut.land.minima()[k].spins);
     let half = Geodesic::default().along(&Ways::between(a, b), 3, &cut.context);
-    let way = [a.as_slice(), half.image(1), b.as_slice()];
-    let [from, to] = [way[0], way[2]].map(Components::new);
+    let way = [a.as_slice(), half.image(1), b.as_slice()].map(<[f64]>::to_vec);
+    let [from, to] = [a, b].map(|spins| Components::new(spins.as_slice()));
     let turns = |i: &usize| !h.is_frozen(*i) && angle(from.get(*i), to.get(*i)) > STRIDE;
     let moving: Vec<usize> = (0..h.sites()).filter(turns).collect();
     let kink = (PART * moving.len() as f64) as usize;
     let mut best: Option<(f64, Vec<usize>)> = None;
-    for order in orders(h.lattice(), &moving) {
-        let state = |k: usize| between(way, &order, k);
+    for sites in orders(h.lattice(), &moving) {
         // where the lattice does not hold a wall that comes from one side it holds none
-        if best.is_none() && !is_held(h, &between([way[0], way[2], way[2]], &order, kink)) {
+        if best.is_none() && !is_held(h, &turned(&way, &sites[..kink])) {
             return None;
         }
         let limit = best.as_ref().map_or(cut.top_mev, |(least, _)| *least);
-        if let Some(top) = highest_below(limit, (0..order.len()).map(|k| cut.land.height_mev(&state(k)))) {
-            best = Some((top, order));
+        let height = |k: usize| if h.is_stopped() { limit } else { cut.land.height_mev(&between(&way, &sites, k)) };
+        if let Some(top) = highest_below(limit, (0..sites.len()).map(height)) {
+            best = Some((top, sites));
         }
     }
-    let (_, order) = best?;
-    Some((0..order.len()).map(|k| between(way, &order, k)).collect())
+    best.map(|(_, sites)| Order { way, sites })
 }
 
 /// The highest of them, if all are below a limit; none after the first that is not is asked for.
@@ -79,12 +87,22 @@ fn orders(lattice: &Lattice, sites: &[usize]) -> Vec<Vec<usize>> {
 }
 
 /// The first k sites of an order as they are after all, the next one as it is half-way, the others as they are before.
-fn between([before, half, after]: [&[f64]; 3], order: &[usize], k: usize) -> Vec<f64> {
-    let (mut m, sites) = (before.to_vec(), before.len() / 3);
-    let mut put = |site: usize, from: &[f64]| (0..3).for_each(|c| m[c * sites + site] = from[c * sites + site]);
-    order[..k].iter().for_each(|i| put(*i, after));
-    order.get(k).into_iter().for_each(|i| put(*i, half));
+fn between(way: &[Vec<f64>; 3], order: &[usize], k: usize) -> Vec<f64> {
+    let mut m = turned(way, &order[..k]);
+    put(&mut m, order[k], &way[1]);
     m
+}
+
+/// These sites as they are after all, the others as they are before.
+fn turned([before, _, after]: &[Vec<f64>; 3], sites: &[usize]) -> Vec<f64> {
+    let mut m = before.clone();
+    sites.iter().for_each(|i| put(&mut m, *i, after));
+    m
+}
+
+fn put(m: &mut [f64], site: usize, from: &[f64]) {
+    let sites = m.len() / 3;
+    (0..3).for_each(|c| m[c * sites + site] = from[c * sites + site]);
 }
 
 /// Whether spins that stand against their neighbours are held there.
