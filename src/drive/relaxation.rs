@@ -195,6 +195,12 @@ impl Relaxation<'_> {
             self.record(band, rotation, 0);
             return Some(Stop::Converged { rotation, tolerance: LOOSE });
         }
+        if goal == Goal::Loose && force.is_finite() && band.evaluations() >= limit {
+            // where the images would go next is not asked
+            let rotation = force / scales.stiffness_mev;
+            self.record(band, rotation, 0);
+            return Some(Stop::MaxEvaluations { evaluations: band.evaluations(), rotation, tolerance });
+        }
         let climbing = self.climbing(band, goal);
         let (rotation, products) = match settings.optimiser.member().follows() {
             Follows::Sweep => {
