@@ -12,7 +12,7 @@ use crate::error::Result;
 use crate::landscape::{Effort, Peak, Saddle, peaks, promising, zoomed};
 use crate::path::guess::{GuessSpec, NoiseSpec, add_noise, moving_sites, smooth};
 use crate::path::{COARSE, Path};
-use crate::stationary::{ALIKE, FEW};
+use crate::stationary::{ALIKE, FEW, is_very_dear};
 
 /// Evaluations after which first paths are compared.
 const TRIAL: usize = 8;
@@ -110,8 +110,10 @@ impl<'a> Run<'a, '_> {
                 break;
             }
             let h = c.band.evaluator();
+            // where factors are very dear a band is relaxed sooner than a search comes back to its valley
+            let may_stray = relaxes || !is_very_dear(&h);
             c.found = match self.zoom(c)? {
-                Some(top) => Some(Saddle::recorded(h, top)?),
+                Some(top) => Some(Saddle::recorded(h, top, may_stray)?),
                 None => None,
             };
             let Some(found) = c.found.as_ref() else { break };

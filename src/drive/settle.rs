@@ -367,7 +367,7 @@ impl<'a> Run<'a, '_> {
             let from_there = |f: &&Saddle| f.top.m == top.m && f.top.tau == top.tau;
             let f = match c.found.as_ref().filter(|f| is_seated(&c.band, top.image, f) || from_there(f)) {
                 Some(f) => Saddle { top: top.into(), refined: f.refined.clone() },
-                None => Saddle::recorded(h, top)?,
+                None => Saddle::recorded(h, top, true)?,
             };
             if f.is_saddle(scale) && !found.iter().any(|g| is_within(g.spins(), f.spins(), SAME)) {
                 found.push(f);

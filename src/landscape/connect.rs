@@ -117,7 +117,7 @@ impl Connector<'_> {
         // a saddle on the way lies above the lower of the two, and may lie far below a peak that it is not near
         let ends_mev = band.energies_mev()[0].min(band.energies_mev()[band.images() - 1]);
         for top in tops {
-            let found = Saddle::recorded(h, Peak { floor_mev: top.floor_mev.min(ends_mev), ..top })?;
+            let found = Saddle::recorded(h, Peak { floor_mev: top.floor_mev.min(ends_mev), ..top }, true)?;
             if found.is_saddle(self.sides.c) && !land.knows(&found) {
                 return self.add(land, found);
             }

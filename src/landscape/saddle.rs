@@ -3,7 +3,7 @@
 use super::peaks::Peak;
 use crate::energy::{Evaluator, recorded};
 use crate::error::Result;
-use crate::stationary::{self, ALIKE, Limits, Refined, STATIONARY, State, climb, refine};
+use crate::stationary::{self, ALIKE, Limits, Refined, STATIONARY, State, climb, refine, refine_unless_it_strays};
 use crate::symmetry::Operation;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -26,6 +26,12 @@ impl Saddle {
     /// Refines a top.
     pub fn at(h: Evaluator, top: Peak) -> Saddle {
         let refined = refine(h, &top.m, &top.tau, top.floor_mev);
+        Saddle::new(top, refined)
+    }
+
+    /// The same, unless the search strays.
+    fn near(h: Evaluator, top: Peak) -> Saddle {
+        let refined = refine_unless_it_strays(h, &top.m, &top.tau, top.floor_mev);
         Saddle::new(top, refined)
     }
 
@@ -58,10 +64,13 @@ impl Saddle {
         Saddle::new(Peak { m, tau, ..**top }, Refined { state, valley, spectrum })
     }
 
-    /// The same, as far as it is not on record.
-    pub fn recorded(h: Evaluator, top: Peak) -> Result<Saddle> {
+    /// [`at`](Self::at) a top, or near it if the search may not stray, as far as it is not on record.
+    pub fn recorded(h: Evaluator, top: Peak, may_stray: bool) -> Result<Saddle> {
         let [m, tau] = [&top.m, &top.tau].map(Vec::clone);
-        recorded(h, "saddle", &[&m, &tau], || Ok(Saddle::at(h, top)))
+        let strays = [f64::from(may_stray)];
+        recorded(h, "saddle", &[&m, &tau, &strays], || {
+            Ok(if may_stray { Saddle::at(h, top) } else { Saddle::near(h, top) })
+        })
     }
 
     /// Stationary to machine precision, and near the start's height.

@@ -78,9 +78,11 @@ pub fn modes_by_factors(
     part: f64,
 ) -> Option<Vec<Vec<f64>>> {
     let negatives = factors.negatives();
-    let mut krylov = Krylov::new(factors, known, 1);
+    // where several starts are at hand two solutions for all of them at once may do
+    let block = starts.len().max(1);
+    let mut look = if block > 1 { 2 * block } else { 2 * negatives + 4 };
+    let mut krylov = Krylov::new(factors, known, block);
     (krylov.starts, krylov.passes) = (starts, 1);
-    let mut look = 2 * negatives + 4;
     loop {
         let last = !krylov.grow() || krylov.is_full(MOST_AS_IT_IS);
         if last || krylov.is_full(look) {
@@ -88,7 +90,7 @@ pub fn modes_by_factors(
             if last || found.is_some() {
                 return found;
             }
-            look += look / 2;
+            look += (look / 5).max(2);
         }
     }
 }

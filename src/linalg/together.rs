@@ -21,7 +21,7 @@ const APART: f64 = 1e-6;
 /// Vectors of a block more than there are modes to begin with: as many as modes are often degenerate.
 const SPARE: usize = 2;
 /// Blocks before a nearer s is looked for, and how much nearer it must be.
-const BLOCKS: usize = 4;
+const BLOCKS: usize = 9;
 const NEARER: f64 = 0.5;
 /// What is given is a mode if |Av − θv| is less than this part of |θ|.
 const GIVEN: f64 = 1e-6;
@@ -129,10 +129,11 @@ impl<'a> Search<'a> {
         (self.low, self.went_far) = (self.shift, false);
         // where all others lie below s, the lowest above it alone cannot be missed
         let is_last = wanted.count == sure + 1 && self.modes[..sure].iter().all(|mode| mode.value < self.shift);
-        let mut krylov = Krylov::new(factors, &self.apart, SPARE + self.modes.len() - sure);
+        let block = if is_last { 1 } else { SPARE + self.modes.len() - sure };
+        let mut krylov = Krylov::new(factors, &self.apart, block);
         krylov.starts = self.modes[sure..].iter().map(|mode| mode.vector.clone()).collect();
         let rest = Modes { count: wanted.count - sure, below: wanted.below - self.low, ..wanted };
-        let mut most = (BLOCKS + 1) * (SPARE + wanted.count);
+        let mut most = BLOCKS * block.max(SPARE);
         let (found, shift) = loop {
             let (space, settled) = krylov.largest(rest, most);
             self.modes = rayleigh_ritz(self.matrix, &[&self.apart[self.known.len()..], &space].concat());

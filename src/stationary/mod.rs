@@ -34,7 +34,7 @@ pub(crate) use border::{Border, Pin, pin, pin_all};
 pub use descent::{Descent, descend};
 pub use pinned::Pinned;
 pub use point::{Point, move_free};
-pub use refine::{Refined, refine};
+pub use refine::{Refined, refine, refine_unless_it_strays};
 pub use relax::{Relaxed, WayDown, relax_end, relax_to_minimum};
 pub use search::{Climb, GaveUp, Limits, STEPS, Saddle, climb};
 pub use spectrum::{Spectrum, lowest_eigenvalues_mev};

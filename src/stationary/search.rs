@@ -96,13 +96,23 @@ pub(super) struct Search<'a> {
     next: Point,
     /// The last way along a wrong mode (3N).
     away: Vec<f64>,
+    /// What may be like the mode along which the saddle falls (3N).
+    pub along: Option<Vec<f64>>,
     pub steps: usize,
 }
 
 impl<'a> Search<'a> {
     pub fn from(h: Evaluator<'a>, start: &[f64], radius: f64) -> Search<'a> {
         let here = Point::at(h, start.to_vec());
-        Search { h, region: Region::new(h, radius), here, next: Point::default(), away: Vec::new(), steps: 0 }
+        Search {
+            h,
+            region: Region::new(h, radius),
+            here,
+            next: Point::default(),
+            away: Vec::new(),
+            along: None,
+            steps: 0,
+        }
     }
 
     /// To a saddle of index one, or, if it `may_be_flat`, with one mode flat to rounding and none that falls, by `most` steps; `each` may
@@ -116,7 +126,8 @@ impl<'a> Search<'a> {
         loop {
             self.run(most, &mut each)?;
             let state = State::of(self.h, self.here.clone());
-            let (spectrum, lowest) = Spectrum::of_saddle(self.h, &state);
+            let like = self.region.modes.first().or(self.along.as_ref());
+            let (spectrum, lowest) = Spectrum::of_saddle(self.h, &state, like);
             let is_saddle = spectrum.negative == 1 || may_be_flat && spectrum.negative == 0 && spectrum.flat == 1;
             if let Some(lowest) = lowest.filter(|_| is_saddle) {
                 let (mut mode, curvature_mev) = (state.field(&lowest), state.curvature_mev(&lowest));

@@ -44,13 +44,13 @@ impl Spectrum {
 
     /// Of a state, without eigenvalues, and the vector of its negative mode (in tangent coordinates) where it has one alone, or of its
     /// flat one where none is negative and one is flat. Where no other eigenvalue is below the floor that mode's own value tells the
-    /// counts, by one factorisation.
-    pub fn of_saddle(h: Evaluator, state: &State) -> (Spectrum, Option<Vec<f64>>) {
+    /// counts, by one factorisation. A field (3N) may be `like` that mode.
+    pub fn of_saddle(h: Evaluator, state: &State, like: Option<&Vec<f64>>) -> (Spectrum, Option<Vec<f64>>) {
         Spectrum::counted(h, state, |factors| {
             if factors.negatives() != 1 {
                 return None;
             }
-            let at_hand = state.mode_at_hand(factors, Wanted::Vectors);
+            let at_hand = state.mode_at_hand(factors, Wanted::Vectors, like);
             at_hand.or_else(|| state.lowest_mode(h).map(|mode| mode.vector))
         })
     }
@@ -58,7 +58,7 @@ impl Spectrum {
     /// Of what may be a minimum, without eigenvalues but for the lowest (meV), roughly, where the factors that count the signs tell it.
     pub fn of_minimum(h: Evaluator, state: &State) -> (Spectrum, Option<f64>) {
         let (spectrum, softest) = Spectrum::counted(h, state, |factors| {
-            if factors.negatives() == 0 { state.mode_at_hand(factors, Wanted::Size) } else { None }
+            if factors.negatives() == 0 { state.mode_at_hand(factors, Wanted::Size, None) } else { None }
         });
         (spectrum, softest.map(|v| state.curvature_mev(&v)))
     }

@@ -10,6 +10,9 @@ use crate::threads::both;
 use serde::{Deserialize, Serialize};
 use std::ops::Deref;
 
+/// A field that is like a mode is changed by this part of it, so that it has something of every mode.
+pub(super) const STIRRED: f64 = 0.1;
+
 /// Factors are very dear where they take the arithmetic of so many solutions by them: in films of some 170² sites and more, cubes of
 /// 15³.
 const DEAR: f64 = 60.0;
@@ -72,10 +75,17 @@ impl State {
     }
 
     /// The vector of its negative mode by factors of the Hessian that are at hand, if it has one alone, or of its lowest if it has none;
-    /// nothing where those do not tell it soon, or where new factors are as cheap as solutions.
-    pub fn mode_at_hand(&self, factors: &Factors, wanted: Wanted) -> Option<Vec<f64>> {
+    /// nothing where those do not tell it soon, or where new factors are as cheap as solutions. A field (3N) may be `like` it.
+    pub fn mode_at_hand(&self, factors: &Factors, wanted: Wanted, like: Option<&Vec<f64>>) -> Option<Vec<f64>> {
         let Matrix::Sparse(_) = self.hessian else { return None };
-        let mut v = modes_by_factors(factors, &self.zeros, Vec::new(), wanted.residual())?.pop()?;
+        let start = like.map(|field| {
+            let mut start = self.basis.coordinates(field);
+            let size = slab::norm(&start);
+            slab::stir(&mut start, STIRRED * size);
+            start
+        });
+        let starts = start.into_iter().collect();
+        let mut v = modes_by_factors(factors, &self.zeros, starts, wanted.residual())?.pop()?;
         // one solution more: what is left of stiff modes would show in vᵀHv
         factors.solve(&mut v, 1);
         remove(&mut v, &self.zeros);

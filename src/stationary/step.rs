@@ -15,6 +15,7 @@
 use super::border::pin_all;
 use super::point::Point;
 use super::spectrum::floor_mev;
+use super::state::STIRRED;
 use super::tolerances::{ALIKE, FEW, FIRST_SHIFT, LARGER, LAST_DIGITS, LAST_SHIFT, ROUGHLY};
 use crate::energy::Evaluator;
 use crate::field::project;
@@ -78,6 +79,8 @@ pub struct Step {
     pub negative: usize,
     /// Largest rotation of a spin (rad).
     pub rotation: f64,
+    /// The same before the step was cut (rad).
+    pub asked: f64,
     /// It is Newton's, not cut, and there is one negative direction.
     pub is_newton: bool,
     /// There is a way to go along a mode that is all but flat, however small the torque.
@@ -162,7 +165,15 @@ impl<'a> Region<'a> {
             let rise_mev = slab::dot(&here.slope, &self.x) + 0.5 * slab::dot(&self.v, &image);
             let size_mev = self.size_mev(here);
             let negative = self.kept.as_ref().map_or(0, |kept| kept.factors.negatives());
-            return Step { negative, rotation, is_newton: negative == 1, is_underway: false, rise_mev, size_mev };
+            return Step {
+                negative,
+                rotation,
+                asked: rotation,
+                is_newton: negative == 1,
+                is_underway: false,
+                rise_mev,
+                size_mev,
+            };
         }
         here.write_hessian(self.h, 0.0, &mut self.hessian);
         let (negative, leads_on) =
@@ -177,7 +188,15 @@ impl<'a> Region<'a> {
         }
         let (rise_mev, size_mev) = (here.predicted_mev(&self.hessian, &self.x), self.size_mev(here));
         let (is_newton, is_underway) = (whole && negative == 1, leads_on || rotation > LAST_DIGITS);
-        Step { negative, rotation: rotation.min(self.radius), is_newton, is_underway, rise_mev, size_mev }
+        Step {
+            negative,
+            rotation: rotation.min(self.radius),
+            asked: rotation,
+            is_newton,
+            is_underway,
+            rise_mev,
+            size_mev,
+        }
     }
 
     /// |g||s| (meV).
@@ -289,14 +308,11 @@ impl<'a> Region<'a> {
     /// tell several soon. Whether it did.
     fn reverse(&mut self, here: &Point, factors: &Factors, which: Range<usize>) -> bool {
         let mut start = self.x.clone();
-        slab::stir(&mut start, 0.1 * slab::norm(&self.x));
-        let mut before = Vec::new();
-        for mode in &self.modes {
-            here.basis.write_coordinates(mode, &mut before);
-            slab::add_scaled(&mut start, slab::norm(&self.x), &before);
-        }
+        slab::stir(&mut start, STIRRED * slab::norm(&self.x));
+        let before = self.modes.iter().map(|mode| here.basis.coordinates(mode));
+        let starts = std::iter::once(start).chain(before).collect();
         let lowest = || lowest_modes(&self.hessian, 1, &here.zeros).into_iter().map(|mode| mode.vector).collect();
-        let found = modes_by_factors(factors, &here.zeros, vec![start], ROUGHLY);
+        let found = modes_by_factors(factors, &here.zeros, starts, ROUGHLY);
         let Some(modes) = found.or_else(|| (which.start == 0).then(lowest)) else { return false };
         for u in modes.get(which).unwrap_or_default() {
             let along = slab::dot(u, &self.x);
