@@ -68,6 +68,8 @@ pub struct Landscape<'a> {
     reference_mev: f64,
     /// None until they are wanted.
     operations: Option<Vec<Operation>>,
+    /// All operations, where those are but the first of them.
+    group: Option<Group>,
     most_minima: usize,
     places: Places,
     minima: Vec<Minimum>,
@@ -91,6 +93,7 @@ impl<'a> Landscape<'a> {
             reference: reference.to_vec(),
             reference_mev: h.hamiltonian().energy_mev(reference) - h.reference_mev(),
             operations: None,
+            group: None,
             most_minima: MINIMA,
             places: Places::default(),
             minima: Vec::new(),
@@ -109,6 +112,7 @@ impl<'a> Landscape<'a> {
         if self.operations.is_none() {
             let group = Group::of(&self.h, &self.reference, &[]);
             self.unfold_by(group.operations().take(IMAGES.min(self.most_images())).collect());
+            self.group = (group.order() > 1 + self.operations_known().len()).then_some(group);
         }
     }
 
@@ -370,6 +374,19 @@ impl<'a> Landscape<'a> {
         self.edges_over(saddle.spins(), self.height_mev(saddle.spins())).next().is_some()
     }
 
+    /// The pass over a saddle, where that is an image by symmetry of a known one, but none of those that were put in.
+    pub(super) fn image_over(&self, saddle: &Saddle) -> Option<Pass> {
+        let group = self.group.as_ref()?;
+        let (m, height_mev) = (saddle.spins(), self.height_mev(saddle.spins()));
+        let near = ALIKE * self.h.stiffness_mev();
+        let alike = self.edges.iter().filter(|e| e.by.is_none() && (e.height_mev - height_mev).abs() < near);
+        let seen = Seen::of(self.h, m);
+        alike.map(|e| &self.passes[e.pass]).find_map(|pass| {
+            let by = group.operations().find(|by| seen.is_made(by, pass.saddle.spins()))?;
+            Some(pass.image(self.h, &by))
+        })
+    }
+
     /// Whether a pass leads over another place of a known saddle that slides along a flat valley, between the same minima.
     fn is_place(&self, pass: &Pass) -> bool {
         let ends = [&pass.before, &pass.after].map(|minimum| self.known(minimum).map(|k| self.stands_for[k]));
@@ -392,7 +409,7 @@ impl<'a> Landscape<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::energy::{Anisotropy, EnergyTerm, Hamiltonian};
+    use crate::energy::{Anisotropy, EnergyTerm, Exchange, Hamiltonian};
     use crate::geometry::Direction;
     use crate::lattice::Chain;
     use crate::stationary::Limits;
@@ -463,6 +480,39 @@ mod tests {
         let route = land.route(find(&land, [-0.3, 0.0, 0.9]), find(&land, [0.0, 0.0, -1.0])).unwrap();
         let passes = land.passes_of(&route);
         assert!(passes.len() == 1 && passes[0].before.spins.as_slice()[0] < -0.2);
+    }
+
+    #[test]
+    fn a_saddle_of_which_no_image_was_put_in_has_the_pass_that_symmetry_makes_of_a_known_one() {
+        let (sites, lattice) = (40, Chain::ring(40).resolve().unwrap());
+        let terms: Vec<Box<dyn EnergyTerm>> = vec![
+            Box::new(Exchange::uniform(&lattice, &[0.02])),
+            Box::new(Anisotropy::uniform(sites, 1.0, Direction::Z)),
+            Box::new(Anisotropy::uniform(sites, -0.5, Direction::X)),
+        ];
+        let h = Hamiltonian::new(&lattice, terms).unwrap();
+        let h = Evaluator::from(&h);
+        // one spin that turns over beside others that do not
+        let over = |site: usize| {
+            let spins: Vec<_> = (0..sites).map(|i| if i == site { [0.1, 0.9, 0.2] } else { [0.0, 0.0, 1.0] }).collect();
+            let limits =
+                Limits { steps: 40, without_mode: 8, radius: 0.5, ceiling_mev: f64::INFINITY, known: &|_, _| false };
+            Saddle::climbed(h, Spins::from_vectors(&spins).unwrap().as_slice(), &limits).unwrap()
+        };
+        let sides = crate::landscape::Sides { c: 1.0, level_mev: 0.0, beside: &[], most: usize::MAX };
+        let mut land = Landscape::new(h, Spins::uniform(sites, Direction::Z).as_slice());
+        land.unfold();
+        assert!(land.add(Pass::of(h, over(0), sides).unwrap()));
+        let far = over(20);
+        assert!(land.edges().len() < 80 && !land.knows(&far));
+        let image = land.image_over(&far).expect("a shift makes it");
+        let exact = Pass::of(h, far, sides).unwrap();
+        assert!(is_same_state(h, image.saddle.spins(), exact.saddle.spins()) && image.doubt(h).is_none());
+        let ends =
+            |pass: &Pass| [pass.before.spins.as_slice()[2 * sites + 20], pass.after.spins.as_slice()[2 * sites + 20]];
+        let [[a, b], [c, d]] = [ends(&image), ends(&exact)];
+        assert!(a * b < -0.9 && ((a - c).abs().max((b - d).abs()) < 1e-9 || (a - d).abs().max((b - c).abs()) < 1e-9));
+        assert!(land.add(image) && land.knows(&exact.saddle));
     }
 
     #[test]

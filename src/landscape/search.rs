@@ -290,7 +290,10 @@ fn climb(land: &Landscape, start: &[f64], below: f64, sides: Sides) -> Result<Op
     if land.height_mev(saddle.spins()) >= below || land.knows(&saddle) {
         return Ok(None);
     }
-    Pass::of(h, saddle, sides).map(Some)
+    match land.image_over(&saddle) {
+        Some(image) => Ok(Some(image)),
+        None => Pass::of(h, saddle, sides).map(Some),
+    }
 }
 
 #[cfg(test)]
