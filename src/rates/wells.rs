@@ -11,7 +11,7 @@ use super::{
 };
 use crate::energy::Evaluator;
 use crate::linalg::{orthonormal, remove, slab};
-use crate::stationary::{Spectrum, State};
+use crate::stationary::{ALIKE, Spectrum, State};
 use crate::symmetry::Group;
 use std::f64::consts::PI;
 
@@ -115,7 +115,14 @@ impl<'a> Beside<'a> {
             let known = levels.len();
             levels.extend(self.levels_mev(&slides));
             levels.sort_by(f64::total_cmp);
-            levels.dedup();
+            // levels of states that are alike differ by rounding: above the highest of them all have changed
+            levels.dedup_by(|next, last| {
+                let is_one = *next - *last <= ALIKE * last.abs();
+                if is_one {
+                    *last = *next;
+                }
+                is_one
+            });
             if levels.len() == known {
                 break choices;
             }
