@@ -25,10 +25,10 @@ out=$(cd "$1" && pwd)
 cargo package --locked
 cp "$target/package/spinneb-$version.crate" "$out"
 # without the names that a debugger reads
-export CARGO_PROFILE_RELEASE_STRIP=true
+export CARGO_PROFILE_DIST_STRIP=true
 host=$(rustc -vV | sed -n 's/^host: //p')
-cargo build --release --locked
-cp "$target/release/spinneb" "$out/spinneb-$version-$host"
+cargo build --profile dist --locked
+cp "$target/dist/spinneb" "$out/spinneb-$version-$host"
 static=${host%-gnu}-musl
 case $host in
 *-linux-gnu)
@@ -37,8 +37,8 @@ case $host in
     elif ! command -v musl-gcc >/dev/null; then
         echo "release: no static program: there is no musl-gcc" >&2
     else
-        cargo build --release --locked --target "$static"
-        cp "$target/$static/release/spinneb" "$out/spinneb-$version-$static"
+        cargo build --profile dist --locked --target "$static"
+        cp "$target/$static/dist/spinneb" "$out/spinneb-$version-$static"
     fi
     ;;
 esac

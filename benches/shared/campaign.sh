@@ -14,6 +14,6 @@ fi
 python=$venv/bin/python
 [ -x "$python" ] || python3 -m venv "$venv"
 "$python" -m pip install --quiet --disable-pip-version-check $packages
-cargo build --release --quiet --manifest-path "$root/Cargo.toml"
-spinneb=${CARGO_TARGET_DIR:-$root/target}/release/spinneb
+cargo build --profile dist --quiet --manifest-path "$root/Cargo.toml"
+spinneb=${CARGO_TARGET_DIR:-$root/target}/dist/spinneb
 export PYTHONDONTWRITEBYTECODE=1
