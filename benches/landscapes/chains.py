@@ -31,7 +31,9 @@ class Chain:
         self.quartic, self.cubic = [], []
         # the axis about which every rotation leaves the energy as it is
         self.axis = None
-        chain = {"sites": sites, "periodic": periodic, "vacant": sorted(self.vacant)}
+        chain = {"sites": sites, "periodic": periodic}
+        if self.vacant:
+            chain["vacant"] = sorted(self.vacant)
         chain["moments"] = [{"sites": list(range(sites)), "moment": [f"{x} mu_B" for x in self.moments.tolist()]}]
         if spacing:
             chain["spacing"] = f"{spacing} nm"
