@@ -115,14 +115,8 @@ impl<'a> Beside<'a> {
             let known = levels.len();
             levels.extend(self.levels_mev(&slides));
             levels.sort_by(f64::total_cmp);
-            // levels of states that are alike differ by rounding: above the highest of them all have changed
-            levels.dedup_by(|next, last| {
-                let is_one = *next - *last <= ALIKE * last.abs();
-                if is_one {
-                    *last = *next;
-                }
-                is_one
-            });
+            // those of states that are alike differ by rounding; at the lowest of them none slides yet
+            levels.dedup_by(|next, last| *next - *last <= ALIKE * *last);
             if levels.len() == known {
                 break choices;
             }
