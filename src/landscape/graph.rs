@@ -366,7 +366,7 @@ impl<'a> Landscape<'a> {
 
     /// Whether a saddle is as high as this.
     pub fn has_height(&self, height_mev: f64) -> bool {
-        self.edges.iter().any(|e| (e.height_mev - height_mev).abs() < ALIKE * self.h.stiffness_mev())
+        self.edges_at(height_mev).next().is_some()
     }
 
     /// Whether a saddle is known.
@@ -378,8 +378,7 @@ impl<'a> Landscape<'a> {
     pub(super) fn image_over(&self, saddle: &Saddle) -> Option<Pass> {
         let group = self.group.as_ref()?;
         let (m, height_mev) = (saddle.spins(), self.height_mev(saddle.spins()));
-        let near = ALIKE * self.h.stiffness_mev();
-        let alike = self.edges.iter().filter(|e| e.by.is_none() && (e.height_mev - height_mev).abs() < near);
+        let alike = self.edges_at(height_mev).filter(|e| e.by.is_none());
         let seen = Seen::of(self.h, m);
         alike.map(|e| &self.passes[e.pass]).find_map(|pass| {
             let by = group.operations().find(|by| seen.is_made(by, pass.saddle.spins()))?;
@@ -392,17 +391,21 @@ impl<'a> Landscape<'a> {
         let ends = [&pass.before, &pass.after].map(|minimum| self.known(minimum).map(|k| self.stands_for[k]));
         let [Some(a), Some(b)] = ends else { return false };
         let (m, height_mev) = (pass.saddle.spins(), self.height_mev(pass.saddle.spins()));
-        let near = ALIKE * self.h.stiffness_mev();
-        let alike = |e: &&Edge| (e.height_mev - height_mev).abs() < near && (e.ends == [a, b] || e.ends == [b, a]);
-        let mut places = self.edges.iter().filter(alike).flat_map(|e| self.places.beside(self.h, &e.saddle, m, STEP));
+        let alike = |e: &&Edge| e.ends == [a, b] || e.ends == [b, a];
+        let mut places =
+            self.edges_at(height_mev).filter(alike).flat_map(|e| self.places.beside(self.h, &e.saddle, m, STEP));
         places.any(|place| is_slid(self.h, &place, m))
     }
 
     /// The edges over a saddle.
     fn edges_over(&self, m: &[f64], height_mev: f64) -> impl Iterator<Item = &Edge> {
+        self.edges_at(height_mev).filter(move |e| self.is_one(&e.saddle, m))
+    }
+
+    /// The edges whose saddles are as high as this.
+    fn edges_at(&self, height_mev: f64) -> impl Iterator<Item = &Edge> {
         let near = ALIKE * self.h.stiffness_mev();
-        let over = move |e: &&Edge| (e.height_mev - height_mev).abs() < near && self.is_one(&e.saddle, m);
-        self.edges.iter().filter(over)
+        self.edges.iter().filter(move |e| (e.height_mev - height_mev).abs() < near)
     }
 }
 
@@ -411,6 +414,7 @@ mod tests {
     use super::*;
     use crate::energy::{Anisotropy, EnergyTerm, Exchange, Hamiltonian};
     use crate::geometry::Direction;
+    use crate::landscape::Sides;
     use crate::lattice::Chain;
     use crate::stationary::Limits;
 
@@ -433,13 +437,16 @@ mod tests {
         land.known(&Minimum::examine(land.evaluator(), &state(v))).unwrap()
     }
 
-    fn pass(h: &Hamiltonian) -> Pass {
-        let start = Spins::from_vectors(&[[0.1, 0.9, 0.2]]).unwrap();
+    const SIDES: Sides = Sides { c: 1.0, level_mev: 0.0, beside: &[], most: usize::MAX };
+
+    fn climbed(h: Evaluator, start: &Spins) -> Saddle {
         let limits =
             Limits { steps: 40, without_mode: 8, radius: 0.5, ceiling_mev: f64::INFINITY, known: &|_, _| false };
-        let saddle = Saddle::climbed(h.into(), start.as_slice(), &limits).unwrap();
-        Pass::of(h.into(), saddle, crate::landscape::Sides { c: 1.0, level_mev: 0.0, beside: &[], most: usize::MAX })
-            .unwrap()
+        Saddle::climbed(h, start.as_slice(), &limits).unwrap()
+    }
+
+    fn pass(h: &Hamiltonian) -> Pass {
+        Pass::of(h.into(), climbed(h.into(), &state([0.1, 0.9, 0.2])), SIDES).unwrap()
     }
 
     #[test]
@@ -495,18 +502,15 @@ mod tests {
         // one spin that turns over beside others that do not
         let over = |site: usize| {
             let spins: Vec<_> = (0..sites).map(|i| if i == site { [0.1, 0.9, 0.2] } else { [0.0, 0.0, 1.0] }).collect();
-            let limits =
-                Limits { steps: 40, without_mode: 8, radius: 0.5, ceiling_mev: f64::INFINITY, known: &|_, _| false };
-            Saddle::climbed(h, Spins::from_vectors(&spins).unwrap().as_slice(), &limits).unwrap()
+            climbed(h, &Spins::from_vectors(&spins).unwrap())
         };
-        let sides = crate::landscape::Sides { c: 1.0, level_mev: 0.0, beside: &[], most: usize::MAX };
         let mut land = Landscape::new(h, Spins::uniform(sites, Direction::Z).as_slice());
         land.unfold();
-        assert!(land.add(Pass::of(h, over(0), sides).unwrap()));
+        assert!(land.add(Pass::of(h, over(0), SIDES).unwrap()));
         let far = over(20);
         assert!(land.edges().len() < 80 && !land.knows(&far));
         let image = land.image_over(&far).expect("a shift makes it");
-        let exact = Pass::of(h, far, sides).unwrap();
+        let exact = Pass::of(h, far, SIDES).unwrap();
         assert!(is_same_state(h, image.saddle.spins(), exact.saddle.spins()) && image.doubt(h).is_none());
         let ends =
             |pass: &Pass| [pass.before.spins.as_slice()[2 * sites + 20], pass.after.spins.as_slice()[2 * sites + 20]];

@@ -54,14 +54,14 @@ fn refined(h: Evaluator, m: &[f64], tau: &[f64], floor_mev: f64, strays: impl Fn
     let mut search = Search::from(h, m, STEP);
     search.along = Some(tau.to_vec());
     let left = |here: &Point| largest_angle(m, &here.m) > FAR || here.energy_mev < floor_mev;
-    let (mut begins, mut strayed) = (true, false);
-    let found = search.saddle(STEPS, true, |here, step| {
-        strayed |= take(&mut begins) && strays(step);
-        (strayed || left(here)).then_some(GaveUp::Stuck)
+    let mut begins = true;
+    let found = search.saddle(STEPS, true, |here, step| match take(&mut begins) && strays(step) {
+        true => Some(GaveUp::Strayed),
+        false => left(here).then_some(GaveUp::Stuck),
     });
     match found {
         Ok(Saddle { state, mode: valley, spectrum, .. }) => Refined { state, valley, spectrum: Some(spectrum) },
-        Err(_) if strayed => with_valley(State::at(h, m.to_vec()), tau, None),
+        Err(GaveUp::Strayed) => with_valley(State::at(h, m.to_vec()), tau, None),
         Err(_) => beside(h, m, tau),
     }
 }

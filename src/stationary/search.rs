@@ -40,6 +40,8 @@ pub enum GaveUp {
     Known,
     /// It came to rest where there is no such state.
     Stuck,
+    /// Its first step led too far.
+    Strayed,
     /// It was told to stop.
     Stopped,
 }

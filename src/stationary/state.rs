@@ -10,12 +10,19 @@ use crate::threads::both;
 use serde::{Deserialize, Serialize};
 use std::ops::Deref;
 
-/// A field that is like a mode is changed by this part of it, so that it has something of every mode.
-pub(super) const STIRRED: f64 = 0.1;
+/// What is like a mode is changed by this part of it, so that it has something of every mode.
+const STIRRED: f64 = 0.1;
 
 /// Factors are very dear where they take the arithmetic of so many solutions by them: in films of some 170² sites and more, cubes of
 /// 15³.
 const DEAR: f64 = 60.0;
+
+/// Something like a mode, with something of every mode.
+pub(super) fn stirred(mut like: Vec<f64>) -> Vec<f64> {
+    let size = slab::norm(&like);
+    slab::stir(&mut like, STIRRED * size);
+    like
+}
 
 /// Whether factors of a Hessian take so long that modes are found sooner without.
 pub fn is_very_dear(h: &Hamiltonian) -> bool {
@@ -78,13 +85,7 @@ impl State {
     /// nothing where those do not tell it soon, or where new factors are as cheap as solutions. A field (3N) may be `like` it.
     pub fn mode_at_hand(&self, factors: &Factors, wanted: Wanted, like: Option<&Vec<f64>>) -> Option<Vec<f64>> {
         let Matrix::Sparse(_) = self.hessian else { return None };
-        let start = like.map(|field| {
-            let mut start = self.basis.coordinates(field);
-            let size = slab::norm(&start);
-            slab::stir(&mut start, STIRRED * size);
-            start
-        });
-        let starts = start.into_iter().collect();
+        let starts = like.map(|field| stirred(self.basis.coordinates(field))).into_iter().collect();
         let mut v = modes_by_factors(factors, &self.zeros, starts, wanted.residual())?.pop()?;
         // one solution more: what is left of stiff modes would show in vᵀHv
         factors.solve(&mut v, 1);

@@ -15,7 +15,7 @@
 use super::border::pin_all;
 use super::point::Point;
 use super::spectrum::floor_mev;
-use super::state::STIRRED;
+use super::state::stirred;
 use super::tolerances::{ALIKE, FEW, FIRST_SHIFT, LARGER, LAST_DIGITS, LAST_SHIFT, ROUGHLY};
 use crate::energy::Evaluator;
 use crate::field::project;
@@ -307,10 +307,8 @@ impl<'a> Region<'a> {
     /// Reverses the parts of `x`, Newton's step, along some of the lowest modes, which are told by its factors; not where these do not
     /// tell several soon. Whether it did.
     fn reverse(&mut self, here: &Point, factors: &Factors, which: Range<usize>) -> bool {
-        let mut start = self.x.clone();
-        slab::stir(&mut start, STIRRED * slab::norm(&self.x));
         let before = self.modes.iter().map(|mode| here.basis.coordinates(mode));
-        let starts = std::iter::once(start).chain(before).collect();
+        let starts = std::iter::once(stirred(self.x.clone())).chain(before).collect();
         let lowest = || lowest_modes(&self.hessian, 1, &here.zeros).into_iter().map(|mode| mode.vector).collect();
         let found = modes_by_factors(factors, &here.zeros, starts, ROUGHLY);
         let Some(modes) = found.or_else(|| (which.start == 0).then(lowest)) else { return false };
